@@ -1,0 +1,472 @@
+/* sphgrad: corrected first-order SPH derivatives (KGC, MLS, RKPM; linearised and classic).
+ * SPDX-License-Identifier: MIT
+ * "Eq. (n)" = Westhofen, Jeske, Bender 2023, doi:10.1145/3606933
+ *
+ * Five nouns carry the whole interface:
+ *   view       your memory: where numbers stand, how far apart, of which type
+ *   scheme     which derivative: dimension, method, kernel, support radius, threshold
+ *   neighbors  who sums over whom, and where everyone stood (a copy of the positions)
+ *   request    which results of which fields; nothing else is computed, stored or read
+ *   context    threads, memory, instruction set, last message
+ * and one verb, sphg_evaluate(). The other operators are short ways to call it.
+ *
+ * Notation  i target, j source, x_ij = x_i - x_j, r = |x_ij|, H support radius, V volume,
+ *           d dimension, G_ij = grad Phi_j(x_i) shape-function gradient, C_i correction matrix.
+ *           j is a neighbour of i when r < H and j is not i itself.
+ * Units     [L] length, [a] unit of the field; any consistent system.
+ * Structs   zero-initialise ({0}, in C++ {}), then set what you need: zero is the default or,
+ *           where there is none, refused. They only grow at the end; the context knows the
+ *           header you compiled against. Functions without a context read 1.0's members only.
+ * Memory    views are borrowed for the call, lists until the next build (sphg_neighbors_use_lists);
+ *           the library owns contexts and neighbours only. Inputs are never written. An output
+ *           must not overlap an input or another output. Once warm, no call allocates.
+ * Threads   one call at a time per context, any number of contexts at once; what a call takes
+ *           as const may be shared by concurrent calls. Same input, same bits: for any number
+ *           of threads, any executor, any split into subsets.
+ * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
+ *           error, never NaN; each target's `rank` tells how much could be corrected. */
+#ifndef SPHGRAD_SPHGRAD_H
+#define SPHGRAD_SPHGRAD_H
+#include <stddef.h>
+#include <stdint.h>
+
+#define SPHG_VERSION_MAJOR 0 /* CMakeLists.txt reads the version from these three lines */
+#define SPHG_VERSION_MINOR 1
+#define SPHG_VERSION_PATCH 0
+#define SPHG_VERSION (SPHG_VERSION_MAJOR * 10000 + SPHG_VERSION_MINOR * 100 + SPHG_VERSION_PATCH)
+
+#ifndef SPHG_API /* predefine to embed the library in another shared object */
+#if defined(_WIN32) && defined(SPHG_SHARED_BUILD)
+#define SPHG_API __declspec(dllexport)
+#elif defined(_WIN32) && defined(SPHG_SHARED)
+#define SPHG_API __declspec(dllimport)
+#elif defined(__GNUC__)
+#define SPHG_API __attribute__((visibility("default")))
+#else
+#define SPHG_API
+#endif
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Results ---------------------------------------------------------------------------- */
+
+/* Positive: refused, nothing was written. Negative: begun, the outputs of this call are
+ * undefined. Context and neighbours can be used again after both. */
+#define SPHG_RESULT_LIST(X)                                                                 \
+    X(OK, 0, "success")                                                                     \
+    X(ERROR_ARGUMENT, 1, "null pointer, negative count, or a value out of range")           \
+    X(ERROR_VERSION, 2, "compiled against a header this library cannot serve")              \
+    X(ERROR_TYPE, 3, "a view does not have the precision of the neighbours")                \
+    X(ERROR_SIZE, 4, "counts, dimensions or radii of neighbours and request disagree")      \
+    X(ERROR_STATE, 5, "the neighbours were never built, or their last build failed")        \
+    X(ERROR_UNSUPPORTED, 6, "not on this machine, or no such operator for this shape")      \
+    X(ERROR_CAPACITY, 7, "an output array is too small; the size needed was reported")      \
+    X(ERROR_NOT_FINITE, 8, "a position is NaN or infinite")                                 \
+    X(ERROR_BUSY, 9, "the context is in use by another call")                               \
+    X(ERROR_MEMORY, -1, "the allocator returned NULL")                                      \
+    X(ERROR_INDEX, -2, "a neighbour index is out of range")                                 \
+    X(ERROR_VOLUME, -3, "a volume is negative or not finite")
+#define SPHG_X(name, value, text) SPHG_##name = value,
+typedef enum sphg_result { SPHG_RESULT_LIST(SPHG_X) } sphg_result;
+#undef SPHG_X
+
+SPHG_API const char *sphg_result_string(sphg_result result); /* static storage, never NULL */
+SPHG_API int32_t sphg_version(void);                         /* SPHG_VERSION of the library */
+
+/* ---- Views: your memory ----------------------------------------------------------------- */
+
+typedef enum sphg_type { SPHG_F32 = 1, SPHG_F64 = 2, SPHG_U8 = 3 } sphg_type;
+
+/* What one item holds, and in which order its numbers stand. */
+typedef enum sphg_shape {
+    SPHG_SCALAR = 1,     /* 1 number */
+    SPHG_VECTOR = 2,     /* d: x y z */
+    SPHG_SYM_TENSOR = 3, /* d (d + 1) / 2: xx xy xz yy yz zz, in 2D xx xy yy */
+    SPHG_TENSOR = 4      /* d x d, row-major: J[a][b] = d v_a / d x_b (Eigen: RowMajor) */
+} sphg_shape;
+
+/* Strided view. Item k starts at (char *)x + k * stride; its numbers follow one another. Only if
+ * y (and z) are set, the second (third) component of a vector, or row of a tensor, starts there:
+ * separate arrays, or 2 x 2 results in 3 x 3 storage. z is not used in 2D.
+ * stride 0, inputs only: one item for all (uniform volume, constant field). x NULL: absent. */
+typedef struct sphg_view {
+    const void *x, *y, *z; /* an output is written through them all the same */
+    ptrdiff_t stride; /* [byte], multiple of the number's size; may be negative */
+    sphg_type type;
+} sphg_view;
+
+static inline sphg_view sphg_view_f32(const float *first, ptrdiff_t stride)
+{
+    sphg_view view = {first, NULL, NULL, stride, SPHG_F32};
+    return view;
+}
+static inline sphg_view sphg_view_f64(const double *first, ptrdiff_t stride)
+{
+    sphg_view view = {first, NULL, NULL, stride, SPHG_F64};
+    return view;
+}
+static inline sphg_view sphg_view_u8(const uint8_t *first, ptrdiff_t stride)
+{
+    sphg_view view = {first, NULL, NULL, stride, SPHG_U8};
+    return view;
+}
+static inline sphg_view sphg_xyz_f32(const float *x, const float *y, const float *z,
+                                     ptrdiff_t stride)
+{
+    sphg_view view = {x, y, z, stride, SPHG_F32};
+    return view;
+}
+static inline sphg_view sphg_xyz_f64(const double *x, const double *y, const double *z,
+                                     ptrdiff_t stride)
+{
+    sphg_view view = {x, y, z, stride, SPHG_F64};
+    return view;
+}
+static inline sphg_view sphg_absent(void)
+{
+    sphg_view view = {NULL, NULL, NULL, 0, SPHG_F32};
+    return view;
+}
+
+/* ---- Context: who works, and with whose memory ------------------------------------------ */
+
+typedef struct sphg_context sphg_context;
+
+typedef enum sphg_isa {
+    SPHG_ISA_BEST = 0, /* of this machine */
+    SPHG_ISA_BASE = 1,
+    SPHG_ISA_X86_V3 = 2,
+    SPHG_ISA_X86_V4 = 3,
+    SPHG_ISA_NEON = 4
+} sphg_isa;
+
+/* Work on the items [begin, end). worker in [0, threads) is nobody else's at this moment. */
+typedef void sphg_task(void *data, int32_t begin, int32_t end, int32_t worker);
+
+typedef struct sphg_config {
+    int32_t threads; /* 0: as many as OpenMP has; 1: the calling thread alone, no OpenMP region;
+                        with parallel_for: the number of its workers */
+    sphg_isa isa;    /* override for tests */
+    int32_t trusted; /* 1: do not look for bad numbers in positions, volumes and lists; arguments
+                        are always checked */
+    void *(*allocate)(size_t size, size_t alignment, void *user); /* both or neither */
+    void (*release)(void *memory, size_t size, void *user);
+    void (*log)(sphg_result result, const char *message, void *user); /* hears each failure */
+    /* Calls task on disjoint ranges that make up [0, count), each >= grain long where it can,
+     * and returns when all are done. Order and split are free: results do not depend on them. */
+    void (*parallel_for)(sphg_task *task, void *data, int32_t count, int32_t grain, void *user);
+    void *user; /* handed back to these four */
+} sphg_config;
+
+/* version: SPHG_VERSION. config: copied; NULL: defaults. A host with its own tasks makes one
+ * context per worker, threads = 1. Errors (*context is NULL then): ARGUMENT, VERSION,
+ * UNSUPPORTED, MEMORY. */
+SPHG_API sphg_result sphg_context_create(int32_t version, const sphg_config *config,
+                                         sphg_context **context);
+SPHG_API void sphg_context_destroy(sphg_context *context); /* NULL is ignored */
+
+/* What the last failed call on this context objected to: function, argument, value. Never NULL;
+ * valid until the next call. */
+SPHG_API const char *sphg_last_message(const sphg_context *context);
+
+/* ---- Scheme: which derivative ----------------------------------------------------------- */
+
+/* G_ij = C_i s_ij x_ij, C_i from M_i = -sum_j s_ij x_ij x_ij^T. Other names: KGC is called
+ * renormalisation, B matrix, CSPM gradient; linearised RKPM IAD; linearised MLS the GIZMO or SWIFT
+ * gradient. */
+typedef enum sphg_method {
+    SPHG_KGC = 0,   /* s_ij = V_j W'/r    Eq. (17, 18) */
+    SPHG_MLS = 1,   /* s_ij = -W          Eq. (24, 25) */
+    SPHG_RKPM = 2,  /* s_ij = -V_j W      Eq. (30, 31) */
+    SPHG_CMLS = 3,  /* classic: full derivative of the interpolant with weight W */
+    SPHG_CRKPM = 4, /* the same with weight V_j W */
+    SPHG_PLAIN = 5  /* SPH: KGC with C_i = 1    Eq. (14) */
+} sphg_method;
+
+typedef enum sphg_kernel {
+    SPHG_CUBIC_SPLINE = 0,
+    SPHG_QUINTIC_SPLINE = 1,
+    SPHG_WENDLAND_C2 = 2,
+    SPHG_WENDLAND_C4 = 3,
+    SPHG_WENDLAND_C6 = 4,
+    SPHG_POLY6 = 5,
+    SPHG_SPIKY = 6
+} sphg_kernel;
+
+/* What becomes of a direction whose normalised moment lambda (1 in a full neighbourhood) is
+ * small. A direction counts in `rank` when it is fully corrected. */
+typedef enum sphg_policy {
+    SPHG_BLEND = 0,    /* w/lambda + (1 - w), w = smoothstep(eps, 4 eps); full from 4 eps on */
+    SPHG_REPLACE = 1,  /* 1/lambda if lambda > eps, else 1: the paper's rule, discontinuous */
+    SPHG_TRUNCATE = 2, /* 1/lambda if lambda > eps, else 0: pseudo-inverse */
+    SPHG_IDENTITY = 3  /* the particle stays uncorrected as soon as one lambda <= eps */
+} sphg_policy;
+
+typedef struct sphg_scheme {
+    int32_t dimension; /* 2 or 3; 0: 3 */
+    sphg_method method;
+    sphg_kernel kernel;
+    sphg_policy policy;
+    double support_radius; /* H [L] > 0 */
+    double threshold;      /* eps in (0, 1); 0: 1e-2 */
+} sphg_scheme;
+
+/* Numbers per item of a correction table: linearised d (d + 1) / 2, C_i as SYM_TENSOR; classic
+ * (d + 1)^2, the interpolant's coefficients and their derivatives; PLAIN 0. */
+SPHG_API int32_t sphg_correction_width(const sphg_scheme *scheme);
+
+/* W(r) [L^-d] and W'(r)/r [L^-(d + 2)], finite for r >= 0 (spiky: W'/r is unbounded towards 0 and
+ * given as 0 at r = 0), 0 for r >= H. Either may be NULL. Reads dimension, kernel and
+ * support_radius; a scheme that is not valid gives NaN. */
+SPHG_API void sphg_kernel_value(const sphg_scheme *scheme, double r, double *w,
+                                double *dw_over_r);
+
+/* W(r) = sigma w(r/H) / H^d with w as tabulated in docs/theory.md: sigma, and the second moment
+ * mu2 = (1/H^2) int W x_k^2 dV. Either may be NULL. A scheme that is not valid gives NaN. */
+SPHG_API void sphg_kernel_constants(const sphg_scheme *scheme, double *sigma, double *mu2);
+
+/* ---- Neighbours: who sums over whom ----------------------------------------------------- */
+
+/* One set of targets, one set of sources, and a copy of their positions: operators use those of
+ * the last successful build, wherever your particles are by now. So a rest configuration is a
+ * sphg_neighbors that you build once. Several source sets: one object each (few sets; join many
+ * small bodies into one). */
+typedef struct sphg_neighbors sphg_neighbors;
+
+typedef struct sphg_geometry {
+    sphg_view sources;    /* x_j [L], source_count vectors */
+    sphg_view targets;    /* x_i [L], target_count vectors. Absent: the targets are the sources'
+                             first target_count particles, "part of" this source set */
+    int32_t source_count; /* ghosts included */
+    int32_t target_count;
+    sphg_type precision;  /* of all fields and results; 0: as the positions. F32 beside F64
+                             positions: differences are taken before narrowing */
+    int32_t list_free;    /* search only; 1: keep no pairs, each operator finds them: for one or
+                             two uses */
+    double skin;          /* [L], search only: find pairs up to H + skin and keep them until a
+                             particle has moved skin / 2; results are exact throughout */
+    double period[3];     /* [L] per axis; 0: open; else >= 2 (H + skin), positions anywhere */
+} sphg_geometry;
+
+/* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
+ * duplicates; i itself is skipped. Set one of the three groups. */
+typedef struct sphg_lists {
+    const int64_t *offsets;     /* CSR: target_count + 1 items, from 0, never falling ... */
+    const int32_t *indices;     /* ... and offsets[target_count] source indices */
+    const int32_t *const *rows; /* or a pointer per target ... */
+    const int32_t *lengths;     /* ... and its number of indices */
+    /* or a function that returns the length; called by the workers, needs no locking per worker */
+    int32_t (*row)(int32_t target, int32_t worker, const int32_t **indices, void *user);
+    void *user;                 /* handed to row */
+    int32_t index_mask;         /* bits of an index that count (LAMMPS: NEIGHMASK); 0: all */
+} sphg_lists;
+
+typedef struct sphg_neighbors_info {
+    int64_t pairs; /* listed, skin included; 0 if list_free, for rows and for functions */
+    int64_t bytes; /* held by this object */
+    int32_t target_count, source_count;
+    int32_t rebuilt;  /* 1: the last search found pairs anew; 0: the skin still held */
+    double skin_left; /* [L] any particle may move this far before the next rebuild */
+} sphg_neighbors_info;
+
+/* An empty object; its memory is the context's: destroy it first. */
+SPHG_API sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighbors);
+SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is ignored */
+
+/* Copies the positions and finds all pairs with r < H, exactly those of brute force. Reads
+ * dimension and support_radius of scheme. Call it each step: it does what the skin demands.
+ * Errors: ARGUMENT, TYPE, NOT_FINITE (old state kept); MEMORY (build again).
+ * Cost: time and memory O(n + pairs) for any extent of the domain. */
+SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
+                                           const sphg_scheme *scheme,
+                                           const sphg_geometry *geometry);
+
+/* Copies the positions and borrows your lists: leave them unchanged until the next build or
+ * destroy. Pairs with r >= H add nothing. Indices are checked as operators read them.
+ * Errors: ARGUMENT, TYPE, NOT_FINITE (old state kept); MEMORY (build again). Cost: O(n). */
+SPHG_API sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
+                                              const sphg_scheme *scheme,
+                                              const sphg_geometry *geometry,
+                                              const sphg_lists *lists);
+
+SPHG_API sphg_result sphg_neighbors_get_info(sphg_context *context,
+                                             const sphg_neighbors *neighbors,
+                                             sphg_neighbors_info *info);
+
+/* order[k]: the k-th source on the library's path through space, source_count items. Sort your
+ * particles by it now and then: operators are fastest on data in this order. */
+SPHG_API sphg_result sphg_neighbors_get_order(sphg_context *context,
+                                              const sphg_neighbors *neighbors, int32_t *order);
+
+/* ---- Request: which results ------------------------------------------------------------- */
+
+/* One source set, as the targets see it. */
+typedef struct sphg_sources {
+    const sphg_neighbors *neighbors;
+    sphg_view volume;     /* V_j [L^d] >= 0; not read by CMLS in DIFFERENCE and DIRECT */
+    sphg_view density;    /* rho_j; read in SYMMETRIC only */
+    sphg_view correction; /* C_j; read in ADJOINT and SYMMETRIC, unless this set's A_j are absent */
+} sphg_sources;
+
+/* Some of the targets. Arrays stay indexed by target; what is not selected is not touched. */
+typedef struct sphg_subset {
+    int32_t begin, end;     /* targets [begin, end), or the items [begin, end) of indices */
+    const int32_t *indices; /* NULL, or target indices without duplicates */
+    const uint8_t *mask;    /* NULL, or target_count bytes: 0 leaves a target out */
+} sphg_subset;
+
+/* The summand over j. `A G` is A G (gradient), A . G (divergence) or G x A (curl). */
+typedef enum sphg_form {
+    SPHG_DIFFERENCE = 0, /* (A_j - A_i) G_ij    Eq. (15). Exact on linear fields where rank = d;
+                            conserves nothing */
+    SPHG_DIRECT = 1,     /* A_j G_ij    Eq. (13). A surface term, for normals and colour fields;
+                            classic: self included, exact on linear fields where rank = d */
+    SPHG_SYMMETRIC = 2,  /* rho_i m_j (A_i G_ij / (V_j rho_i^2) - A_j G_ji / (V_i rho_j^2))
+                            Eq. (16). Inexact even on constants; conserves linear momentum */
+    SPHG_ADJOINT = 3     /* V_i A_i G_ij - V_j A_j G_ji. A force; div A = result / V_i. The
+                            negative adjoint of DIFFERENCE to rounding; conserves linear
+                            momentum, angular where C is the exact inverse and A symmetric */
+} sphg_form;
+
+/* One field, and what is wanted of it. ADJOINT results have the unit [a L^(d - 1)]. */
+typedef struct sphg_field {
+    sphg_shape shape; /* of A */
+    sphg_form form;
+    int32_t accumulate;          /* 1: add to what the outputs hold */
+    const sphg_view *at_sources; /* A_j [a], a view per source set; absent view: A_j = 0 */
+    sphg_view at_targets;        /* A_i [a]; absent: from the set the targets are part of */
+    sphg_view value;             /* DIRECT only: sum A_j Phi_j(x_i) [a], shape as A, self included.
+                                    Classic: exact on linear fields; others: sum A_j V_j W */
+    sphg_view gradient;          /* [a/L] scalar -> vector, vector -> tensor */
+    sphg_view divergence;        /* [a/L] vector -> scalar, tensor or symmetric -> vector */
+    sphg_view curl;              /* [a/L] vector -> vector, in 2D -> scalar */
+} sphg_field;
+
+/* Sums over the targets of one call whose corrections were computed. */
+typedef struct sphg_stats {
+    int64_t rank[4];    /* targets of rank 0, 1, 2, 3 */
+    int64_t certified;  /* inverted on the fast path, proven untouched by the threshold */
+    int64_t decomposed; /* sent to the eigensolver */
+    int64_t empty;      /* of these: nothing to sum (classic: sum w = 0, value and gradient 0) */
+    double lambda_min;  /* the smallest; +inf if there were no targets */
+} sphg_stats;
+
+typedef struct sphg_request {
+    const sphg_sources *sources; /* their sums add up, moments included */
+    const sphg_field *fields;
+    int32_t set_count; /* sources, >= 1 */
+    int32_t field_count;
+    const sphg_subset *subset; /* NULL: all targets */
+
+    /* The targets' side. Absent: from the source set that the targets are part of. */
+    sphg_view target_volume;     /* V_i; read by MLS (scale of M; absent on both sides: the mean
+                                    sum V_j W / sum W), DIRECT `value`, ADJOINT, SYMMETRIC */
+    sphg_view target_density;    /* rho_i; read in SYMMETRIC only */
+    sphg_view target_correction; /* C_i; none on either side: computed in the same sweep */
+
+    /* Wanted of the corrections, where they are computed. */
+    sphg_view correction; /* C_i, sphg_correction_width() numbers an item */
+    sphg_view rank;       /* U8: fully corrected directions, 0..d */
+    sphg_view lambda_min; /* smallest normalised moment: exact where decomposed, elsewhere a
+                             lower bound, at most a factor sqrt(d) too small */
+    sphg_stats *stats;
+} sphg_request;
+
+/* All that the request names, in one sweep over the pairs. Views have the neighbours' precision.
+ * scheme: dimension as in the build, support_radius at most that of the search.
+ * MPI: ask for `correction` of your own n of n + ghosts particles; refresh the ghosts' rows; then
+ * ADJOINT or SYMMETRIC with that table as sources' correction. DIFFERENCE needs no exchange.
+ * Errors: ARGUMENT, TYPE, SIZE, STATE, UNSUPPORTED, BUSY; MEMORY, INDEX, VOLUME.
+ * Cost: what is selected and wanted. */
+SPHG_API sphg_result sphg_evaluate(sphg_context *context, const sphg_scheme *scheme,
+                                   const sphg_request *request);
+
+/* ---- Short ways, for targets that are part of their only source set ---------------------- */
+
+/* C_i into correction; rank: U8, or absent. Needs no sources->correction, reads none. */
+SPHG_API sphg_result sphg_correction(sphg_context *context, const sphg_scheme *scheme,
+                                     const sphg_sources *sources, const sphg_subset *subset,
+                                     sphg_view correction, sphg_view rank);
+
+/* DIFFERENCE form. sources->correction absent: C_i computed on the way.
+ *   gradient    scalar field [a] -> vector [a/L]
+ *   jacobian    vector field     -> tensor J[a][b] = d v_a / d x_b
+ *   divergence  vector field     -> scalar
+ *   curl        vector field     -> vector, in 2D scalar */
+SPHG_API sphg_result sphg_gradient(sphg_context *context, const sphg_scheme *scheme,
+                                   const sphg_sources *sources, const sphg_subset *subset,
+                                   sphg_view field, sphg_view gradient);
+SPHG_API sphg_result sphg_jacobian(sphg_context *context, const sphg_scheme *scheme,
+                                   const sphg_sources *sources, const sphg_subset *subset,
+                                   sphg_view field, sphg_view jacobian);
+SPHG_API sphg_result sphg_divergence(sphg_context *context, const sphg_scheme *scheme,
+                                     const sphg_sources *sources, const sphg_subset *subset,
+                                     sphg_view field, sphg_view divergence);
+SPHG_API sphg_result sphg_curl(sphg_context *context, const sphg_scheme *scheme,
+                               const sphg_sources *sources, const sphg_subset *subset,
+                               sphg_view field, sphg_view curl);
+
+/* ADJOINT form: f_i = sum V_i S_i G_ij - V_j S_j G_ji, a vector. shape of S: scalar (for S times
+ * the unit matrix), symmetric or full tensor. sources->correction must be there (not for PLAIN). */
+SPHG_API sphg_result sphg_force(sphg_context *context, const sphg_scheme *scheme,
+                                const sphg_sources *sources, const sphg_subset *subset,
+                                sphg_shape shape, sphg_view stress, sphg_view force);
+
+/* ---- Pairs, for loops of your own -------------------------------------------------------- */
+
+typedef struct sphg_pairs { /* your arrays; what is NULL or absent is not wanted */
+    int64_t *offsets;       /* selected targets + 1 items, from 0 */
+    int32_t *indices;       /* j, ascending within a row */
+    sphg_view gradient;     /* G_ij [1/L], a vector per pair */
+    int64_t capacity;       /* pairs that indices and gradient can hold */
+    int64_t count;          /* out: pairs there are */
+} sphg_pairs;
+
+/* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: of everything (first
+ * offsets alone for the count, then the rest), or of blocks of targets that stay in the cache.
+ * C_i: target_correction, else sources->correction if the targets are part of that set, else
+ * computed; volume and C are read for `gradient` only.
+ * Errors: as sphg_evaluate; CAPACITY: nothing written but count. */
+SPHG_API sphg_result sphg_pair_gradients(sphg_context *context, const sphg_scheme *scheme,
+                                         const sphg_sources *sources, const sphg_subset *subset,
+                                         sphg_view target_correction, sphg_pairs *pairs);
+
+/* G_ij of one pair. correction: item i of the table; NULL for PLAIN. gradient: d numbers. */
+SPHG_API void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double volume,
+                                 const double *correction, double *gradient);
+
+/* ---- Small matrices, in batches ----------------------------------------------------------- */
+
+/* What is wanted of sphg_invert_moments; what is absent or NULL is not. */
+typedef struct sphg_inversion {
+    sphg_view correction; /* C_i, SYM_TENSOR; may be the moments themselves */
+    sphg_view rank;       /* U8 */
+    sphg_view lambda_min; /* as in sphg_request */
+    sphg_stats *stats;
+} sphg_inversion;
+
+/* C = f(M) of moments that you summed yourself (M_i as at sphg_method, in units of the host;
+ * SYM_TENSOR; linearised methods only). volume: V_i [L^d], read by MLS. A matrix with NaN or Inf
+ * gives C = NaN and rank 0, and no other item notices.
+ * Errors: ARGUMENT, TYPE, UNSUPPORTED (classic, PLAIN), MEMORY, VOLUME. */
+SPHG_API sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme,
+                                         int32_t count, sphg_view moments, sphg_view volume,
+                                         const sphg_inversion *wanted);
+
+/* A = Q diag(values) Q^T of SYM_TENSOR items; values descending, column k of Q for value k,
+ * det Q = 1. Error: a few roundings of the largest |value|. */
+SPHG_API sphg_result sphg_eigen(sphg_context *context, int32_t dimension, int32_t count,
+                                sphg_view matrices, sphg_view values, sphg_view vectors);
+
+/* A = U diag(sigma) V^T of 3 x 3 TENSOR items; sigma descending, >= 0. On deficient matrices u and
+ * v of a vanishing sigma have no common sign: never threshold with them, use invert_moments. */
+SPHG_API sphg_result sphg_svd(sphg_context *context, int32_t count, sphg_view matrices,
+                              sphg_view u, sphg_view sigma, sphg_view v);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
