@@ -1,0 +1,153 @@
+/* Classic MLS and RKPM: the full derivative of the interpolant (theory.md, section 4), with
+ * xi_j = -x_ij / H, p_j = (1, xi_j). Weights: S = w, D = w'/r, both times V_j if `weighted`. */
+
+/* Order of the sums: w, w x, w xx, d x, d xx, d xxx with x = x_ij / H; xx stands for the upper
+ * triangle row by row, xxx likewise. */
+SPHGI_TEMPLATE void classic_orders(const struct sphgi_piece *piece, int32_t p, void *partial,
+                                   bool weighted, bool three, int32_t part)
+{
+    const int32_t lane = piece->lane[p], d = three ? 3 : 2, pairs = three ? 6 : 3;
+    const int32_t triples = three ? 10 : 4;
+    const int32_t first = part == 0 ? 0 : part == 1 ? 1 + d + pairs : 1 + 2 * d + 2 * pairs;
+    const int32_t n = part == 0 ? 1 + d + pairs : part == 1 ? d + pairs : triples;
+    vec sum[10];
+    for (int32_t c = 0; c < n; ++c)
+        sum[c] = *partial_of(partial, first + c, lane);
+    for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+        const vec x = from(piece, SPHGI_X, k), y = from(piece, SPHGI_Y, k);
+        const vec z = three ? from(piece, SPHGI_Z, k) : x;
+        vec s = from(piece, part == 0 ? SPHGI_S : SPHGI_D, k);
+        if (weighted)
+            s *= from(piece, SPHGI_V, k);
+        const vec sx = s * x, sy = s * y, sz = s * z;
+        const vec first_order[3] = {sx, sy, sz};
+        const vec second[6] = {sx * x, sx * y, three ? sx * z : sy * y, sy * y, sy * z, sz * z};
+        if (part == 0)
+            sum[0] += s;
+        if (part < 2) {
+            const int32_t o = part == 0;
+            for (int32_t c = 0; c < d; ++c)
+                sum[o + c] += first_order[c];
+            for (int32_t c = 0; c < pairs; ++c)
+                sum[o + d + c] += second[c];
+        } else if (three) {
+            const vec third[10] = {second[0] * x, second[0] * y, second[0] * z, second[1] * y,
+                                   second[1] * z, second[2] * z, second[3] * y, second[3] * z,
+                                   second[4] * z, second[5] * z};
+            for (int32_t c = 0; c < 10; ++c)
+                sum[c] += third[c];
+        } else {
+            const vec third[4] = {second[0] * x, second[0] * y, second[1] * y, second[2] * y};
+            for (int32_t c = 0; c < 4; ++c)
+                sum[c] += third[c];
+        }
+    }
+    for (int32_t c = 0; c < n; ++c)
+        *partial_of(partial, first + c, lane) = sum[c];
+}
+
+SPHGI_TEMPLATE void classic_sums_as(const struct sphgi_piece *piece, void *partial, bool weighted,
+                                    bool three)
+{
+    /* Three loops: 29 sums do not fit the registers, 10 do. */
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        classic_orders(piece, p, partial, weighted, three, 0);
+        classic_orders(piece, p, partial, weighted, three, 1);
+        classic_orders(piece, p, partial, weighted, three, 2);
+    }
+}
+
+static void sum_classic(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
+                        void *partial)
+{
+    if (dimension == 3 && weighted)
+        classic_sums_as(piece, partial, true, true);
+    else if (dimension == 3)
+        classic_sums_as(piece, partial, false, true);
+    else if (weighted)
+        classic_sums_as(piece, partial, true, false);
+    else
+        classic_sums_as(piece, partial, false, false);
+}
+
+/* G_ij = D x (p.y) + S (p.z_k), PHI = S (p.y) from the coefficients [y0 y | z_x0 z_x | ..][lane].
+ */
+SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_piece *piece, const real *coefficients,
+                                       bool weighted, bool three)
+{
+    const int32_t d = three ? 3 : 2, width = d + 1;
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const int32_t lane = piece->lane[p];
+        vec c[16];
+        for (int32_t k = 0; k < width * width; ++k)
+            c[k] = splat(coefficients[k * LANES + lane]);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+            vec x[3], s = from(piece, SPHGI_S, k), slope = from(piece, SPHGI_D, k);
+            for (int32_t a = 0; a < d; ++a)
+                x[a] = from(piece, (enum sphgi_array)(SPHGI_X + a), k);
+            if (weighted) {
+                const vec v = from(piece, SPHGI_V, k);
+                s *= v;
+                slope *= v;
+            }
+            vec polynomial[4]; /* p.y, p.z_x, p.z_y, p.z_z */
+            for (int32_t m = 0; m < width; ++m) {
+                polynomial[m] = c[m * width];
+                for (int32_t a = 0; a < d; ++a)
+                    polynomial[m] -= c[m * width + 1 + a] * x[a];
+            }
+            const vec slope_y = slope * polynomial[0];
+            real *g = array_of(piece->arrays, SPHGI_GX) + k;
+            for (int32_t a = 0; a < d; ++a)
+                store(g + a * SPHGI_PIECE, slope_y * x[a] + s * polynomial[1 + a]);
+            store(array_of(piece->arrays, SPHGI_PHI) + k, s * polynomial[0]);
+        }
+    }
+}
+
+static void classic_vectors(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
+                            const void *coefficients)
+{
+    if (dimension == 3 && weighted)
+        classic_vectors_as(piece, coefficients, true, true);
+    else if (dimension == 3)
+        classic_vectors_as(piece, coefficients, false, true);
+    else if (weighted)
+        classic_vectors_as(piece, coefficients, true, false);
+    else
+        classic_vectors_as(piece, coefficients, false, false);
+}
+
+/* T = - weight G_ji with j's coefficients in rows (y_j, z_x,j, ...: one row each): the offset seen
+ * from j is +x_ij / H, its slope points the other way, and the volume in w is the target's. */
+static void transposed_classic(const struct sphgi_piece *piece, int32_t dimension,
+                               const void *const rows[4], const struct sphgi_scales *scales,
+                               const void *target_volume, const void *density,
+                               enum sphgi_weight kind)
+{
+    const int32_t d = dimension;
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const real volume = target_volume ? ((const real *)target_volume)[piece->lane[p]] : R(1);
+        const vec y_scale = splat(R(scales->value) * volume);
+        const vec z_scale = splat(R(scales->slope) * volume);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+            const char *ids = (const char *)piece->ids[p] +
+                              (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
+            const vec weight = weight_of(piece, p, k, density, kind);
+            const vec x[3] = {from(piece, SPHGI_X, k), from(piece, SPHGI_Y, k),
+                              d == 3 ? from(piece, SPHGI_Z, k) : splat(R(0))};
+            vec polynomial[4];
+            for (int32_t m = 0; m <= d; ++m) {
+                const struct four c = gather_rows(rows[m], ids, piece->wide);
+                polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
+                if (d == 3)
+                    polynomial[m] += c.w * x[2];
+            }
+            const vec slope = weight * from(piece, SPHGI_D, k) * y_scale * polynomial[0];
+            const vec s = weight * from(piece, SPHGI_S, k) * z_scale;
+            real *t = array_of(piece->arrays, SPHGI_TX) + k;
+            for (int32_t a = 0; a < d; ++a)
+                store(t + a * SPHGI_PIECE, slope * x[a] - s * polynomial[1 + a]);
+        }
+    }
+}

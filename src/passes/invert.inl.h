@@ -1,0 +1,269 @@
+/* From moments to corrections (theory.md, section 3), one target a lane. Healthy matrices are
+ * inverted by LDL^T under a certificate; if a lane of the group lacks it, that lane is decomposed.
+ */
+
+/* What the threshold makes of one eigenvalue. low: what a dropped direction gets (linearised: 1,
+ * "uncorrected"; classic: 0). */
+SPHGI_TEMPLATE dvec filtered(dvec lambda, dvec eps, sphg_policy policy, double low, dmask *full)
+{
+    const dvec inverse = 1 / lambda;
+    if (policy == SPHG_BLEND) {
+        dvec t = (lambda - eps) / (3 * eps);
+        t = dselect(t < 0, dsplat(0), t);
+        t = dselect(t > 1, dsplat(1), t);
+        const dvec w = t * t * (3 - 2 * t);
+        *full = lambda >= 4 * eps;
+        const dvec blended = w * inverse + (1 - w) * low;
+        const dvec kept = dselect(*full, inverse, blended);
+        return dselect(lambda <= eps, dsplat(low), kept);
+    }
+    *full = lambda > eps;
+    return dselect(lambda <= eps, dsplat(policy == SPHG_TRUNCATE ? 0 : low), inverse);
+}
+
+struct corrected {
+    dvec c[6], lambda_min, rank;
+};
+
+SPHGI_TEMPLATE dvec smaller(dvec a, dvec b)
+{
+    return dselect(b < a, b, a);
+}
+
+SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold, const dvec *m,
+                                        double low, bool three)
+{
+    const int d = three ? 3 : 2;
+    const dvec trace = three ? m[0] + m[3] + m[5] : m[0] + m[2];
+    const dvec floor = 16 * UNIT_ROUNDOFF * trace;
+    const dvec given = dsplat(threshold->eps), eps = dselect(floor > given, floor, given);
+    const struct eigen e = three ? decompose(m, true) : decompose(m, false);
+    struct corrected out = {.lambda_min = e.l[0], .rank = dsplat(0)};
+    dvec f[3];
+    dmask all = (dmask)dsplat(0) == 0;
+    for (int k = 0; k < d; ++k) {
+        dmask full;
+        f[k] = filtered(e.l[k], eps, threshold->policy, low, &full);
+        all &= full;
+        out.rank += dselect(full, dsplat(1), dsplat(0));
+        out.lambda_min = smaller(out.lambda_min, e.l[k]);
+    }
+    if (threshold->policy == SPHG_IDENTITY) {
+        const dmask drop = (e.l[0] <= eps) | (e.l[1] <= eps) | ((three ? e.l[2] : e.l[0]) <= eps);
+        for (int k = 0; k < d; ++k)
+            f[k] = dselect(drop, dsplat(low), f[k]);
+        out.rank = dselect(all, out.rank, dsplat(0));
+    }
+    for (int a = 0, c = 0; a < d; ++a)
+        for (int b = a; b < d; ++b, ++c) {
+            out.c[c] = e.q[3 * a] * f[0] * e.q[3 * b] + e.q[3 * a + 1] * f[1] * e.q[3 * b + 1];
+            if (three)
+                out.c[c] += e.q[3 * a + 2] * f[2] * e.q[3 * b + 2];
+        }
+    return out;
+}
+
+/* C of the lanes in `open`, decomposed. Each lane for itself: neighbours in the group change
+ * nothing. */
+SPHGI_TEMPLATE void correct_lanes(const struct sphgi_threshold *threshold, const real *m,
+                                  unsigned open, double low, real *c, real *lambda_min,
+                                  uint8_t *rank, bool three)
+{
+    const int numbers = three ? 6 : 3;
+    for (int l = 0; l < LANES; l += DLANES) {
+        if (!(open >> l & ((1u << DLANES) - 1)))
+            continue;
+        dvec wide[6];
+        for (int k = 0; k < numbers; ++k)
+            wide[k] = widened(m + k * LANES + l);
+        const struct corrected done = correct(threshold, wide, low, three);
+        for (int s = 0; s < DLANES; ++s) {
+            if (!(open >> (l + s) & 1))
+                continue;
+            for (int k = 0; k < numbers; ++k)
+                c[k * LANES + l + s] = (real)done.c[k][s];
+            lambda_min[l + s] = (real)done.lambda_min[s];
+            rank[l + s] = (uint8_t)done.rank[s];
+        }
+    }
+}
+
+/* LDL^T inverse of one symmetric matrix a lane; gives the lanes that pass the certificate
+ * |A^-1|_F (eps_hi + 80 u tr A) < 1, pivots > 0: there every eigenvalue exceeds eps_hi for sure,
+ * so that the threshold would not have touched it. Written so that NaN fails. */
+SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, vec *c, vec *norm)
+{
+    const vec zero = splat(R(0));
+    vec trace;
+    mask pivots;
+    if (three) {
+        const vec i0 = R(1) / m[0], l1 = m[1] * i0, l2 = m[2] * i0;
+        const vec d1 = m[3] - l1 * m[1], i1 = R(1) / d1, t = m[4] - l1 * m[2], l3 = t * i1;
+        const vec d2 = m[5] - l2 * m[2] - l3 * t, i2 = R(1) / d2, k2 = l1 * l3 - l2;
+        pivots = (m[0] > zero) & (d1 > zero) & (d2 > zero);
+        trace = m[0] + m[3] + m[5];
+        c[5] = i2;
+        c[4] = -l3 * i2;
+        c[3] = i1 - l3 * c[4];
+        c[2] = k2 * i2;
+        c[1] = -l1 * i1 - l3 * c[2];
+        c[0] = i0 + l1 * l1 * i1 + k2 * c[2];
+        *norm = vsqrt(c[0] * c[0] + c[3] * c[3] + c[5] * c[5] +
+                      R(2) * (c[1] * c[1] + c[2] * c[2] + c[4] * c[4]));
+    } else {
+        const vec i0 = R(1) / m[0], l1 = m[1] * i0, d1 = m[2] - l1 * m[1], i1 = R(1) / d1;
+        pivots = (m[0] > zero) & (d1 > zero);
+        trace = m[0] + m[2];
+        c[2] = i1;
+        c[1] = -l1 * i1;
+        c[0] = i0 - l1 * c[1];
+        *norm = vsqrt(c[0] * c[0] + c[2] * c[2] + R(2) * c[1] * c[1]);
+    }
+    return pivots & less(*norm * (eps_high + R(80 * UNIT_ROUNDOFF) * trace), splat(R(1)));
+}
+
+/* Corrections of normalised moments; low as in filtered(). */
+SPHGI_TEMPLATE void correction_of(const struct sphgi_threshold *threshold, const real *m,
+                                  double low, real *c, real *lambda_min,
+                                  struct sphgi_verdict *verdict, bool three)
+{
+    const int numbers = three ? 6 : 3;
+    const bool blend = threshold->policy == SPHG_BLEND;
+    vec in[6], out[6], norm;
+    for (int k = 0; k < numbers; ++k)
+        in[k] = load(m + k * LANES);
+    const mask passed =
+        certified_inverse(in, R((blend ? 4 : 1) * threshold->eps), three, out, &norm);
+    for (int k = 0; k < numbers; ++k)
+        store(c + k * LANES, out[k]);
+    store(lambda_min, R(1) / norm);
+    const unsigned open = ~bits_of(passed) & ((1u << LANES) - 1);
+    for (int l = 0; l < LANES; ++l) {
+        verdict->rank[l] = three ? 3 : 2;
+        verdict->decomposed[l] = open >> l & 1;
+    }
+    if (open)
+        correct_lanes(threshold, m, open, low, c, lambda_min, verdict->rank, three);
+}
+
+/* scale: what turns a lane's sums into normalised moments (MLS: V_i / H^d), NULL: 1; the
+ * correction takes the same factor. */
+static void invert(const struct sphgi_threshold *threshold, const void *moments, const void *scale,
+                   void *correction, void *lambda_min, struct sphgi_verdict *verdict)
+{
+    const bool three = threshold->dimension == 3;
+    const int numbers = three ? 6 : 3;
+    const vec factor = scale ? load(scale) : splat(R(1));
+    real m[6 * SPHGI_LANES_MOST] __attribute__((aligned(SPHGI_ALIGNMENT)));
+    for (int k = 0; k < numbers; ++k)
+        store(m + k * LANES, factor * load((const real *)moments + k * LANES));
+    if (three)
+        correction_of(threshold, m, 1, correction, lambda_min, verdict, true);
+    else
+        correction_of(threshold, m, 1, correction, lambda_min, verdict, false);
+    for (int l = 0; l < LANES; ++l)
+        verdict->empty[l] = m[l] == R(0) && m[(three ? 3 : 2) * LANES + l] == R(0) &&
+                            m[(numbers - 1) * LANES + l] == R(0);
+    vec poison =
+        splat(R(0)); /* NaN where a moment is not finite: that lane must not look healthy */
+    for (int k = 0; k < numbers; ++k)
+        poison += load(m + k * LANES) - load(m + k * LANES);
+    for (int k = 0; k < numbers; ++k) {
+        real *c = (real *)correction + k * LANES;
+        store(c, factor * load(c) + poison);
+    }
+    const unsigned finite = bits_of((mask)(poison == splat(R(0))));
+    for (int l = 0; l < LANES; ++l)
+        if (!(finite >> l & 1))
+            verdict->rank[l] = 0;
+}
+
+/* Index of x_a x_b in an upper triangle, of x_a x_b x_c among the triples of sum_classic. */
+SPHGI_TEMPLATE int pair_index(int a, int b, int d)
+{
+    const int low = a < b ? a : b, high = a < b ? b : a;
+    return low * d - low * (low - 1) / 2 + high - low;
+}
+
+SPHGI_TEMPLATE int triple_index(int a, int b, int c, int d)
+{
+    static const int three[27] = {0, 1, 2, 1, 3, 4, 2, 4, 5, 1, 3, 4, 3, 6,
+                                  7, 4, 7, 8, 2, 4, 5, 4, 7, 8, 5, 8, 9};
+    return d == 3 ? three[9 * a + 3 * b + c] : a + b + c;
+}
+
+/* y and z_k of theory.md section 4 from the sums of sum_classic. Everything is divided by
+ * S0 = sum w first, so that only the last factor can leave the range of the type; a sum so small
+ * that its inverse would overflow counts as none. */
+SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double mu2,
+                               const real *sums, const real *self, real *out, real *lambda_min,
+                               struct sphgi_verdict *verdict, bool three)
+{
+    const int d = three ? 3 : 2, pairs = three ? 6 : 3;
+    const real *wx = sums + LANES, *wxx = wx + d * LANES, *dx = wxx + pairs * LANES;
+    const real *dxx = dx + d * LANES, *dxxx = dxx + pairs * LANES;
+    const vec s0 = load(sums) + load(self);
+    const mask some = s0 >= splat(REAL_IS_F64 ? R(0x1p-1000) : R(0x1p-106));
+    const vec inverse = where(some, R(1) / s0), inverse_mu2 = splat(R(1 / mu2));
+    vec mean[3]; /* xb = - sum w x / S0 */
+    real m[6 * SPHGI_LANES_MOST] __attribute__((aligned(SPHGI_ALIGNMENT)));
+    real c[6 * SPHGI_LANES_MOST] __attribute__((aligned(SPHGI_ALIGNMENT)));
+    for (int a = 0; a < d; ++a)
+        mean[a] = -(load(wx + a * LANES) * inverse);
+    for (int a = 0; a < d; ++a)
+        for (int b = a; b < d; ++b) {
+            const int k = pair_index(a, b, d);
+            const vec centred = load(wxx + k * LANES) * inverse - mean[a] * mean[b];
+            store(m + k * LANES, centred * inverse_mu2);
+        }
+    correction_of(threshold, m, 0, c, lambda_min, verdict, three);
+    vec full[3][3], y[3], y0 = splat(R(1));
+    for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b)
+            full[a][b] = load(c + pair_index(a, b, d) * LANES) * inverse_mu2;
+    for (int a = 0; a < d; ++a) {
+        y[a] = splat(R(0));
+        for (int b = 0; b < d; ++b)
+            y[a] -= full[a][b] * mean[b];
+    }
+    for (int a = 0; a < d; ++a)
+        y0 -= mean[a] * y[a];
+    store(out, where(some, y0 * inverse));
+    for (int a = 0; a < d; ++a)
+        store(out + (1 + a) * LANES, where(some, y[a] * inverse));
+    for (int k = 0; k < d; ++k) { /* r = e_k - B_k y, z_k = A^-1 r */
+        vec r0 = -(load(dx + k * LANES) * y0), t[3];
+        for (int a = 0; a < d; ++a) {
+            const vec dka = load(dxx + pair_index(k, a, d) * LANES);
+            r0 += dka * y[a];
+            t[a] = dka * y0;
+            for (int b = 0; b < d; ++b)
+                t[a] -= load(dxxx + triple_index(k, a, b, d) * LANES) * y[b];
+        }
+        r0 *= inverse;
+        for (int a = 0; a < d; ++a)
+            t[a] = t[a] * inverse + splat(R(a == k)) - mean[a] * r0;
+        vec z0 = r0;
+        real *z = out + (k + 1) * (d + 1) * LANES;
+        for (int a = 0; a < d; ++a) {
+            vec za = splat(R(0));
+            for (int b = 0; b < d; ++b)
+                za += full[a][b] * t[b];
+            z0 -= mean[a] * za;
+            store(z + (1 + a) * LANES, where(some, za * inverse));
+        }
+        store(z, where(some, z0 * inverse));
+    }
+    for (int l = 0; l < LANES; ++l)
+        verdict->empty[l] = !(bits_of(some) >> l & 1);
+}
+
+static void invert_classic(const struct sphgi_threshold *threshold, double mu2, const void *sums,
+                           const void *self, void *coefficients, void *lambda_min,
+                           struct sphgi_verdict *verdict)
+{
+    if (threshold->dimension == 3)
+        classic_as(threshold, mu2, sums, self, coefficients, lambda_min, verdict, true);
+    else
+        classic_as(threshold, mu2, sums, self, coefficients, lambda_min, verdict, false);
+}

@@ -1,0 +1,206 @@
+/* The passes: arithmetic on validated memory, compiled once per scalar type and instruction set and
+ * chosen at run time through a table of functions. They keep no state, allocate nothing and cannot
+ * fail. Lengths inside are in units of H, volumes in units of H^d (docs/theory.md, section 2).
+ *
+ * Words used throughout:
+ *   row     4 numbers of one particle: x y z V, or up to 4 components of a field
+ *   group   up to `lanes` targets that are summed, corrected and written together, one a lane
+ *   piece   pairs of a group, gathered into arrays that stay in the L1 cache
+ *   sums    what is accumulated over the pairs of a target; first a vector of partial sums per
+ *           target (lane k adds the pairs k, k + lanes, ...), then reduced to one number a lane */
+#ifndef SPHGI_PASSES_H
+#define SPHGI_PASSES_H
+#include "../internal.h"
+
+enum {
+    SPHGI_ROW = 4,        /* numbers in a row */
+    SPHGI_PAD = 8,        /* pairs of a target are padded to a multiple of this */
+    SPHGI_PIECE = 512,    /* pairs in a piece, at most */
+    SPHGI_LANES_MOST = 8, /* of any scalar type and instruction set */
+    SPHGI_FIND_MOST = 16  /* targets that share one set of candidates */
+};
+
+/* Where the components of the items of a view stand. */
+enum { SPHGI_COLUMNS_MOST = 16 };
+struct sphgi_columns {
+    const char *at[SPHGI_COLUMNS_MOST];
+    ptrdiff_t stride; /* [byte] */
+    int32_t count;    /* components; 0: absent */
+};
+
+/* Arrays of a piece, SPHGI_PIECE numbers each. */
+enum sphgi_array {
+    SPHGI_X, /* x_ij / H */
+    SPHGI_Y,
+    SPHGI_Z,
+    SPHGI_V,  /* V_j / H^d */
+    SPHGI_GX, /* gradient factor: s_ij x_ij, or the whole G_ij */
+    SPHGI_GY,
+    SPHGI_GZ,
+    SPHGI_TX, /* minus the gradient seen from j, weighted: the other half of adjoint and symmetric
+               */
+    SPHGI_TY,
+    SPHGI_TZ,
+    SPHGI_S,   /* s_ij; classic: w_j */
+    SPHGI_D,   /* classic: (dw_j / dr) / r */
+    SPHGI_PHI, /* weight of the value: V_j W, classic Phi_j */
+    SPHGI_ARRAYS
+};
+
+struct sphgi_piece {
+    void *arrays;
+    int32_t parts;                       /* runs of pairs, one per target at most */
+    int32_t lane[SPHGI_LANES_MOST];      /* whose pairs they are */
+    int32_t begin[SPHGI_LANES_MOST + 1]; /* multiples of SPHGI_PAD */
+    int32_t count[SPHGI_LANES_MOST];     /* without the padding */
+    const void *ids[SPHGI_LANES_MOST];   /* row numbers of the pairs, padded */
+    bool wide;                           /* ids are uint32_t, else uint16_t */
+};
+
+/* How pairs become x_ij. */
+struct sphgi_gather {
+    const void *rows;                 /* x y z V of the sources */
+    double inverse_h, inverse_volume; /* 1/H, 1/H^d */
+    double cutoff;                    /* H, for supersets */
+    double period[3];                 /* 0: open */
+    bool periodic, superset;
+    int32_t dimension;
+    uint32_t dummy; /* row that a pair beyond the cutoff is sent to */
+};
+
+/* A smoothing kernel with everything multiplied into its two factors. */
+struct sphgi_shape {
+    sphg_kernel kernel;
+    sphg_method method;
+    int32_t dimension;
+    double w_scale;     /* sigma; RKPM and MLS sigma / mu2 */
+    double value_scale; /* sigma */
+};
+
+struct sphgi_threshold {
+    sphg_policy policy;
+    double eps;
+    int32_t dimension;
+};
+
+/* What a source's term in adjoint and symmetric sums is multiplied with. */
+enum sphgi_weight {
+    SPHGI_WEIGHT_ONE,
+    SPHGI_WEIGHT_V,
+    SPHGI_WEIGHT_PER_DENSITY,
+    SPHGI_WEIGHT_V_PER_DENSITY
+};
+
+/* From the host's classic coefficients to those in units of H: y and z times these. */
+struct sphgi_scales {
+    double value, slope;
+};
+
+/* What became of the matrices of a group. */
+struct sphgi_verdict {
+    uint8_t rank[SPHGI_LANES_MOST];
+    uint8_t decomposed[SPHGI_LANES_MOST];
+    uint8_t empty[SPHGI_LANES_MOST];
+};
+
+/* Candidates of up to SPHGI_FIND_MOST targets: runs of staged sources. */
+struct sphgi_find {
+    const void *x, *y, *z; /* staged coordinates, readable 8 items past each run */
+    int32_t run_begin[9], run_length[9], runs;
+    const void *targets; /* rows */
+    int32_t target_count;
+    const int32_t *self; /* per target: its own staged number, or -1 */
+    double reach;
+    double slack; /* rounding of differences between images far apart [L] */
+    double period[3];
+    bool periodic;
+    int32_t dimension;
+    void *scratch;              /* 64 + 27 bytes per candidate */
+    const uint64_t *pack_order; /* [256]: the positions of the set bits, a byte each */
+};
+
+struct sphgi_passes {
+    int32_t lanes;
+
+    /* Rows. order NULL: item k itself. */
+    void (*load_rows)(const struct sphgi_columns *columns, const int32_t *order, int64_t begin,
+                      int64_t end, int32_t first, int32_t count, void *rows);
+    /* x y z from load_rows' columns; the first item that is not finite, or -1. */
+    int64_t (*first_not_finite)(const struct sphgi_columns *columns, int64_t begin, int64_t end);
+    /* Rows [begin, begin + count) of positions with the volumes written into the 4th number.
+     * [0]: volumes are f32, [1]: f64. False: a volume is negative or not finite. */
+    bool (*stage[2])(const void *positions, const struct sphgi_columns *volume,
+                     const int32_t *order, int64_t begin, int64_t count, void *rows);
+    void (*transpose_rows)(const void *rows, int32_t count, void *x, void *y, void *z);
+    double (*largest_move)(const void *then, const void *now, int64_t begin, int64_t end);
+
+    /* Search. Returns the number of ids written, padding included. */
+    int64_t (*find)(const struct sphgi_find *find, uint16_t *ids, uint16_t *lengths);
+    bool (*is_neighbor)(const void *a, const void *b, double reach, const double *period,
+                        int32_t dimension);
+
+    /* Pairs of one target, whose position is the row x_i, into the arrays of a piece from `at` on;
+     * [0]: f32 arrays, [1]: f64. ids_out: as many ids, written for supersets only. */
+    void (*gather[2])(const struct sphgi_gather *gather, const void *x_i, const void *ids,
+                      bool wide, int32_t count, void *arrays, int32_t at, void *ids_out);
+
+    /* Weights. */
+    void (*shape_vectors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
+    void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
+    void (*shape_values)(void *arrays, int32_t count);
+    void (*classic_vectors)(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
+                            const void *coefficients);
+    /* The vectors of the arrays become G_ij: scale C_i times them; correction NULL: scale alone. */
+    void (*pair_gradients)(const struct sphgi_piece *piece, int32_t dimension,
+                           const void *correction, double scale);
+    void (*transposed)(const struct sphgi_piece *piece, int32_t dimension,
+                       const void *const rows[4], const void *density, enum sphgi_weight kind);
+    void (*transposed_classic)(const struct sphgi_piece *piece, int32_t dimension,
+                               const void *const rows[4], const struct sphgi_scales *scales,
+                               const void *target_volume, const void *density,
+                               enum sphgi_weight kind);
+
+    /* Sums; partial: [sum][lane] vectors. */
+    void (*sum_moments)(const struct sphgi_piece *piece, int32_t dimension, void *partial);
+    void (*sum_classic)(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
+                        void *partial);
+    void (*sum_field)(const struct sphgi_piece *piece, int32_t dimension, enum sphgi_array g,
+                      const void *rows, int32_t count, const void *at_target, void *partial);
+    void (*sum_value)(const struct sphgi_piece *piece, const void *rows, int32_t count,
+                      void *partial);
+    void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension, const void *rows,
+                        void *partial);
+    void (*sum_volume)(const struct sphgi_piece *piece, void *partial);
+    void (*reduce)(const void *partial, int32_t sums, void *reduced);
+
+    /* Corrections, one target a lane: sums in, numbers of the table out. */
+    void (*invert)(const struct sphgi_threshold *threshold, const void *moments, const void *scale,
+                   void *correction, void *lambda_min, struct sphgi_verdict *verdict);
+    void (*invert_classic)(const struct sphgi_threshold *threshold, double mu2, const void *sums,
+                           const void *self, void *coefficients, void *lambda_min,
+                           struct sphgi_verdict *verdict);
+    /* A = Q diag(values) Q^T of one group of matrices. */
+    void (*eigen)(int32_t dimension, const void *matrices, void *values, void *vectors);
+
+    /* Results, one target a lane. */
+    void (*apply)(int32_t dimension, int32_t count, const void *correction, const void *sums,
+                  double scale, void *jacobian);
+    void (*scale)(int32_t count, const void *in, double factor, const void *per_lane, void *out);
+    void (*fill)(double value, void *out);                     /* in every lane */
+    void (*quotient)(const void *a, const void *b, void *out); /* a NULL: 1; 0 where b is 0 */
+    void (*add_outer)(int32_t dimension, int32_t count, const void *a, const void *b,
+                      const void *per_lane, void *jacobian);
+    void (*contract)(int32_t dimension, sphg_shape shape, const void *jacobian, void *divergence,
+                     void *curl);
+    void (*load_lanes)(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
+                       void *out);
+    void (*store_lanes)(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
+                        const void *in, bool accumulate);
+};
+
+extern const struct sphgi_passes sphgi_passes_f32_base, sphgi_passes_f64_base;
+#ifdef SPHG_HAVE_V3
+extern const struct sphgi_passes sphgi_passes_f32_v3, sphgi_passes_f64_v3;
+#endif
+
+#endif

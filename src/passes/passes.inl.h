@@ -1,0 +1,76 @@
+/* All passes for one scalar type and one instruction set. Include once per translation unit, with
+ *   REAL_IS_F64   0 or 1
+ *   SUFFIX        of the one exported symbol, sphgi_passes_SUFFIX
+ * The instruction set comes from the compile flags of the including file. Everything is static:
+ * code for one instruction set must never be merged with that for another. */
+#include "passes.h"
+#include "../kernel_list.h"
+
+#include "vec.inl.h"
+#include "kernels.inl.h"
+#include "rows.inl.h"
+#include "gather.inl.h"
+#define OUT         float
+#define OUT_NAME(x) x##_f32
+#include "gather_pairs.inl.h"
+#undef OUT
+#undef OUT_NAME
+#if REAL_IS_F64 /* fields are never wider than positions */
+#define OUT         double
+#define OUT_NAME(x) x##_f64
+#include "gather_pairs.inl.h"
+#undef OUT
+#undef OUT_NAME
+#endif
+#include "search.inl.h"
+#include "shape.inl.h"
+#include "sums.inl.h"
+#include "classic.inl.h"
+#include "eigen.inl.h"
+#include "invert.inl.h"
+#include "results.inl.h"
+
+#define CONCATENATE_(a, b) a##b
+#define CONCATENATE(a, b)  CONCATENATE_(a, b)
+
+const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
+    .lanes = LANES,
+    .load_rows = load_rows,
+    .first_not_finite = first_not_finite,
+#if REAL_IS_F64
+    .stage = {stage_f32, stage_f64},
+    .gather = {gather_f32, gather_f64},
+#else
+    .stage = {stage_f32},
+    .gather = {gather_f32},
+#endif
+    .transpose_rows = transpose_rows,
+    .largest_move = largest_move,
+    .find = find,
+    .is_neighbor = is_neighbor,
+    .shape_vectors = shape_vectors,
+    .shape_weights = shape_weights,
+    .shape_values = shape_values,
+    .classic_vectors = classic_vectors,
+    .pair_gradients = pair_gradients,
+    .transposed = transposed,
+    .transposed_classic = transposed_classic,
+    .sum_moments = sum_moments,
+    .sum_classic = sum_classic,
+    .sum_field = sum_field,
+    .sum_value = sum_value,
+    .sum_vectors = sum_vectors,
+    .sum_volume = sum_volume,
+    .reduce = reduce,
+    .invert = invert,
+    .invert_classic = invert_classic,
+    .eigen = eigen_lanes,
+    .apply = apply,
+    .scale = scale_lanes,
+    .fill = fill,
+    .quotient = quotient,
+    .add_outer = add_outer,
+    .contract = contract,
+    .load_lanes = load_lanes,
+    .store_lanes = store_lanes,
+};

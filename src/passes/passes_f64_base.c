@@ -1,0 +1,4 @@
+/* All passes for double, the compiler's baseline instruction set. */
+#define REAL_IS_F64 1
+#define SUFFIX      f64_base
+#include "passes.inl.h"

@@ -1,0 +1,211 @@
+/* Sums over the pairs of a piece, kept as one vector per sum and target. */
+
+SPHGI_TEMPLATE vec *partial_of(void *partial, int32_t sum, int32_t lane)
+{
+    return (vec *)partial + sum * LANES + lane;
+}
+
+SPHGI_TEMPLATE vec from(const struct sphgi_piece *piece, enum sphgi_array array, int32_t k)
+{
+    return load((const real *)piece->arrays + array * SPHGI_PIECE + k);
+}
+
+/* M_i = - sum s_ij x_ij x_ij^T    theory.md section 2 */
+SPHGI_TEMPLATE void moments_as(const struct sphgi_piece *piece, void *partial, bool three)
+{
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const int32_t lane = piece->lane[p], n = three ? 6 : 3;
+        vec m[6];
+        for (int32_t c = 0; c < n; ++c)
+            m[c] = *partial_of(partial, c, lane);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+            const vec x = from(piece, SPHGI_X, k), y = from(piece, SPHGI_Y, k);
+            const vec gx = from(piece, SPHGI_GX, k), gy = from(piece, SPHGI_GY, k);
+            m[0] -= gx * x;
+            m[1] -= gx * y;
+            if (three) {
+                const vec z = from(piece, SPHGI_Z, k), gz = from(piece, SPHGI_GZ, k);
+                m[2] -= gx * z;
+                m[3] -= gy * y;
+                m[4] -= gy * z;
+                m[5] -= gz * z;
+            } else {
+                m[2] -= gy * y;
+            }
+        }
+        for (int32_t c = 0; c < n; ++c)
+            *partial_of(partial, c, lane) = m[c];
+    }
+}
+
+static void sum_moments(const struct sphgi_piece *piece, int32_t dimension, void *partial)
+{
+    if (dimension == 3)
+        moments_as(piece, partial, true);
+    else
+        moments_as(piece, partial, false);
+}
+
+/* sum (A_j - A_i) g, A_i at_target[c][lane], for `count` components of one row; partial in the
+ * order [component][axis]. */
+SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_array g, const real *rows,
+                             const real *at_target, void *partial, int32_t count, bool three)
+{
+    const int32_t d = three ? 3 : 2;
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const int32_t lane = piece->lane[p], begin = piece->begin[p];
+        vec sum[12], a[4];
+        for (int32_t c = 0; c < count; ++c)
+            a[c] = splat(at_target[c * LANES + lane]);
+        for (int32_t c = 0; c < count * d; ++c)
+            sum[c] = *partial_of(partial, c, lane);
+        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
+            const char *ids =
+                (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
+            const struct four row = gather_rows(rows, ids, piece->wide);
+            const vec x = from(piece, g, k);
+            const vec y = from(piece, (enum sphgi_array)(g + 1), k);
+            const vec z = three ? from(piece, (enum sphgi_array)(g + 2), k) : x;
+            const vec value[4] = {row.x, row.y, row.z, row.w};
+            for (int32_t c = 0; c < count; ++c) {
+                const vec difference = value[c] - a[c];
+                sum[c * d] += difference * x;
+                sum[c * d + 1] += difference * y;
+                if (three)
+                    sum[c * d + 2] += difference * z;
+            }
+        }
+        for (int32_t c = 0; c < count * d; ++c)
+            *partial_of(partial, c, lane) = sum[c];
+    }
+}
+
+SPHGI_TEMPLATE void field_of(const struct sphgi_piece *piece, enum sphgi_array g, const void *rows,
+                             int32_t count, const void *at_target, void *partial, bool three)
+{
+    switch (count) {
+    case 1:
+        field_as(piece, g, rows, at_target, partial, 1, three);
+        break;
+    case 2:
+        field_as(piece, g, rows, at_target, partial, 2, three);
+        break;
+    case 3:
+        field_as(piece, g, rows, at_target, partial, 3, three);
+        break;
+    default:
+        field_as(piece, g, rows, at_target, partial, 4, three);
+    }
+}
+
+static void sum_field(const struct sphgi_piece *piece, int32_t dimension, enum sphgi_array g,
+                      const void *rows, int32_t count, const void *at_target, void *partial)
+{
+    if (dimension == 3)
+        field_of(piece, g, rows, count, at_target, partial, true);
+    else
+        field_of(piece, g, rows, count, at_target, partial, false);
+}
+
+/* sum A_j PHI_j */
+static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t count,
+                      void *partial)
+{
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const int32_t lane = piece->lane[p], begin = piece->begin[p];
+        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
+            const char *ids =
+                (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
+            const struct four row = gather_rows(rows, ids, piece->wide);
+            const vec value[4] = {row.x, row.y, row.z, row.w}, phi = from(piece, SPHGI_PHI, k);
+            for (int32_t c = 0; c < count; ++c)
+                *partial_of(partial, c, lane) += value[c] * phi;
+        }
+    }
+}
+
+/* sum g, or sum rho_j g with the density in the first number of the rows */
+static void sum_vectors(const struct sphgi_piece *piece, int32_t dimension, const void *rows,
+                        void *partial)
+{
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const int32_t lane = piece->lane[p], begin = piece->begin[p];
+        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
+            const char *ids =
+                (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
+            const vec weight = rows ? gather_rows(rows, ids, piece->wide).x : splat(R(1));
+            for (int32_t c = 0; c < dimension; ++c)
+                *partial_of(partial, c, lane) +=
+                    weight * from(piece, (enum sphgi_array)(SPHGI_GX + c), k);
+        }
+    }
+}
+
+/* sum V_j W and sum W: their quotient is the mean volume */
+static void sum_volume(const struct sphgi_piece *piece, void *partial)
+{
+    for (int32_t p = 0; p < piece->parts; ++p)
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+            *partial_of(partial, 0, piece->lane[p]) += from(piece, SPHGI_PHI, k);
+            *partial_of(partial, 1, piece->lane[p]) += from(piece, SPHGI_S, k);
+        }
+}
+
+static void reduce(const void *partial, int32_t sums, void *reduced)
+{
+    const vec *in = partial;
+    vec *out = reduced;
+    for (int32_t c = 0; c < sums; ++c)
+        out[c] = sum_across(in + c * LANES);
+}
+
+/* Minus the gradient seen from j, times a weight: T = weight C_j s_ij x_ij. weight_kind: see
+ * enum sphgi_weight. */
+SPHGI_TEMPLATE vec weight_of(const struct sphgi_piece *piece, int32_t p, int32_t k,
+                             const void *density, enum sphgi_weight kind)
+{
+    const char *ids =
+        (const char *)piece->ids[p] + (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
+    vec weight = splat(R(1));
+    if (kind == SPHGI_WEIGHT_V || kind == SPHGI_WEIGHT_V_PER_DENSITY)
+        weight = from(piece, SPHGI_V, k);
+    if (kind == SPHGI_WEIGHT_PER_DENSITY || kind == SPHGI_WEIGHT_V_PER_DENSITY) {
+        const vec rho = gather_rows(density, ids, piece->wide).x;
+        /* the dummy row's density is 0, its weight must be, too */
+        weight = where(rho != splat(R(0)), weight / rho);
+    }
+    return weight;
+}
+
+static void transposed(const struct sphgi_piece *piece, int32_t dimension,
+                       const void *const rows[4], const void *density, enum sphgi_weight kind)
+{
+    const bool three = dimension == 3;
+    for (int32_t p = 0; p < piece->parts; ++p)
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+            const char *ids = (const char *)piece->ids[p] +
+                              (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
+            const vec weight = weight_of(piece, p, k, density, kind);
+            const vec gx = weight * from(piece, SPHGI_GX, k);
+            const vec gy = weight * from(piece, SPHGI_GY, k);
+            real *t = array_of(piece->arrays, SPHGI_TX) + k;
+            if (!rows[0]) { /* plain SPH: C_j = 1 */
+                store(t, gx);
+                store(t + SPHGI_PIECE, gy);
+                if (three)
+                    store(t + 2 * SPHGI_PIECE, weight * from(piece, SPHGI_GZ, k));
+                continue;
+            }
+            const struct four c = gather_rows(rows[0], ids, piece->wide);
+            if (three) {
+                const struct four e = gather_rows(rows[1], ids, piece->wide);
+                const vec gz = weight * from(piece, SPHGI_GZ, k);
+                store(t, c.x * gx + c.y * gy + c.z * gz);
+                store(t + SPHGI_PIECE, c.y * gx + c.w * gy + e.x * gz);
+                store(t + 2 * SPHGI_PIECE, c.z * gx + e.x * gy + e.y * gz);
+            } else {
+                store(t, c.x * gx + c.y * gy);
+                store(t + SPHGI_PIECE, c.y * gx + c.z * gy);
+            }
+        }
+}
