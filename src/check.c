@@ -1,0 +1,335 @@
+#include "check.h"
+#include "kernel.h"
+#include "view.h"
+#include <float.h>
+#include <math.h>
+
+#define REFUSE(result, ...) return sphgi_fail(checker.context, result, __VA_ARGS__)
+
+bool sphgi_is_classic(sphg_method method)
+{
+    return method == SPHG_CMLS || method == SPHG_CRKPM;
+}
+
+int32_t sphgi_correction_width(sphg_method method, int32_t dimension)
+{
+    if (method == SPHG_PLAIN)
+        return 0;
+    const int32_t d = dimension;
+    return sphgi_is_classic(method) ? (d + 1) * (d + 1) : d * (d + 1) / 2;
+}
+
+int32_t sphg_correction_width(const sphg_scheme *scheme)
+{
+    if (!scheme || scheme->method < SPHG_KGC || scheme->method > SPHG_PLAIN)
+        return 0;
+    return sphgi_correction_width(scheme->method, scheme->dimension == 2 ? 2 : 3);
+}
+
+sphg_result sphgi_check_pointer(struct sphgi_checker checker, const void *pointer, const char *name)
+{
+    if (!pointer)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s is NULL", checker.function, name);
+    return SPHG_OK;
+}
+
+/* ---- Scheme --------------------------------------------------------------------------------- */
+
+sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *scheme,
+                               struct sphgi_scheme *checked)
+{
+    const char *f = checker.function;
+    const sphg_result missing = sphgi_check_pointer(checker, scheme, "scheme");
+    if (missing)
+        return missing;
+    if (scheme->dimension != 0 && scheme->dimension != 2 && scheme->dimension != 3)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.dimension is %d, must be 2 or 3", f,
+               (int)scheme->dimension);
+    if (scheme->method < SPHG_KGC || scheme->method > SPHG_PLAIN)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.method is %d, not a method", f,
+               (int)scheme->method);
+    if (!sphgi_kernel_exists(scheme->kernel))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.kernel is %d, not a kernel", f,
+               (int)scheme->kernel);
+    if (scheme->policy < SPHG_BLEND || scheme->policy > SPHG_IDENTITY)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.policy is %d, not a policy", f,
+               (int)scheme->policy);
+    if (!(scheme->support_radius > 0) || !isfinite(scheme->support_radius))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.support_radius is %g, must be positive and finite",
+               f, scheme->support_radius);
+    if (!(scheme->threshold >= 0 && scheme->threshold < 1))
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: scheme.threshold is %g, must lie between 0 and 1 (0: default)", f,
+               scheme->threshold);
+    *checked = (struct sphgi_scheme){
+        .dimension = scheme->dimension ? scheme->dimension : 3,
+        .method = scheme->method,
+        .kernel = scheme->kernel,
+        .policy = scheme->policy,
+        .radius = scheme->support_radius,
+        .threshold = scheme->threshold > 0 ? scheme->threshold : 1e-2,
+    };
+    return SPHG_OK;
+}
+
+static bool is_normal_in(double x, sphg_type type)
+{
+    return type == SPHG_F64 ? isnormal(x) : x >= (double)FLT_MIN && x <= (double)FLT_MAX;
+}
+
+sphg_result sphgi_check_range(struct sphgi_checker checker, const struct sphgi_scheme *scheme,
+                              sphg_type type)
+{
+    const double h = scheme->radius;
+    if (!is_normal_in(h * h, type) || !is_normal_in(1 / h, type) ||
+        !is_normal_in(sphgi_power(1 / h, scheme->dimension), type))
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: scheme.support_radius is %g, its powers leave the range of the precision",
+               checker.function, h);
+    return SPHG_OK;
+}
+
+/* ---- Views ---------------------------------------------------------------------------------- */
+
+static bool is_aligned(const void *pointer, size_t size)
+{
+    return (uintptr_t)pointer % size == 0;
+}
+
+static sphg_result check_stride(struct sphgi_checker checker, const sphg_view *view,
+                                const struct sphgi_expected *expected, int32_t numbers)
+{
+    const size_t size = sphgi_size_of_type(expected->type);
+    if (view->stride % (ptrdiff_t)size)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is %td, must be a multiple of %zu",
+               checker.function, expected->name, view->stride, size);
+    const size_t span = (size_t)(view->stride < 0 ? -view->stride : view->stride);
+    if (expected->use == SPHGI_OUTPUT && expected->count > 1 && span < (size_t)numbers * size)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is %td, but an item of this output takes %zu",
+               checker.function, expected->name, view->stride, (size_t)numbers * size);
+    return SPHG_OK;
+}
+
+sphg_result sphgi_check_view(struct sphgi_checker checker, const sphg_view *view,
+                             const struct sphgi_expected *expected)
+{
+    const char *f = checker.function, *name = expected->name;
+    const size_t size = sphgi_size_of_type(expected->type);
+    if (sphgi_is_absent(view)) {
+        if (expected->required)
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s is absent", f, name);
+        return SPHG_OK;
+    }
+    if (view->type < SPHG_F32 || view->type > SPHG_U8)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.type is %d, not a type", f, name, (int)view->type);
+    if (view->type != expected->type)
+        REFUSE(SPHG_ERROR_TYPE, "%s: %s.type is %d, must be %d here (1: f32, 2: f64, 3: u8)", f,
+               name, (int)view->type, (int)expected->type);
+    const bool many = expected->shape == SPHG_VECTOR || expected->shape == SPHG_TENSOR;
+    const bool split = many && view->y;
+    if (many && expected->dimension == 3 && !view->y != !view->z)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: of %s.y and %s.z only one is set", f, name, name);
+    if (!is_aligned(view->x, size) || (split && !is_aligned(view->y, size)) ||
+        (split && expected->dimension == 3 && !is_aligned(view->z, size)))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s does not start at a multiple of %zu", f, name, size);
+    const int32_t all = expected->shape ? sphgi_components(expected->shape, expected->dimension)
+                                        : expected->numbers;
+    return check_stride(checker, view, expected, split ? all / expected->dimension : all);
+}
+
+/* ---- Overlap -------------------------------------------------------------------------------- */
+
+struct bytes {
+    uintptr_t begin, end;
+};
+
+static struct bytes bytes_of(const struct sphgi_extent *e, int32_t component)
+{
+    const uintptr_t first = (uintptr_t)e->columns.at[component];
+    const uintptr_t last = first + (uintptr_t)(e->columns.stride * (e->count - 1));
+    return first < last ? (struct bytes){first, last + e->number_size}
+                        : (struct bytes){last, first + e->number_size};
+}
+
+/* Columns of one stride may be interleaved (members of one struct): then their places within the
+ * stride decide. Of two strides, touching ranges count as overlap. */
+static bool columns_overlap(const struct sphgi_extent *a, int32_t i, const struct sphgi_extent *b,
+                            int32_t k)
+{
+    const struct bytes x = bytes_of(a, i), y = bytes_of(b, k);
+    if (x.end <= y.begin || y.end <= x.begin)
+        return false;
+    ptrdiff_t stride = a->columns.stride < 0 ? -a->columns.stride : a->columns.stride;
+    ptrdiff_t other = b->columns.stride < 0 ? -b->columns.stride : b->columns.stride;
+    if (a->count <= 1 || !stride)
+        stride = other;
+    if (b->count <= 1 || !other)
+        other = stride;
+    if (stride != other || !stride)
+        return true;
+    const uintptr_t s = (uintptr_t)stride;
+    const uintptr_t ahead = (y.begin % s + s - x.begin % s) % s;
+    return ahead < a->number_size || s - ahead < b->number_size;
+}
+
+static bool extents_overlap(const struct sphgi_extent *a, const struct sphgi_extent *b)
+{
+    for (int32_t i = 0; i < a->columns.count; ++i)
+        for (int32_t k = 0; k < b->columns.count; ++k)
+            if (columns_overlap(a, i, b, k))
+                return true;
+    return false;
+}
+
+sphg_result sphgi_check_overlap(struct sphgi_checker checker, const struct sphgi_extent *extents,
+                                int32_t count)
+{
+    for (int32_t i = 0; i < count; ++i)
+        for (int32_t k = 0; k < i; ++k) {
+            const struct sphgi_extent *a = &extents[i], *b = &extents[k];
+            if ((!a->output && !b->output) || a->count < 1 || b->count < 1)
+                continue;
+            if (extents_overlap(a, b))
+                REFUSE(SPHG_ERROR_ARGUMENT, "%s: output %s overlaps %s", checker.function,
+                       a->output ? a->name : b->name, a->output ? b->name : a->name);
+        }
+    return SPHG_OK;
+}
+
+/* ---- Geometry, lists, subsets --------------------------------------------------------------- */
+
+static sphg_result check_counts(struct sphgi_checker checker, const sphg_geometry *geometry)
+{
+    const char *f = checker.function;
+    if (geometry->source_count < 0)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.source_count is %d", f,
+               (int)geometry->source_count);
+    if (geometry->target_count < 0)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.target_count is %d", f,
+               (int)geometry->target_count);
+    if (!geometry->targets.x && geometry->target_count > geometry->source_count)
+        REFUSE(SPHG_ERROR_SIZE,
+               "%s: geometry.target_count is %d, but the targets are part of %d sources", f,
+               (int)geometry->target_count, (int)geometry->source_count);
+    return SPHG_OK;
+}
+
+static sphg_result check_skin_and_period(struct sphgi_checker checker,
+                                         const sphg_geometry *geometry,
+                                         const struct sphgi_scheme *scheme)
+{
+    const char *f = checker.function;
+    if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, must be >= 0 and finite", f,
+               geometry->skin);
+    if (geometry->skin > 0 && geometry->list_free)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, but list_free keeps no pairs", f,
+               geometry->skin);
+    for (int32_t a = 0; a < scheme->dimension; ++a) {
+        const double period = geometry->period[a], least = 2 * (scheme->radius + geometry->skin);
+        if (!(period >= 0) || !isfinite(period))
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.period[%d] is %g, must be >= 0 and finite", f,
+                   (int)a, period);
+        if (period > 0 && period < least)
+            REFUSE(SPHG_ERROR_ARGUMENT,
+                   "%s: geometry.period[%d] is %.9g, must be at least 2 (H + skin) = %.9g", f,
+                   (int)a, period, least);
+    }
+    return SPHG_OK;
+}
+
+sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
+                                 const struct sphgi_scheme *scheme, bool searched)
+{
+    const char *f = checker.function;
+    sphg_result result = sphgi_check_pointer(checker, geometry, "geometry");
+    if (!result)
+        result = check_counts(checker, geometry);
+    if (result)
+        return result;
+    const sphg_view *some = geometry->sources.x ? &geometry->sources : &geometry->targets;
+    const sphg_type type = some->x ? some->type : SPHG_F32;
+    if (type != SPHG_F32 && type != SPHG_F64)
+        REFUSE(SPHG_ERROR_TYPE, "%s: geometry.sources.type is %d, must be 1 (f32) or 2 (f64)", f,
+               (int)type);
+    struct sphgi_expected expected = {.name = "geometry.sources",
+                                      .type = type,
+                                      .shape = SPHG_VECTOR,
+                                      .dimension = scheme->dimension,
+                                      .count = geometry->source_count,
+                                      .required = geometry->source_count > 0};
+    result = sphgi_check_view(checker, &geometry->sources, &expected);
+    expected.name = "geometry.targets";
+    expected.count = geometry->target_count;
+    expected.required = false;
+    if (!result)
+        result = sphgi_check_view(checker, &geometry->targets, &expected);
+    if (result)
+        return result;
+    if (geometry->precision && geometry->precision != SPHG_F32 && geometry->precision != SPHG_F64)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.precision is %d, must be 0, 1 (f32) or 2 (f64)",
+               f, (int)geometry->precision);
+    if (geometry->precision == SPHG_F64 && type == SPHG_F32)
+        REFUSE(SPHG_ERROR_TYPE, "%s: geometry.precision is f64, but the positions are f32", f);
+    if (!searched && (geometry->skin != 0 || geometry->list_free))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin and list_free are for searches only", f);
+    result = check_skin_and_period(checker, geometry, scheme);
+    if (!result)
+        result = sphgi_check_range(checker, scheme, type);
+    if (!result && geometry->precision == SPHG_F32)
+        result = sphgi_check_range(checker, scheme, SPHG_F32);
+    return result;
+}
+
+static sphg_result check_offsets(struct sphgi_checker checker, const int64_t *offsets,
+                                 int32_t target_count)
+{
+    if (offsets[0] != 0)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: lists.offsets[0] is %lld, must be 0", checker.function,
+               (long long)offsets[0]);
+    for (int32_t i = 0; i < target_count; ++i)
+        if (offsets[i + 1] < offsets[i])
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: lists.offsets[%d] is %lld, less than the one before",
+                   checker.function, (int)i + 1, (long long)offsets[i + 1]);
+    return SPHG_OK;
+}
+
+sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *lists,
+                              int32_t target_count)
+{
+    const char *f = checker.function;
+    const sphg_result missing = sphgi_check_pointer(checker, lists, "lists");
+    if (missing)
+        return missing;
+    const int csr = lists->offsets || lists->indices, rows = lists->rows || lists->lengths;
+    if (csr + rows + !!lists->row != 1)
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: lists needs exactly one of offsets + indices, rows + lengths, row", f);
+    if (csr) {
+        if (!lists->offsets || (!lists->indices && lists->offsets[target_count] > 0))
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: lists.%s is NULL", f,
+                   lists->offsets ? "indices" : "offsets");
+        if (!checker.context->config.trusted)
+            return check_offsets(checker, lists->offsets, target_count);
+    }
+    if (rows && (!lists->rows || !lists->lengths))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: lists.%s is NULL", f, lists->rows ? "lengths" : "rows");
+    return SPHG_OK;
+}
+
+sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *subset,
+                               int32_t target_count)
+{
+    const char *f = checker.function;
+    if (!subset)
+        return SPHG_OK;
+    if (subset->begin < 0 || subset->end < subset->begin ||
+        (!subset->indices && subset->end > target_count))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset is [%d, %d) of %d targets", f, (int)subset->begin,
+               (int)subset->end, (int)target_count);
+    for (int32_t k = subset->begin; subset->indices && k < subset->end; ++k)
+        if (subset->indices[k] < 0 || subset->indices[k] >= target_count)
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset.indices[%d] is %d of %d targets", f, (int)k,
+                   (int)subset->indices[k], (int)target_count);
+    return SPHG_OK;
+}

@@ -1,0 +1,66 @@
+/* Every rule about arguments. The door of the library: nothing behind it looks at them again. */
+#ifndef SPHGI_CHECK_H
+#define SPHGI_CHECK_H
+#include "context.h"
+
+/* Who is checked, for messages. */
+struct sphgi_checker {
+    sphg_context *context;
+    const char *function;
+};
+
+/* A scheme with its defaults filled in. */
+struct sphgi_scheme {
+    int32_t dimension;
+    sphg_method method;
+    sphg_kernel kernel;
+    sphg_policy policy;
+    double radius, threshold;
+};
+
+bool sphgi_is_classic(sphg_method method);
+
+/* Numbers per item of a correction table. */
+int32_t sphgi_correction_width(sphg_method method, int32_t dimension);
+
+sphg_result sphgi_check_pointer(struct sphgi_checker checker, const void *pointer,
+                                const char *name);
+sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *scheme,
+                               struct sphgi_scheme *checked);
+
+/* 1/H^d and H^2 must be normal numbers of the type. */
+sphg_result sphgi_check_range(struct sphgi_checker checker, const struct sphgi_scheme *scheme,
+                              sphg_type type);
+
+enum sphgi_use { SPHGI_INPUT, SPHGI_OUTPUT };
+
+/* numbers: per item; 0: as many as shape holds. An absent view passes; required: it does not. */
+struct sphgi_expected {
+    const char *name;
+    sphg_type type;
+    sphg_shape shape; /* or 0, with flat numbers */
+    int32_t numbers, dimension, count;
+    enum sphgi_use use;
+    bool required;
+};
+sphg_result sphgi_check_view(struct sphgi_checker checker, const sphg_view *view,
+                             const struct sphgi_expected *expected);
+sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
+                                 const struct sphgi_scheme *scheme, bool searched);
+sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *lists,
+                              int32_t target_count);
+sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *subset,
+                               int32_t target_count);
+
+/* Memory that items of columns occupy, for the rule that outputs overlap nothing. */
+struct sphgi_extent {
+    const char *name;
+    struct sphgi_columns columns;
+    int32_t count;
+    size_t number_size;
+    bool output;
+};
+sphg_result sphgi_check_overlap(struct sphgi_checker checker, const struct sphgi_extent *extents,
+                                int32_t count);
+
+#endif

@@ -1,0 +1,136 @@
+#include "context.h"
+#include "cpu.h"
+#include "parallel.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool config_is_valid(const sphg_config *config)
+{
+    const bool both_or_neither = !config->allocate == !config->release;
+    return both_or_neither && config->threads >= 0 && config->isa >= SPHG_ISA_BEST &&
+           config->isa <= SPHG_ISA_NEON && (!config->parallel_for || config->threads >= 1);
+}
+
+static void choose_passes(sphg_context *context)
+{
+    context->passes_f32 = &sphgi_passes_f32_base;
+    context->passes_f64 = &sphgi_passes_f64_base;
+#ifdef SPHG_HAVE_V3
+    if (context->isa == SPHG_ISA_X86_V3) {
+        context->passes_f32 = &sphgi_passes_f32_v3;
+        context->passes_f64 = &sphgi_passes_f64_v3;
+    }
+#endif
+}
+
+static void fill_pack_order(uint64_t *order)
+{
+    for (uint32_t bits = 0; bits < 256; ++bits) {
+        order[bits] = 0;
+        for (uint32_t bit = 0, place = 0; bit < 8; ++bit)
+            if (bits >> bit & 1)
+                order[bits] |= (uint64_t)bit << (8 * place++);
+    }
+}
+
+static void report(const sphg_config *config, sphg_result result, const char *message)
+{
+    if (config->log)
+        config->log(result, message, config->user);
+}
+
+sphg_result sphg_context_create(int32_t version, const sphg_config *config, sphg_context **context)
+{
+    const sphg_config defaults = {0};
+    if (!config)
+        config = &defaults;
+    if (!context)
+        return SPHG_ERROR_ARGUMENT;
+    *context = NULL;
+    if (version <= 0 || version / 100 > SPHG_VERSION / 100) {
+        report(config, SPHG_ERROR_VERSION, "sphg_context_create: version is not one it can serve");
+        return SPHG_ERROR_VERSION;
+    }
+    if (!config_is_valid(config)) {
+        report(config, SPHG_ERROR_ARGUMENT,
+               "sphg_context_create: config needs allocate and release together, threads >= 0 "
+               "(>= 1 with parallel_for) and a known isa");
+        return SPHG_ERROR_ARGUMENT;
+    }
+    const sphg_isa isa = config->isa == SPHG_ISA_BEST ? sphgi_cpu_best() : config->isa;
+    if (!sphgi_cpu_has(isa)) {
+        report(config, SPHG_ERROR_UNSUPPORTED, "sphg_context_create: isa is not on this machine");
+        return SPHG_ERROR_UNSUPPORTED;
+    }
+    const struct sphgi_allocator allocator = sphgi_allocator_of(config);
+    sphg_context *made = sphgi_allocate(&allocator, sizeof *made);
+    if (!made) {
+        report(config, SPHG_ERROR_MEMORY, "sphg_context_create: out of memory");
+        return SPHG_ERROR_MEMORY;
+    }
+    memset(made, 0, sizeof *made);
+    made->config = *config;
+    made->allocator = allocator;
+    made->threads = sphgi_thread_count(config);
+    made->isa = isa;
+    atomic_flag_clear(&made->busy);
+    choose_passes(made);
+    fill_pack_order(made->pack_order);
+    *context = made;
+    return SPHG_OK;
+}
+
+void sphg_context_destroy(sphg_context *context)
+{
+    if (!context)
+        return;
+    const struct sphgi_allocator allocator = context->allocator;
+    struct sphgi_buffer *buffers[] = {&context->workers,      &context->packed,    &context->sums,
+                                      &context->coefficients, &context->selection, &context->sort,
+                                      &context->plan,         &context->input};
+    for (size_t k = 0; k < sizeof buffers / sizeof *buffers; ++k)
+        sphgi_free(&allocator, buffers[k]);
+    sphgi_release(&allocator, context, sizeof *context);
+}
+
+const char *sphg_last_message(const sphg_context *context)
+{
+    return context ? context->message : "there is no context";
+}
+
+const struct sphgi_passes *sphgi_passes_of(const sphg_context *context, sphg_type type)
+{
+    return type == SPHG_F64 ? context->passes_f64 : context->passes_f32;
+}
+
+sphg_result sphgi_enter(sphg_context *context)
+{
+    if (!context)
+        return SPHG_ERROR_ARGUMENT;
+    if (atomic_flag_test_and_set_explicit(&context->busy, memory_order_acquire))
+        return SPHG_ERROR_BUSY; /* the message belongs to the call that is under way */
+    context->message[0] = '\0';
+    return SPHG_OK;
+}
+
+sphg_result sphgi_leave(sphg_context *context, sphg_result result)
+{
+    atomic_flag_clear_explicit(&context->busy, memory_order_release);
+    return result;
+}
+
+sphg_result sphgi_fail(sphg_context *context, sphg_result result, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(context->message, sizeof context->message, format, arguments);
+    va_end(arguments);
+    report(&context->config, result, context->message);
+    return result;
+}
+
+sphg_result sphgi_fail_memory(sphg_context *context, const char *function)
+{
+    return sphgi_fail(context, SPHG_ERROR_MEMORY, "%s: the allocator returned NULL", function);
+}

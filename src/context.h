@@ -1,0 +1,43 @@
+/* The context: the host's hooks, the chosen passes, scratch memory, the last message. */
+#ifndef SPHGI_CONTEXT_H
+#define SPHGI_CONTEXT_H
+#include "memory.h"
+#include "passes/passes.h"
+#include <stdatomic.h>
+
+enum { SPHGI_MESSAGE_LENGTH = 256 };
+
+struct sphg_context {
+    sphg_config config;
+    struct sphgi_allocator allocator;
+    int32_t threads;
+    sphg_isa isa;
+    const struct sphgi_passes *passes_f32, *passes_f64;
+    uint64_t pack_order[256]; /* of each byte: the positions of its set bits, a byte each */
+    atomic_flag busy;
+    char message[SPHGI_MESSAGE_LENGTH];
+    /* Scratch that outlives a call only to spare the next one its allocation. */
+    struct sphgi_buffer workers;      /* a slice per thread */
+    struct sphgi_buffer packed;       /* rows of fields and volumes in storage order */
+    struct sphgi_buffer sums;         /* of several source sets */
+    struct sphgi_buffer coefficients; /* corrections computed for a second sweep */
+    struct sphgi_buffer selection;    /* active targets and the blocks that hold them */
+    struct sphgi_buffer input;        /* positions as rows, in the order of the host */
+    struct sphgi_buffer sort;         /* of the grid */
+    struct sphgi_buffer plan;         /* of a request */
+};
+
+const struct sphgi_passes *sphgi_passes_of(const sphg_context *context, sphg_type type);
+
+/* A call begins: refuses a context in use. Every sphgi_enter() that gave SPHG_OK needs a leave. */
+sphg_result sphgi_enter(sphg_context *context);
+sphg_result sphgi_leave(sphg_context *context, sphg_result result);
+
+/* Notes what was objected to, tells the host's log, returns result. */
+__attribute__((format(printf, 3, 4))) sphg_result
+sphgi_fail(sphg_context *context, sphg_result result, const char *format, ...);
+
+/* Memory failures all read alike: who asked, and for how much. */
+sphg_result sphgi_fail_memory(sphg_context *context, const char *function);
+
+#endif

@@ -1,0 +1,101 @@
+/* sphg_evaluate and the short ways to call it. */
+#include "check.h"
+#include "plan.h"
+#include "sweep.h"
+
+static sphg_result evaluate(struct sphgi_checker checker, const sphg_scheme *scheme,
+                            const sphg_request *request)
+{
+    struct sphgi_plan plan;
+    sphg_result result = sphgi_enter(checker.context);
+    if (result)
+        return result;
+    result = sphgi_plan_make(checker, scheme, request, SPHGI_FOR_RESULTS, &plan);
+    if (!result)
+        result = sphgi_sweep_run(checker, &plan, request->subset, NULL);
+    return sphgi_leave(checker.context, result);
+}
+
+sphg_result sphg_evaluate(sphg_context *context, const sphg_scheme *scheme,
+                          const sphg_request *request)
+{
+    return evaluate((struct sphgi_checker){context, "sphg_evaluate"}, scheme, request);
+}
+
+sphg_result sphg_correction(sphg_context *context, const sphg_scheme *scheme,
+                            const sphg_sources *sources, const sphg_subset *subset,
+                            sphg_view correction, sphg_view rank)
+{
+    const struct sphgi_checker checker = {context, "sphg_correction"};
+    sphg_sources without_table = {.neighbors = NULL};
+    if (sources)
+        without_table = *sources;
+    without_table.correction = sphg_absent();
+    const sphg_request request = {.sources = sources ? &without_table : NULL,
+                                  .set_count = 1,
+                                  .subset = subset,
+                                  .correction = correction,
+                                  .rank = rank};
+    return evaluate(checker, scheme, &request);
+}
+
+/* One field of one source set that holds the targets. */
+static sphg_result evaluate_field(struct sphgi_checker checker, const sphg_scheme *scheme,
+                                  const sphg_sources *sources, const sphg_subset *subset,
+                                  const sphg_field *field)
+{
+    const sphg_request request = {
+        .sources = sources, .fields = field, .set_count = 1, .field_count = 1, .subset = subset};
+    return evaluate(checker, scheme, &request);
+}
+
+sphg_result sphg_gradient(sphg_context *context, const sphg_scheme *scheme,
+                          const sphg_sources *sources, const sphg_subset *subset, sphg_view field,
+                          sphg_view gradient)
+{
+    const sphg_field scalar = {.shape = SPHG_SCALAR, .at_sources = &field, .gradient = gradient};
+    return evaluate_field((struct sphgi_checker){context, "sphg_gradient"}, scheme, sources, subset,
+                          &scalar);
+}
+
+sphg_result sphg_jacobian(sphg_context *context, const sphg_scheme *scheme,
+                          const sphg_sources *sources, const sphg_subset *subset, sphg_view field,
+                          sphg_view jacobian)
+{
+    const sphg_field vector = {.shape = SPHG_VECTOR, .at_sources = &field, .gradient = jacobian};
+    return evaluate_field((struct sphgi_checker){context, "sphg_jacobian"}, scheme, sources, subset,
+                          &vector);
+}
+
+sphg_result sphg_divergence(sphg_context *context, const sphg_scheme *scheme,
+                            const sphg_sources *sources, const sphg_subset *subset, sphg_view field,
+                            sphg_view divergence)
+{
+    const sphg_field vector = {
+        .shape = SPHG_VECTOR, .at_sources = &field, .divergence = divergence};
+    return evaluate_field((struct sphgi_checker){context, "sphg_divergence"}, scheme, sources,
+                          subset, &vector);
+}
+
+sphg_result sphg_curl(sphg_context *context, const sphg_scheme *scheme, const sphg_sources *sources,
+                      const sphg_subset *subset, sphg_view field, sphg_view curl)
+{
+    const sphg_field vector = {.shape = SPHG_VECTOR, .at_sources = &field, .curl = curl};
+    return evaluate_field((struct sphgi_checker){context, "sphg_curl"}, scheme, sources, subset,
+                          &vector);
+}
+
+sphg_result sphg_force(sphg_context *context, const sphg_scheme *scheme,
+                       const sphg_sources *sources, const sphg_subset *subset, sphg_shape shape,
+                       sphg_view stress, sphg_view force)
+{
+    sphg_field field = {.shape = shape, .form = SPHG_ADJOINT, .at_sources = &stress};
+    if (shape == SPHG_SCALAR)
+        field.gradient = force;
+    else
+        field.divergence = force;
+    if (shape == SPHG_VECTOR) /* its divergence would be no vector */
+        field.shape = (sphg_shape)0;
+    return evaluate_field((struct sphgi_checker){context, "sphg_force"}, scheme, sources, subset,
+                          &field);
+}

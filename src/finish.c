@@ -1,0 +1,252 @@
+#include "finish.h"
+#include "kernel.h"
+#include "view.h"
+#include <string.h>
+
+/* ---- Corrections ---------------------------------------------------------------------------- */
+
+/* Linearised (theory.md, section 3): KGC C; RKPM C / (mu2 H^2); MLS C H^(d - 2) / mu2, where ours
+ * contains V_i / H^d. Classic: w is W H^d (CMLS) or V W (CRKPM). */
+struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
+{
+    const double h = scheme->radius, mu2 = sphgi_kernel_mu2(scheme->kernel, scheme->dimension);
+    const double volume = sphgi_power(h, scheme->dimension);
+    switch (scheme->method) {
+    case SPHG_MLS:
+        return (struct sphgi_scales){volume / (h * h) / mu2, 0};
+    case SPHG_RKPM:
+        return (struct sphgi_scales){1 / (mu2 * h * h), 0};
+    case SPHG_CMLS:
+        return (struct sphgi_scales){volume, volume / h};
+    case SPHG_CRKPM:
+        return (struct sphgi_scales){1, 1 / h};
+    default:
+        return (struct sphgi_scales){1, 0};
+    }
+}
+
+/* to = from times the factors, number by number of the table. */
+static void rescale(const struct sphgi_worker *w, char *from, struct sphgi_scales factor, char *to)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const int32_t values = plan->classic ? plan->dimension + 1 : width;
+    w->passes->scale(values, from, factor.value, NULL, to);
+    w->passes->scale(width - values, sphgi_lane(w, from, values), factor.slope, NULL,
+                     sphgi_lane(w, to, values));
+}
+
+static struct sphgi_scales inverse_of(struct sphgi_scales scales)
+{
+    return (struct sphgi_scales){1 / scales.value, scales.slope != 0 ? 1 / scales.slope : 0};
+}
+
+static void load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
+{
+    w->passes->load_lanes(columns, w->group.target, w->group.lanes, to);
+    w->passes->scale(1, to, w->gather.inverse_volume, NULL, to);
+}
+
+static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verdict)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const void *scale = NULL;
+    if (plan->scheme.method == SPHG_MLS) {
+        if (plan->mean_volume)
+            w->passes->quotient(sphgi_lane(w, w->reduced, plan->volume_sum),
+                                sphgi_lane(w, w->reduced, plan->volume_sum + 1), w->extra);
+        else
+            load_volume(w, &plan->target_volume, w->extra);
+        scale = w->extra;
+    }
+    w->passes->invert(&w->threshold, sphgi_lane(w, w->reduced, plan->moment_sum), scale,
+                      w->coefficients, w->lambda_min, verdict);
+}
+
+/* Weight of the target itself, if it is a source. */
+static void self_weight(struct sphgi_worker *w, char *to)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_columns none = {.count = 1, .at = {NULL}};
+    const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
+    if (plan->own_set < 0)
+        w->passes->load_lanes(&none, NULL, 0, to);
+    else if (plan->weighted) {
+        load_volume(w, &plan->own_volume, to);
+        w->passes->scale(1, to, at_zero, NULL, to);
+    } else {
+        w->passes->load_lanes(&none, NULL, 0, to);
+        w->passes->fill(at_zero, to);
+    }
+}
+
+static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *verdict)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_group *g = &w->group;
+    if (plan->correction.count)
+        w->passes->store_lanes(&plan->correction, g->target, g->lanes, w->raw, false);
+    if (plan->lambda_min.count)
+        w->passes->store_lanes(&plan->lambda_min, g->target, g->lanes, w->lambda_min, false);
+    for (int32_t l = 0; plan->rank.count && l < g->lanes; ++l)
+        *(uint8_t *)(uintptr_t)(plan->rank.at[0] + g->target[l] * plan->rank.stride) =
+            verdict->rank[l];
+}
+
+void sphgi_finish_corrections(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
+    struct sphgi_verdict verdict;
+    if (plan->classic) {
+        self_weight(w, w->self);
+        w->passes->invert_classic(&w->threshold,
+                                  sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
+                                  sphgi_lane(w, w->reduced, plan->moment_sum), w->self,
+                                  w->coefficients, w->lambda_min, &verdict);
+    } else
+        invert_linearised(w, &verdict);
+    /* Through the host's units and back, so that a table gives the same bits as this sweep. */
+    rescale(w, w->coefficients, scales, w->raw);
+    rescale(w, w->raw, inverse_of(scales), w->coefficients);
+    sphgi_tally_verdict(w->tally, &verdict, w->lambda_min, plan->type, w->group.lanes);
+    store_verdict(w, &verdict);
+}
+
+void sphgi_load_corrections(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_group *g = &w->group;
+    if (w->sweep->coefficients) {
+        w->passes->load_lanes(w->sweep->coefficients, g->target, g->lanes, w->coefficients);
+        return;
+    }
+    w->passes->load_lanes(&plan->target_correction, g->target, g->lanes, w->raw);
+    rescale(w, w->raw, inverse_of(sphgi_table_scales(&plan->scheme)), w->coefficients);
+}
+
+/* ---- Fields --------------------------------------------------------------------------------- */
+
+void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
+{
+    const int32_t d = w->sweep->plan->dimension;
+    self_weight(w, w->self);
+    for (int32_t k = 0; k < d; ++k)
+        w->passes->scale(1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)), w->gather.inverse_h,
+                         w->self, sphgi_lane(w, gradient, k));
+}
+
+/* The target's own term of the direct form. */
+static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    sphgi_self_gradient(w, w->extra);
+    w->passes->add_outer(w->sweep->plan->dimension, field->components,
+                         sphgi_lane(w, w->at_target, field->at_target), w->extra, NULL,
+                         w->jacobian);
+}
+
+static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const double inverse_h = w->gather.inverse_h;
+    const bool multiply = plan->corrects && !plan->classic;
+    w->passes->apply(plan->dimension, field->components, multiply ? w->coefficients : NULL,
+                     sphgi_lane(w, w->reduced, field->sum), inverse_h, w->jacobian);
+    if (field->form == SPHG_DIRECT && plan->classic && plan->own_set >= 0)
+        add_self_gradient(w, field);
+}
+
+/* C_i sum a_j s_ij x_ij; classic: the sum is made of gradients already. */
+static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const bool multiply = plan->corrects && !plan->classic;
+    w->passes->apply(plan->dimension, 1, multiply ? w->coefficients : NULL,
+                     sphgi_lane(w, w->reduced, sum), 1, to);
+}
+
+/* adjoint: f = (1/H) (V_i A_i G + H^d sum V_j A_j T), with H^d V_i = V_i H^-d H^d; KGC, RKPM and
+ * PLAIN have V_i inside T, too. symmetric: f = (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
+static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    const bool symmetric = field->form == SPHG_SYMMETRIC;
+    const bool volume_inside = plan->scheme.method != SPHG_MLS && !plan->classic;
+    const int32_t d = plan->dimension, n = field->components * d;
+    const double table = plan->classic || plan->scheme.method == SPHG_PLAIN
+                             ? 1
+                             : 1 / sphgi_table_scales(&plan->scheme).value;
+    const double volume = sphgi_power(plan->scheme.radius, d);
+    char *weight = sphgi_lane(w, w->extra, 4);
+    own_side(w, plan->vector_sum[symmetric], w->extra);
+    p->apply(d, field->components, NULL, sphgi_lane(w, w->reduced, field->sum), table, w->jacobian);
+    const void *own_weight = NULL;
+    if (symmetric) {
+        if (volume_inside)
+            p->scale(n, w->jacobian, 1, w->density, w->jacobian);
+        else {
+            p->quotient(w->density, w->volume, weight);
+            p->scale(n, w->jacobian, 1, weight, w->jacobian);
+        }
+        p->quotient(NULL, w->density, weight);
+        own_weight = weight;
+    } else if (!volume_inside)
+        own_weight = w->volume;
+    p->add_outer(d, field->components, sphgi_lane(w, w->at_target, field->at_target), w->extra,
+                 own_weight, w->jacobian);
+    const double factor = w->gather.inverse_h * (symmetric ? 1 : volume);
+    p->scale(n, w->jacobian, factor, !symmetric && volume_inside ? w->volume : NULL, w->jacobian);
+}
+
+static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_group *g = &w->group;
+    char *value = sphgi_lane(w, w->reduced, field->value_sum);
+    if (plan->own_set >= 0) {
+        if (plan->classic) {
+            self_weight(w, w->self);
+            w->passes->scale(1, w->coefficients, 1, w->self, w->extra);
+        } else {
+            const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
+            load_volume(w, &plan->own_volume, w->extra);
+            w->passes->scale(1, w->extra, at_zero, NULL, w->extra);
+        }
+        w->passes->add_outer(1, field->components, sphgi_lane(w, w->at_target, field->at_target),
+                             w->extra, NULL, value);
+    }
+    w->passes->store_lanes(&field->value, g->target, g->lanes, value, field->accumulate);
+}
+
+static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_group *g = &w->group;
+    char *divergence = w->contracted, *curl = sphgi_lane(w, w->contracted, 3);
+    w->passes->contract(plan->dimension, field->shape, w->jacobian,
+                        field->divergence.count ? divergence : NULL,
+                        field->curl.count ? curl : NULL);
+    const struct sphgi_columns *columns[3] = {&field->gradient, &field->divergence, &field->curl};
+    const char *lanes[3] = {w->jacobian, divergence, curl};
+    for (int32_t k = 0; k < 3; ++k)
+        if (columns[k]->count)
+            w->passes->store_lanes(columns[k], g->target, g->lanes, lanes[k], field->accumulate);
+}
+
+void sphgi_finish_fields(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (field->differentiates) {
+            if (field->form == SPHG_ADJOINT || field->form == SPHG_SYMMETRIC)
+                finish_transposed(w, field);
+            else
+                finish_forward(w, field);
+            store_results(w, field);
+        }
+        if (field->value_sum >= 0)
+            finish_value(w, field);
+    }
+}

@@ -1,0 +1,39 @@
+/* What every file of the library may rely on: the compiler, and nothing else.
+ * SPDX-License-Identifier: MIT */
+#ifndef SPHGI_INTERNAL_H
+#define SPHGI_INTERNAL_H
+#include <sphgrad/sphgrad.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __FAST_MATH__
+#error "sphgrad relies on IEEE arithmetic: build it without -ffast-math"
+#endif
+
+#define SPHGI_ALIGNMENT 64 /* [byte] of every internal array: a cache line, the widest vector */
+
+/* A C "template": called with constant arguments, so that the compiler removes branches on them. */
+#define SPHGI_TEMPLATE  static inline __attribute__((always_inline))
+
+static inline int32_t sphgi_min32(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+
+static inline int32_t sphgi_max32(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+
+static inline size_t sphgi_round_up(size_t value, size_t multiple)
+{
+    return (value + multiple - 1) / multiple * multiple;
+}
+
+static inline size_t sphgi_size_of_type(sphg_type type)
+{
+    return type == SPHG_F64 ? 8 : type == SPHG_F32 ? 4 : 1;
+}
+
+#endif

@@ -1,0 +1,103 @@
+#include "kernel.h"
+#include "kernel_list.h"
+#include <math.h>
+
+typedef double vec;
+#define R(x) ((double)(x))
+
+SPHGI_TEMPLATE vec splat(double x)
+{
+    return x;
+}
+
+SPHGI_TEMPLATE vec vmax(vec a, vec b)
+{
+    return a > b ? a : b;
+}
+
+SPHGI_TEMPLATE bool less(vec a, vec b)
+{
+    return a < b;
+}
+
+SPHGI_TEMPLATE vec select(bool choose, vec a, vec b)
+{
+    return choose ? a : b;
+}
+
+#include "passes/kernels.inl.h"
+
+static const double constants[][4] = {
+#define SPHGI_CONSTANTS(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                \
+    [SPHG_##name] = {sigma2, sigma3, mu2_2, mu2_3},
+    SPHGI_KERNELS(SPHGI_CONSTANTS)
+#undef SPHGI_CONSTANTS
+};
+
+bool sphgi_kernel_exists(sphg_kernel kernel)
+{
+    return (int)kernel >= 0 && (size_t)kernel < sizeof constants / sizeof *constants;
+}
+
+double sphgi_kernel_sigma(sphg_kernel kernel, int32_t dimension)
+{
+    return constants[kernel][dimension == 3];
+}
+
+double sphgi_kernel_mu2(sphg_kernel kernel, int32_t dimension)
+{
+    return constants[kernel][2 + (dimension == 3)];
+}
+
+double sphgi_kernel_w(sphg_kernel kernel, double q)
+{
+    return kernel_w(kernel, q);
+}
+
+double sphgi_kernel_d(sphg_kernel kernel, double q)
+{
+    return kernel_d(kernel, q);
+}
+
+double sphgi_power(double scale, int32_t power)
+{
+    double result = 1;
+    for (int32_t k = 0; k < (power < 0 ? -power : power); ++k)
+        result *= scale;
+    return power < 0 ? 1 / result : result;
+}
+
+static bool scheme_has_kernel(const sphg_scheme *scheme)
+{
+    return scheme && (scheme->dimension == 0 || scheme->dimension == 2 || scheme->dimension == 3) &&
+           sphgi_kernel_exists(scheme->kernel);
+}
+
+void sphg_kernel_value(const sphg_scheme *scheme, double r, double *w, double *dw_over_r)
+{
+    double value = NAN, slope = NAN;
+    if (scheme_has_kernel(scheme) && scheme->support_radius > 0 &&
+        isfinite(scheme->support_radius) && r >= 0) {
+        const int32_t d = scheme->dimension == 2 ? 2 : 3;
+        const double inverse_h = 1 / scheme->support_radius;
+        const double q = r * inverse_h, sigma = sphgi_kernel_sigma(scheme->kernel, d);
+        const double scale = sigma * sphgi_power(inverse_h, d);
+        const bool inside = r < scheme->support_radius;
+        value = inside ? scale * kernel_w(scheme->kernel, q) : 0;
+        slope = inside ? scale * inverse_h * inverse_h * kernel_d(scheme->kernel, q) : 0;
+    }
+    if (w)
+        *w = value;
+    if (dw_over_r)
+        *dw_over_r = slope;
+}
+
+void sphg_kernel_constants(const sphg_scheme *scheme, double *sigma, double *mu2)
+{
+    const bool valid = scheme_has_kernel(scheme);
+    const int32_t d = valid && scheme->dimension == 2 ? 2 : 3;
+    if (sigma)
+        *sigma = valid ? sphgi_kernel_sigma(scheme->kernel, d) : (double)NAN;
+    if (mu2)
+        *mu2 = valid ? sphgi_kernel_mu2(scheme->kernel, d) : (double)NAN;
+}

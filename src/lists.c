@@ -1,0 +1,223 @@
+#include "lists.h"
+#include "find.h"
+#include "parallel.h"
+#include <string.h>
+
+enum {
+    WIDE_HEADER = 8,  /* numbers in front of a wide row: its length, then nothing */
+    FIRST_GUESS = 40, /* ids a target, padding included, before anything is known */
+    GRAIN = 4         /* blocks */
+};
+
+struct build {
+    const sphg_context *context;
+    sphg_neighbors *neighbors;
+    char *memory; /* of the workers */
+    size_t memory_each;
+    int32_t room;
+    int64_t capacity; /* units */
+    atomic_int_least64_t units, pairs;
+};
+
+/* Ids of cells that wait to be stored together. */
+struct batch {
+    int32_t first_cell, cells; /* absolute numbers in cell_list */
+    int64_t used;
+};
+
+/* A place for that many units, or -1; counts them in any case. */
+static int64_t claim(struct build *build, int64_t units)
+{
+    const int64_t place = atomic_fetch_add(&build->units, units);
+    return place + units <= build->capacity ? place : -1;
+}
+
+static void store_batch(struct build *build, const struct sphgi_finder *finder, struct batch *batch)
+{
+    struct sphgi_found *found = &build->neighbors->found;
+    const int64_t place = claim(build, batch->used);
+    if (place >= 0) {
+        memcpy((uint16_t *)found->ids.data + place, finder->ids,
+               (size_t)batch->used * sizeof(uint16_t));
+        for (int32_t c = 0; c < batch->cells; ++c)
+            ((int64_t *)found->cell_list.data)[batch->first_cell + c] += place;
+    }
+    batch->first_cell += batch->cells;
+    batch->cells = 0;
+    batch->used = 0;
+}
+
+/* An upper bound of what a cell's pairs take. */
+static int64_t bound_of_cell(const struct sphgi_lattice *lattice,
+                             const struct sphgi_surroundings *around, int32_t cell, int32_t targets)
+{
+    int32_t begin[9], length[9];
+    int64_t candidates = SPHGI_PAD;
+    const int32_t runs = sphgi_candidate_runs(lattice, around, cell, begin, length);
+    for (int32_t k = 0; k < runs; ++k)
+        candidates += length[k];
+    return targets * candidates;
+}
+
+static void build_block(struct build *build, const struct sphgi_finder *finder,
+                        const struct sphgi_surroundings *around, int32_t block)
+{
+    sphg_neighbors *n = build->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t first = block * grid->cells;
+    const int32_t *start = (const int32_t *)grid->cell_start.data + first;
+    uint16_t *lengths = n->found.lengths.data;
+    struct batch batch = {.first_cell = first};
+    int64_t pairs = 0;
+    sphgi_stage_coordinates(finder, n, around);
+    for (int32_t c = 0; c < grid->cells; ++c) {
+        const int32_t targets = start[c + 1] - start[c];
+        if (targets &&
+            batch.used + bound_of_cell(&grid->lattice, around, c, targets) > SPHGI_UNITS_MOST)
+            store_batch(build, finder, &batch);
+        ((int64_t *)n->found.cell_list.data)[first + c] = batch.used;
+        ++batch.cells;
+        for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
+            const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
+            batch.used += sphgi_find_targets(finder, n, around, c, t, end, finder->ids + batch.used,
+                                             lengths + t);
+            for (int32_t k = t; k < end; ++k)
+                pairs += lengths[k];
+        }
+    }
+    store_batch(build, finder, &batch);
+    atomic_fetch_add(&build->pairs, pairs);
+}
+
+/* ---- Clumps --------------------------------------------------------------------------------- */
+
+static void count_rows(void *data, const uint32_t *rows, int32_t count)
+{
+    (void)rows;
+    *(int64_t *)data += count;
+}
+
+struct wide_row {
+    uint32_t *to;
+    int64_t count;
+};
+
+static void append_rows(void *data, const uint32_t *rows, int32_t count)
+{
+    struct wide_row *row = data;
+    memcpy(row->to + row->count, rows, (size_t)count * sizeof *rows);
+    row->count += count;
+}
+
+static void write_wide_cell(const struct build *build, const struct sphgi_finder *finder,
+                            const struct sphgi_surroundings *around, int32_t block, int32_t cell,
+                            int64_t place)
+{
+    const sphg_neighbors *n = build->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t *start =
+        (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells + cell;
+    uint32_t *next = (uint32_t *)(void *)((uint16_t *)n->found.ids.data + place);
+    for (int32_t t = start[0]; t < start[1]; ++t) {
+        struct wide_row row = {next + WIDE_HEADER, 0};
+        sphgi_find_wide(finder, n, around, cell, t, append_rows, &row);
+        memset(next, 0, WIDE_HEADER * sizeof *next);
+        next[0] = (uint32_t)row.count;
+        const int64_t padded = (int64_t)sphgi_round_up((size_t)row.count, SPHGI_PAD);
+        for (int64_t k = row.count; k < padded; ++k)
+            row.to[k] = (uint32_t)n->source_count; /* the row of zeros */
+        next = row.to + padded;
+    }
+}
+
+/* Twice through: a cell's place must be known before it can be filled. */
+static void build_wide_block(struct build *build, const struct sphgi_finder *finder,
+                             const struct sphgi_surroundings *around, int32_t block)
+{
+    sphg_neighbors *n = build->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    for (int32_t c = 0; c < grid->cells; ++c) {
+        const int32_t *start =
+            (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells + c;
+        int64_t units = 0, pairs = 0;
+        for (int32_t t = start[0]; t < start[1]; ++t) {
+            int64_t count = 0;
+            sphgi_find_wide(finder, n, around, c, t, count_rows, &count);
+            pairs += count;
+            units += 2 * (WIDE_HEADER + (int64_t)sphgi_round_up((size_t)count, SPHGI_PAD));
+        }
+        const int64_t place = claim(build, units);
+        ((int64_t *)n->found.cell_list.data)[(ptrdiff_t)block * grid->cells + c] = place;
+        if (place >= 0)
+            write_wide_cell(build, finder, around, block, c, place);
+        atomic_fetch_add(&build->pairs, pairs);
+    }
+}
+
+/* ---- All blocks ----------------------------------------------------------------------------- */
+
+static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    struct build *build = data;
+    sphg_neighbors *n = build->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const struct sphgi_finder finder = sphgi_finder_at(
+        build->context, n, build->room, build->memory + (size_t)worker * build->memory_each);
+    struct sphgi_surroundings around;
+    for (int32_t b = begin; b < end; ++b) {
+        const struct sphgi_block *block = (const struct sphgi_block *)grid->blocks.data + b;
+        sphgi_surroundings_of(&n->sources, block->at, &around);
+        const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)b * grid->cells;
+        const bool wide = sphgi_is_wide(n, &around, start, grid->cells);
+        ((uint8_t *)n->found.wide.data)[b] = wide;
+        if (wide)
+            build_wide_block(build, &finder, &around, b);
+        else
+            build_block(build, &finder, &around, b);
+    }
+}
+
+/* All pairs if they fit; found->units and ->pairs tell what is needed in any case. */
+static bool find_all(sphg_context *context, struct build *build)
+{
+    struct sphgi_found *found = &build->neighbors->found;
+    build->capacity = (int64_t)(found->ids.size / sizeof(uint16_t));
+    atomic_store(&build->units, 0);
+    atomic_store(&build->pairs, 0);
+    sphgi_parallel_for(context, build_task, build, sphgi_target_grid(build->neighbors)->block_count,
+                       GRAIN);
+    found->units = atomic_load(&build->units);
+    found->pairs = atomic_load(&build->pairs);
+    return found->units <= build->capacity;
+}
+
+sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
+{
+    struct sphgi_found *found = &n->found;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const size_t targets = (size_t)n->target_count, blocks = (size_t)grid->block_count;
+    struct build build = {.context = context, .neighbors = n, .room = sphgi_finder_room(n)};
+    build.memory_each = sphgi_finder_size(n, build.room);
+    if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
+                       build.memory_each) ||
+        !sphgi_reserve(&n->allocator, &found->lengths, targets, sizeof(uint16_t)) ||
+        !sphgi_reserve(&n->allocator, &found->wide, blocks, 1) ||
+        !sphgi_reserve(&n->allocator, &found->cell_list, blocks * (size_t)grid->cells,
+                       sizeof(int64_t)))
+        return SPHG_ERROR_MEMORY;
+    if (!found->ids.size &&
+        !sphgi_reserve(&n->allocator, &found->ids, targets * FIRST_GUESS + 1, sizeof(uint16_t)))
+        return SPHG_ERROR_MEMORY;
+    build.memory = context->workers.data;
+    const bool all = find_all(context, &build);
+    /* The same number of pairs may need this much when they fall differently onto the targets:
+     * having it now, later searches allocate nothing. */
+    const int64_t clumps = found->units - found->pairs;
+    const int64_t padding = (SPHGI_PAD - 1) * (int64_t)n->target_count;
+    const int64_t needed = found->pairs + (clumps > padding ? clumps : padding);
+    if (all && needed <= build.capacity)
+        return SPHG_OK;
+    if (!sphgi_reserve(&n->allocator, &found->ids, (size_t)needed, sizeof(uint16_t)))
+        return SPHG_ERROR_MEMORY;
+    return find_all(context, &build) ? SPHG_OK : SPHG_ERROR_MEMORY;
+}

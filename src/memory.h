@@ -1,0 +1,30 @@
+/* Memory comes from the host's allocator, in buffers that grow and are kept. */
+#ifndef SPHGI_MEMORY_H
+#define SPHGI_MEMORY_H
+#include "internal.h"
+
+struct sphgi_allocator {
+    void *(*allocate)(size_t size, size_t alignment, void *user);
+    void (*release)(void *memory, size_t size, void *user);
+    void *user;
+};
+
+struct sphgi_buffer {
+    void *data;
+    size_t size; /* [byte], as allocated */
+};
+
+/* The host's pair of functions, or the C library's. */
+struct sphgi_allocator sphgi_allocator_of(const sphg_config *config);
+
+void *sphgi_allocate(const struct sphgi_allocator *allocator, size_t size);
+void sphgi_release(const struct sphgi_allocator *allocator, void *memory, size_t size);
+
+/* Makes room for count items; what the buffer held is lost if it has to grow. A buffer that grows
+ * again takes an eighth more, so that a slowly rising count does not allocate at each step. False:
+ * out of memory, the buffer is empty. */
+bool sphgi_reserve(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer,
+                   size_t count, size_t item_size);
+void sphgi_free(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer);
+
+#endif

@@ -1,0 +1,491 @@
+#include "neighbors.h"
+#include "check.h"
+#include "kernel.h"
+#include "lists.h"
+#include "parallel.h"
+#include "view.h"
+#include <math.h>
+#include <string.h>
+
+enum { GRAIN = 4096 }; /* particles */
+
+/* ---- Life ----------------------------------------------------------------------------------- */
+
+sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighbors)
+{
+    const struct sphgi_checker checker = {context, "sphg_neighbors_create"};
+    if (neighbors)
+        *neighbors = NULL;
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, neighbors, "neighbors");
+    if (!result) {
+        sphg_neighbors *made = sphgi_allocate(&context->allocator, sizeof *made);
+        if (made) {
+            memset(made, 0, sizeof *made);
+            made->allocator = context->allocator;
+            *neighbors = made;
+        } else
+            result = sphgi_fail_memory(context, checker.function);
+    }
+    return sphgi_leave(context, result);
+}
+
+struct buffers {
+    struct sphgi_buffer *list[8];
+};
+
+static struct buffers own_buffers(sphg_neighbors *n)
+{
+    return (struct buffers){{&n->source_place, &n->target_place, &n->found.cell_list,
+                             &n->found.lengths, &n->found.wide, &n->found.ids, &n->sources_then,
+                             &n->targets_then}};
+}
+
+void sphg_neighbors_destroy(sphg_neighbors *neighbors)
+{
+    if (!neighbors)
+        return;
+    const struct sphgi_allocator allocator = neighbors->allocator;
+    const struct buffers buffers = own_buffers(neighbors);
+    for (size_t k = 0; k < sizeof buffers.list / sizeof *buffers.list; ++k)
+        sphgi_free(&allocator, buffers.list[k]);
+    sphgi_grid_free(&neighbors->sources, &allocator);
+    sphgi_grid_free(&neighbors->targets, &allocator);
+    sphgi_release(&allocator, neighbors, sizeof *neighbors);
+}
+
+/* ---- Reading positions ---------------------------------------------------------------------- */
+
+struct reading {
+    const struct sphgi_passes *passes;
+    struct sphgi_columns columns;
+    char *rows;
+    size_t row_size;
+    bool trusted;
+    atomic_int_least64_t bad; /* first item that is not finite, or INT64_MAX */
+};
+
+static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    struct reading *reading = data;
+    (void)worker;
+    const int64_t bad =
+        reading->trusted ? -1 : reading->passes->first_not_finite(&reading->columns, begin, end);
+    if (bad >= 0) {
+        int_least64_t first = atomic_load(&reading->bad);
+        while (bad < first && !atomic_compare_exchange_weak(&reading->bad, &first, bad))
+            ;
+        return;
+    }
+    reading->passes->load_rows(&reading->columns, NULL, begin, end, 0, reading->columns.count,
+                               reading->rows + (size_t)begin * reading->row_size);
+}
+
+static sphg_result read_positions(struct sphgi_checker checker, const sphg_view *view,
+                                  const char *name, int32_t dimension, int32_t count, char *rows)
+{
+    struct reading reading = {.passes = sphgi_passes_of(checker.context, view->type),
+                              .columns = sphgi_columns_of(view, SPHG_VECTOR, dimension),
+                              .rows = rows,
+                              .row_size = SPHGI_ROW * sphgi_size_of_type(view->type),
+                              .trusted = checker.context->config.trusted != 0};
+    atomic_store(&reading.bad, INT64_MAX);
+    sphgi_parallel_for(checker.context, reading_task, &reading, count, GRAIN);
+    const int64_t bad = atomic_load(&reading.bad);
+    if (bad == INT64_MAX)
+        return SPHG_OK;
+    return sphgi_fail(checker.context, SPHG_ERROR_NOT_FINITE, "%s: %s[%lld] is not finite",
+                      checker.function, name, (long long)bad);
+}
+
+/* What a build is about; becomes the object's only when it succeeds. */
+struct geometry {
+    int32_t source_count, target_count, dimension;
+    sphg_type position_type, type;
+    bool part_of;
+    size_t row_size;
+    char *source_rows, *target_rows; /* in the order of the host, in context->input */
+};
+
+static struct geometry geometry_of(const sphg_geometry *given, int32_t dimension)
+{
+    struct geometry g = {.source_count = given->source_count,
+                         .target_count = given->target_count,
+                         .dimension = dimension,
+                         .part_of = !given->targets.x};
+    const sphg_view *some = given->sources.x ? &given->sources : &given->targets;
+    g.position_type = some->x ? some->type : SPHG_F32;
+    g.type = given->precision ? given->precision : g.position_type;
+    g.row_size = SPHGI_ROW * sphgi_size_of_type(g.position_type);
+    return g;
+}
+
+static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
+                                 struct geometry *g)
+{
+    sphg_context *context = checker.context;
+    const size_t own_targets = g->part_of ? 0 : (size_t)g->target_count;
+    if (!sphgi_reserve(&context->allocator, &context->input, (size_t)g->source_count + own_targets,
+                       g->row_size))
+        return sphgi_fail_memory(context, checker.function);
+    g->source_rows = context->input.data;
+    g->target_rows = g->source_rows + (size_t)g->source_count * g->row_size;
+    sphg_result result = read_positions(checker, &given->sources, "geometry.sources", g->dimension,
+                                        g->source_count, g->source_rows);
+    if (!result && !g->part_of)
+        result = read_positions(checker, &given->targets, "geometry.targets", g->dimension,
+                                g->target_count, g->target_rows);
+    if (g->part_of)
+        g->target_rows = g->source_rows;
+    return result;
+}
+
+/* ---- Places --------------------------------------------------------------------------------- */
+
+struct inversion {
+    const int32_t *order;
+    int32_t *place;
+};
+
+static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct inversion *inversion = data;
+    (void)worker;
+    for (int32_t k = begin; k < end; ++k)
+        inversion->place[inversion->order[k]] = k;
+}
+
+static bool invert_order(sphg_context *context, const sphg_neighbors *n,
+                         const struct sphgi_grid *grid, struct sphgi_buffer *place)
+{
+    if (!sphgi_reserve(&n->allocator, place, (size_t)grid->count, sizeof(int32_t)))
+        return false;
+    struct inversion inversion = {grid->order.data, place->data};
+    sphgi_parallel_for(context, invert_task, &inversion, grid->count, GRAIN);
+    return true;
+}
+
+/* ---- Skin ----------------------------------------------------------------------------------- */
+
+static bool same_question(const sphg_neighbors *n, const struct geometry *g,
+                          const sphg_geometry *given, double radius)
+{
+    return n->kind == SPHGI_SEARCHED && n->skin > 0 && n->skin == given->skin &&
+           n->radius == radius && n->dimension == g->dimension && n->part_of == g->part_of &&
+           n->position_type == g->position_type && n->source_count == g->source_count &&
+           n->target_count == g->target_count &&
+           memcmp(n->period, given->period, sizeof n->period) == 0;
+}
+
+struct moves {
+    const struct sphgi_passes *passes;
+    const void *then, *now;
+    double *largest; /* a slot per task range start: see moved_task */
+    int32_t chunk;
+};
+
+static void moved_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct moves *moves = data;
+    (void)worker;
+    for (int32_t c = begin; c < end; ++c)
+        moves->largest[c] = moves->passes->largest_move(
+            moves->then, moves->now, (int64_t)c * moves->chunk, (int64_t)(c + 1) * moves->chunk);
+}
+
+static double largest_move(sphg_context *context, sphg_type type, const void *then, const void *now,
+                           int32_t count)
+{
+    enum { CHUNKS = 64 };
+    double largest[CHUNKS + 1] = {0};
+    struct moves moves = {sphgi_passes_of(context, type), then, now, largest, count / CHUNKS};
+    if (moves.chunk)
+        sphgi_parallel_for(context, moved_task, &moves, CHUNKS, 1);
+    largest[CHUNKS] = moves.passes->largest_move(then, now, (int64_t)moves.chunk * CHUNKS, count);
+    for (int32_t c = 0; c < CHUNKS; ++c)
+        largest[CHUNKS] = largest[c] > largest[CHUNKS] ? largest[c] : largest[CHUNKS];
+    return largest[CHUNKS];
+}
+
+struct refresh {
+    const int32_t *order;
+    const char *from;
+    char *to;
+    size_t row_size;
+};
+
+static void refresh_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct refresh *r = data;
+    (void)worker;
+    for (int32_t k = begin; k < end; ++k)
+        memcpy(r->to + (size_t)k * r->row_size, r->from + (size_t)r->order[k] * r->row_size,
+               r->row_size);
+}
+
+static void refresh_rows(sphg_context *context, struct sphgi_grid *grid, const char *rows,
+                         size_t row_size)
+{
+    struct refresh refresh = {grid->order.data, rows, grid->rows.data, row_size};
+    sphgi_parallel_for(context, refresh_task, &refresh, grid->count, GRAIN);
+}
+
+/* True: the pairs still cover everything, and the rows hold the new positions. */
+static bool skin_holds(sphg_context *context, sphg_neighbors *n, const struct geometry *g)
+{
+    double moved = largest_move(context, g->position_type, n->sources_then.data, g->source_rows,
+                                g->source_count);
+    if (!g->part_of) {
+        const double targets = largest_move(context, g->position_type, n->targets_then.data,
+                                            g->target_rows, g->target_count);
+        moved = targets > moved ? targets : moved;
+    }
+    /* Differences of positions are rounded: leave that much of the skin alone. */
+    const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
+    const double left = n->skin * (1 - unit) / 2 - moved - n->radius * unit;
+    if (!(left >= 0))
+        return false;
+    refresh_rows(context, &n->sources, g->source_rows, g->row_size);
+    if (!n->same)
+        refresh_rows(context, &n->targets, g->target_rows, g->row_size);
+    n->rebuilt = false;
+    n->skin_left = left;
+    return true;
+}
+
+static sphg_result remember_positions(sphg_neighbors *n, const struct geometry *g)
+{
+    const size_t sources = (size_t)g->source_count, targets = (size_t)g->target_count;
+    if (!sphgi_reserve(&n->allocator, &n->sources_then, sources, g->row_size) ||
+        (!g->part_of && !sphgi_reserve(&n->allocator, &n->targets_then, targets, g->row_size)))
+        return SPHG_ERROR_MEMORY;
+    if (sources)
+        memcpy(n->sources_then.data, g->source_rows, sources * g->row_size);
+    if (!g->part_of && targets)
+        memcpy(n->targets_then.data, g->target_rows, targets * g->row_size);
+    return SPHG_OK;
+}
+
+/* ---- Search --------------------------------------------------------------------------------- */
+
+static double largest_coordinate(const struct geometry *g)
+{
+    const int64_t rows = (int64_t)g->source_count + (g->part_of ? 0 : g->target_count);
+    double largest = 0;
+    for (int64_t k = 0; k < rows * SPHGI_ROW; ++k) {
+        const double x = g->position_type == SPHG_F64
+                             ? ((const double *)(const void *)g->source_rows)[k]
+                             : (double)((const float *)(const void *)g->source_rows)[k];
+        largest = fabs(x) > largest ? fabs(x) : largest;
+    }
+    return largest;
+}
+
+static void adopt(sphg_neighbors *n, const struct geometry *g, const sphg_geometry *given,
+                  double radius)
+{
+    n->dimension = g->dimension;
+    n->position_type = g->position_type;
+    n->type = g->type;
+    n->radius = radius;
+    n->skin = given->skin;
+    n->periodic = false;
+    for (int32_t a = 0; a < 3; ++a) {
+        n->period[a] = a < g->dimension ? given->period[a] : 0;
+        n->periodic |= n->period[a] > 0;
+    }
+    n->list_free = given->list_free != 0;
+    n->part_of = g->part_of;
+    n->same = g->part_of && g->target_count == g->source_count;
+    n->source_count = g->source_count;
+    n->target_count = g->target_count;
+    n->found.pairs = 0;
+    memset(&n->lists, 0, sizeof n->lists);
+}
+
+static sphg_result build_grids(sphg_context *context, sphg_neighbors *n, const struct geometry *g)
+{
+    const struct sphgi_lattice lattice =
+        sphgi_lattice_of(n->dimension, n->radius + n->skin, n->period,
+                         n->periodic ? largest_coordinate(g) : 0, n->position_type);
+    sphg_result result = sphgi_grid_build(context, &n->sources, &n->allocator, &lattice,
+                                          n->position_type, g->source_rows, n->source_count);
+    if (!result && !n->same)
+        result = sphgi_grid_build(context, &n->targets, &n->allocator, &lattice, n->position_type,
+                                  g->target_rows, n->target_count);
+    if (!result && !n->same && n->part_of &&
+        !invert_order(context, n, &n->sources, &n->source_place))
+        result = SPHG_ERROR_MEMORY;
+    if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
+        result = SPHG_ERROR_MEMORY;
+    return result;
+}
+
+static sphg_result search(struct sphgi_checker checker, sphg_neighbors *n,
+                          const struct sphgi_scheme *scheme, const sphg_geometry *given)
+{
+    struct geometry g = geometry_of(given, scheme->dimension);
+    sphg_result result = read_geometry(checker, given, &g);
+    if (result)
+        return result;
+    if (same_question(n, &g, given, scheme->radius) && n->type == g.type &&
+        skin_holds(checker.context, n, &g))
+        return SPHG_OK;
+    n->kind = SPHGI_NEVER_BUILT;
+    adopt(n, &g, given, scheme->radius);
+    result = build_grids(checker.context, n, &g);
+    if (!result && !n->list_free)
+        result = sphgi_lists_build(checker.context, n);
+    if (!result && n->skin > 0)
+        result = remember_positions(n, &g);
+    if (result)
+        return sphgi_fail_memory(checker.context, checker.function);
+    n->kind = SPHGI_SEARCHED;
+    n->rebuilt = true;
+    n->skin_left = n->skin / 2;
+    return SPHG_OK;
+}
+
+sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
+                                  const sphg_scheme *scheme, const sphg_geometry *geometry)
+{
+    const struct sphgi_checker checker = {context, "sphg_neighbors_search"};
+    struct sphgi_scheme checked = {0};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, neighbors, "neighbors");
+    if (!result)
+        result = sphgi_check_scheme(checker, scheme, &checked);
+    if (!result)
+        result = sphgi_check_geometry(checker, geometry, &checked, true);
+    if (!result)
+        result = search(checker, neighbors, &checked, geometry);
+    return sphgi_leave(context, result);
+}
+
+/* ---- The host's lists ----------------------------------------------------------------------- */
+
+static sphg_result use_lists(struct sphgi_checker checker, sphg_neighbors *n,
+                             const struct sphgi_scheme *scheme, const sphg_geometry *given,
+                             const sphg_lists *lists)
+{
+    struct geometry g = geometry_of(given, scheme->dimension);
+    sphg_result result = read_geometry(checker, given, &g);
+    if (result)
+        return result;
+    n->kind = SPHGI_NEVER_BUILT;
+    adopt(n, &g, given, scheme->radius);
+    n->same = n->part_of;
+    const size_t sources = (size_t)g.source_count, targets = (size_t)g.target_count;
+    if (!sphgi_reserve(&n->allocator, &n->sources.rows, sources + 1, g.row_size) ||
+        (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g.row_size)))
+        return sphgi_fail_memory(checker.context, checker.function);
+    memcpy(n->sources.rows.data, g.source_rows, sources * g.row_size);
+    memset((char *)n->sources.rows.data + sources * g.row_size, 0, g.row_size);
+    if (!n->part_of)
+        memcpy(n->targets.rows.data, g.target_rows, targets * g.row_size);
+    n->lists = *lists;
+    if (lists->offsets)
+        n->found.pairs = lists->offsets[n->target_count];
+    n->kind = SPHGI_HOST_LISTS;
+    n->rebuilt = true;
+    n->skin_left = 0;
+    return SPHG_OK;
+}
+
+sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
+                                     const sphg_scheme *scheme, const sphg_geometry *geometry,
+                                     const sphg_lists *lists)
+{
+    const struct sphgi_checker checker = {context, "sphg_neighbors_use_lists"};
+    struct sphgi_scheme checked = {0};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, neighbors, "neighbors");
+    if (!result)
+        result = sphgi_check_scheme(checker, scheme, &checked);
+    if (!result)
+        result = sphgi_check_geometry(checker, geometry, &checked, false);
+    if (!result)
+        result = sphgi_check_lists(checker, lists, geometry->target_count);
+    if (!result)
+        result = use_lists(checker, neighbors, &checked, geometry, lists);
+    return sphgi_leave(context, result);
+}
+
+/* ---- Questions ------------------------------------------------------------------------------ */
+
+static int64_t grid_bytes(const struct sphgi_grid *grid)
+{
+    return (int64_t)(grid->blocks.size + grid->cell_start.size + grid->hash.size + grid->rows.size +
+                     grid->order.size);
+}
+
+sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors *neighbors,
+                                    sphg_neighbors_info *info)
+{
+    const struct sphgi_checker checker = {context, "sphg_neighbors_get_info"};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, neighbors, "neighbors");
+    if (!result)
+        result = sphgi_check_pointer(checker, info, "info");
+    if (!result) {
+        const sphg_neighbors *n = neighbors;
+        const struct sphgi_buffer *own[] = {
+            &n->source_place, &n->target_place, &n->found.cell_list, &n->found.lengths,
+            &n->found.wide,   &n->found.ids,    &n->sources_then,    &n->targets_then};
+        *info = (sphg_neighbors_info){.pairs = n->kind ? n->found.pairs : 0,
+                                      .target_count = n->kind ? n->target_count : 0,
+                                      .source_count = n->kind ? n->source_count : 0,
+                                      .rebuilt = n->rebuilt,
+                                      .skin_left = n->kind ? n->skin_left : 0};
+        info->bytes = (int64_t)sizeof *n + grid_bytes(&n->sources) + grid_bytes(&n->targets);
+        for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
+            info->bytes += (int64_t)own[k]->size;
+    }
+    return sphgi_leave(context, result);
+}
+
+/* The host's lists have no order of their own: sort the positions as a search would. */
+static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n, int32_t *order)
+{
+    struct sphgi_grid grid = {.count = 0};
+    const struct sphgi_lattice lattice =
+        sphgi_lattice_of(n->dimension, n->radius, (const double[3]){0}, 0, n->position_type);
+    const sphg_result result =
+        sphgi_grid_build(context, &grid, &context->allocator, &lattice, n->position_type,
+                         n->sources.rows.data, n->source_count);
+    if (!result)
+        memcpy(order, grid.order.data, (size_t)n->source_count * sizeof *order);
+    sphgi_grid_free(&grid, &context->allocator);
+    return result ? sphgi_fail_memory(context, "sphg_neighbors_get_order") : SPHG_OK;
+}
+
+sphg_result sphg_neighbors_get_order(sphg_context *context, const sphg_neighbors *neighbors,
+                                     int32_t *order)
+{
+    const struct sphgi_checker checker = {context, "sphg_neighbors_get_order"};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, neighbors, "neighbors");
+    if (!result && !neighbors->kind)
+        result = sphgi_fail(context, SPHG_ERROR_STATE, "%s: neighbors were never built",
+                            checker.function);
+    if (!result && neighbors->source_count > 0)
+        result = sphgi_check_pointer(checker, order, "order");
+    if (!result && neighbors->source_count > 0) {
+        if (neighbors->kind == SPHGI_HOST_LISTS)
+            result = order_of_lists(context, neighbors, order);
+        else
+            memcpy(order, neighbors->sources.order.data,
+                   (size_t)neighbors->source_count * sizeof *order);
+    }
+    return sphgi_leave(context, result);
+}

@@ -1,0 +1,251 @@
+/* Pairs one by one: export as CSR, and G_ij. */
+#include "check.h"
+#include "finish.h"
+#include "kernel.h"
+#include "parallel.h"
+#include "plan.h"
+#include "sweep.h"
+#include "view.h"
+#include "worker.h"
+#include <math.h>
+#include <string.h>
+
+enum { SORT_GRAIN = 256, INSERTION_MOST = 64 };
+
+/* ---- Rows in ascending order ---------------------------------------------------------------- */
+
+struct sorting {
+    const int64_t *offsets;
+    int32_t *indices;
+    struct sphgi_columns gradient;
+    size_t number_size;
+};
+
+static void swap_pairs(const struct sorting *s, int64_t a, int64_t b)
+{
+    const int32_t index = s->indices[a];
+    s->indices[a] = s->indices[b];
+    s->indices[b] = index;
+    for (int32_t c = 0; c < s->gradient.count; ++c) {
+        char *x = (char *)(uintptr_t)(s->gradient.at[c] + a * s->gradient.stride);
+        char *y = (char *)(uintptr_t)(s->gradient.at[c] + b * s->gradient.stride);
+        char held[sizeof(double)];
+        memcpy(held, x, s->number_size);
+        memcpy(x, y, s->number_size);
+        memcpy(y, held, s->number_size);
+    }
+}
+
+static void sift_down(const struct sorting *s, int64_t first, int64_t root, int64_t count)
+{
+    while (2 * root + 1 < count) {
+        int64_t child = 2 * root + 1;
+        if (child + 1 < count && s->indices[first + child] < s->indices[first + child + 1])
+            ++child;
+        if (s->indices[first + root] >= s->indices[first + child])
+            return;
+        swap_pairs(s, first + root, first + child);
+        root = child;
+    }
+}
+
+static void sort_row(const struct sorting *s, int64_t first, int64_t count)
+{
+    if (count <= INSERTION_MOST) {
+        for (int64_t k = 1; k < count; ++k)
+            for (int64_t l = k; l > 0 && s->indices[first + l - 1] > s->indices[first + l]; --l)
+                swap_pairs(s, first + l - 1, first + l);
+        return;
+    }
+    for (int64_t root = count / 2; root-- > 0;)
+        sift_down(s, first, root, count);
+    for (int64_t end = count - 1; end > 0; --end) {
+        swap_pairs(s, first, first + end);
+        sift_down(s, first, 0, end);
+    }
+}
+
+static void sort_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct sorting *s = data;
+    (void)worker;
+    for (int32_t row = begin; row < end; ++row)
+        sort_row(s, s->offsets[row], s->offsets[row + 1] - s->offsets[row]);
+}
+
+/* ---- Export --------------------------------------------------------------------------------- */
+
+struct exporting {
+    struct sphgi_checker checker;
+    const struct sphgi_plan *plan;
+    const sphg_subset *subset;
+    sphg_pairs *pairs;
+    struct sphgi_columns gradient;
+    int32_t rows;
+    int32_t *row_of_target;
+    int64_t *offsets; /* rows + 1: first counts, then offsets */
+};
+
+static sphg_result check_pairs(struct exporting *e)
+{
+    const struct sphgi_checker checker = e->checker;
+    sphg_pairs *pairs = e->pairs;
+    if (pairs->capacity < 0)
+        return sphgi_fail(checker.context, SPHG_ERROR_ARGUMENT, "%s: pairs.capacity is %lld",
+                          checker.function, (long long)pairs->capacity);
+    const int64_t most = pairs->capacity < INT32_MAX ? pairs->capacity : INT32_MAX;
+    const struct sphgi_expected expected = {.name = "pairs.gradient",
+                                            .type = e->plan->type,
+                                            .shape = SPHG_VECTOR,
+                                            .dimension = e->plan->dimension,
+                                            .count = (int32_t)most,
+                                            .use = SPHGI_OUTPUT};
+    const sphg_result result = sphgi_check_view(checker, &pairs->gradient, &expected);
+    if (!result)
+        e->gradient = sphgi_columns_of(&pairs->gradient, SPHG_VECTOR, e->plan->dimension);
+    return result;
+}
+
+static sphg_result count_pairs(struct exporting *e)
+{
+    sphg_context *context = e->checker.context;
+    const size_t targets = (size_t)e->plan->target_count;
+    const size_t map_size = sphgi_round_up(targets * sizeof(int32_t) + 1, SPHGI_ALIGNMENT);
+    if (!sphgi_reserve(&context->allocator, &context->sums,
+                       map_size + (targets + 1) * sizeof(int64_t), 1))
+        return sphgi_fail_memory(context, e->checker.function);
+    e->row_of_target = context->sums.data;
+    e->offsets = (int64_t *)(void *)((char *)context->sums.data + map_size);
+    e->rows = sphgi_selected_rows(e->subset, e->plan->target_count, e->row_of_target);
+    struct sphgi_plan counting = *e->plan; /* only pairs are looked at */
+    counting.computes = counting.corrects = counting.differentiates = false;
+    counting.sums = 0;
+    const struct sphgi_pair_sink sink = {.row_of_target = e->row_of_target,
+                                         .counts = e->offsets + 1};
+    const sphg_result result = sphgi_sweep_run(e->checker, &counting, e->subset, &sink);
+    e->offsets[0] = 0;
+    for (int32_t k = 0; k < e->rows && !result; ++k)
+        e->offsets[k + 1] += e->offsets[k];
+    return result;
+}
+
+static sphg_result fill_pairs(struct exporting *e)
+{
+    sphg_context *context = e->checker.context;
+    const size_t count = (size_t)e->offsets[e->rows];
+    struct sphgi_pair_sink sink = {.row_of_target = e->row_of_target,
+                                   .offsets = e->offsets,
+                                   .indices = e->pairs->indices,
+                                   .gradient = e->gradient};
+    if (!sink.indices) { /* gradients alone: still in ascending order */
+        if (!sphgi_reserve(&context->allocator, &context->coefficients, count, sizeof(int32_t)))
+            return sphgi_fail_memory(context, e->checker.function);
+        sink.indices = context->coefficients.data;
+    }
+    const sphg_result result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
+    struct sorting sorting = {e->offsets, sink.indices, e->gradient,
+                              sphgi_size_of_type(e->plan->type)};
+    if (!result)
+        sphgi_parallel_for(context, sort_task, &sorting, e->rows, SORT_GRAIN);
+    return result;
+}
+
+static sphg_result export_pairs(struct exporting *e)
+{
+    sphg_pairs *pairs = e->pairs;
+    sphg_result result = check_pairs(e);
+    if (!result)
+        result = count_pairs(e);
+    if (result)
+        return result;
+    pairs->count = e->offsets[e->rows];
+    const bool arrays = pairs->indices || e->gradient.count;
+    if (arrays && pairs->count > pairs->capacity)
+        return sphgi_fail(e->checker.context, SPHG_ERROR_CAPACITY,
+                          "%s: pairs.capacity is %lld, there are %lld pairs", e->checker.function,
+                          (long long)pairs->capacity, (long long)pairs->count);
+    if (arrays)
+        result = fill_pairs(e);
+    if (!result && pairs->offsets)
+        memcpy(pairs->offsets, e->offsets, ((size_t)e->rows + 1) * sizeof *pairs->offsets);
+    return result;
+}
+
+sphg_result sphg_pair_gradients(sphg_context *context, const sphg_scheme *scheme,
+                                const sphg_sources *sources, const sphg_subset *subset,
+                                sphg_view target_correction, sphg_pairs *pairs)
+{
+    const struct sphgi_checker checker = {context, "sphg_pair_gradients"};
+    struct sphgi_plan plan;
+    struct exporting e = {.checker = checker, .plan = &plan, .subset = subset, .pairs = pairs};
+    const sphg_request request = {.sources = sources,
+                                  .set_count = 1,
+                                  .subset = subset,
+                                  .target_correction = target_correction};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, pairs, "pairs");
+    if (!result)
+        result = sphgi_plan_make(
+            checker, scheme, &request,
+            sphgi_is_absent(&pairs->gradient) ? SPHGI_FOR_PAIRS : SPHGI_FOR_PAIR_GRADIENTS, &plan);
+    if (!result)
+        result = export_pairs(&e);
+    return sphgi_leave(context, result);
+}
+
+/* ---- One pair ------------------------------------------------------------------------------- */
+
+/* C_i s_ij x_ij with everything in the units of the host. */
+static void linearised_gradient(const sphg_scheme *scheme, int32_t d, const double *x_ij,
+                                double volume, const double *c, double *gradient)
+{
+    double r = 0, w, slope;
+    for (int32_t a = 0; a < d; ++a)
+        r += x_ij[a] * x_ij[a];
+    sphg_kernel_value(scheme, sqrt(r), &w, &slope);
+    const double s = scheme->method == SPHG_MLS    ? -w
+                     : scheme->method == SPHG_RKPM ? -volume * w
+                                                   : volume * slope;
+    for (int32_t a = 0; a < d; ++a) {
+        gradient[a] = s * x_ij[a];
+        for (int32_t b = 0; c && b < d; ++b) {
+            const int32_t low = a < b ? a : b, high = a < b ? b : a;
+            const double entry = c[low * d - low * (low - 1) / 2 + high - low];
+            gradient[a] = (b ? gradient[a] : 0) + entry * s * x_ij[b];
+        }
+    }
+}
+
+/* d_k w (p.y) + w (p.z_k), p = (1, -x_ij / H) */
+static void classic_gradient(const sphg_scheme *scheme, int32_t d, const double *x_ij,
+                             double volume, const double *c, double *gradient)
+{
+    double r = 0, w, slope, polynomial[4];
+    for (int32_t a = 0; a < d; ++a)
+        r += x_ij[a] * x_ij[a];
+    sphg_kernel_value(scheme, sqrt(r), &w, &slope);
+    if (scheme->method == SPHG_CRKPM) {
+        w *= volume;
+        slope *= volume;
+    }
+    for (int32_t m = 0; m <= d; ++m) {
+        polynomial[m] = c[m * (d + 1)];
+        for (int32_t a = 0; a < d; ++a)
+            polynomial[m] -= c[m * (d + 1) + 1 + a] * x_ij[a] / scheme->support_radius;
+    }
+    for (int32_t a = 0; a < d; ++a)
+        gradient[a] = slope * x_ij[a] * polynomial[0] + w * polynomial[1 + a];
+}
+
+void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double volume,
+                        const double *correction, double *gradient)
+{
+    const int32_t d = scheme->dimension == 2 ? 2 : 3;
+    if (sphgi_is_classic(scheme->method) && correction)
+        classic_gradient(scheme, d, x_ij, volume, correction, gradient);
+    else
+        linearised_gradient(scheme, d, x_ij, volume,
+                            scheme->method == SPHG_PLAIN ? NULL : correction, gradient);
+}

@@ -1,0 +1,71 @@
+/* A request, checked and turned into what has to be summed: which rows are read, which sums are
+ * formed, where the results go. */
+#ifndef SPHGI_PLAN_H
+#define SPHGI_PLAN_H
+#include "check.h"
+#include "neighbors.h"
+
+/* Up to SPHGI_ROW components of one array, read as rows. columns.count 0: zeros. */
+struct sphgi_stream {
+    struct sphgi_columns columns;
+    int32_t first, count;
+};
+
+struct sphgi_set_plan {
+    const sphg_neighbors *neighbors;
+    struct sphgi_columns volume;
+    const struct sphgi_stream *streams; /* sphgi_plan.stream_count of them */
+};
+
+struct sphgi_field_plan {
+    sphg_shape shape;
+    sphg_form form;
+    bool accumulate, differentiates; /* gradient, divergence or curl is wanted */
+    int32_t components;
+    int32_t stream, streams;     /* rows of A_j */
+    int32_t sum;                 /* first of components * d sums of A times a gradient */
+    int32_t value_sum;           /* first of components sums of A Phi, -1: not wanted */
+    int32_t at_target;           /* first of the lanes that hold A_i */
+    struct sphgi_columns target; /* A_i */
+    struct sphgi_columns value, gradient, divergence, curl;
+};
+
+struct sphgi_plan {
+    struct sphgi_scheme scheme;
+    sphg_type type;
+    int32_t dimension, target_count;
+    int32_t set_count, field_count, stream_count;
+    struct sphgi_set_plan *sets;
+    struct sphgi_field_plan *fields;
+    int32_t own_set; /* that the targets are part of, or -1 */
+
+    struct sphgi_columns target_volume, target_density, target_correction;
+    struct sphgi_columns own_volume; /* V of the targets as sources */
+    struct sphgi_columns correction, rank, lambda_min;
+    sphg_stats *stats;
+
+    bool computes;          /* corrections, in this call */
+    bool corrects;          /* results are multiplied with a correction, computed or given */
+    bool classic, weighted; /* weighted: V_j stands in the classic weight */
+    bool differentiates, transposes[2]; /* any field; [0] adjoint, [1] symmetric */
+    bool wants_value;
+    bool mean_volume;                          /* MLS without volumes at the targets */
+    int32_t correction_stream, density_stream; /* -1: not needed */
+    int32_t sums;
+    int32_t moment_sum, volume_sum;
+    int32_t vector_sum[2]; /* of adjoint and symmetric: sum G_ij, sum rho_j G_ij */
+    int32_t target_lanes;  /* numbers of all A_i */
+};
+
+enum sphgi_purpose {
+    SPHGI_FOR_RESULTS,
+    SPHGI_FOR_PAIRS,         /* which there are */
+    SPHGI_FOR_PAIR_GRADIENTS /* ... and their G_ij */
+};
+
+/* Everything in request that is wrong is refused here. The plan lives in context->plan. */
+sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *scheme,
+                            const sphg_request *request, enum sphgi_purpose purpose,
+                            struct sphgi_plan *plan);
+
+#endif

@@ -1,0 +1,411 @@
+/* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
+#include "check.h"
+#include "finish.h"
+#include "kernel.h"
+#include "parallel.h"
+#include "svd.h"
+#include "view.h"
+#include <math.h>
+#include <string.h>
+
+enum { GRAIN = 64 /* groups of lanes */ };
+
+/* What the batches share: one group of lanes after the other. */
+struct batch {
+    sphg_context *context;
+    const struct sphgi_passes *passes;
+    sphg_type type;
+    int32_t count, dimension;
+    struct sphgi_columns in, out[3];
+    /* inversion */
+    struct sphgi_threshold threshold;
+    const struct sphgi_scheme *scheme;
+    struct sphgi_columns volume, rank;
+    struct sphgi_tally *tallies; /* one per worker */
+};
+
+#define LANES_BUFFER(name, numbers)                                                                \
+    unsigned char name[(numbers)*SPHGI_LANES_MOST * sizeof(double)]                                \
+        __attribute__((aligned(SPHGI_ALIGNMENT)))
+
+static int32_t group_count(const struct batch *b)
+{
+    return (int32_t)(((int64_t)b->count + b->passes->lanes - 1) / b->passes->lanes);
+}
+
+/* Items of group g; returns how many. */
+static int32_t items_of(const struct batch *b, int32_t g, int32_t *items)
+{
+    const int32_t lanes = b->passes->lanes, first = g * lanes;
+    const int32_t count = sphgi_min32(lanes, b->count - first);
+    for (int32_t l = 0; l < lanes; ++l)
+        items[l] = first + l;
+    return count;
+}
+
+static double lane_get(const struct batch *b, const void *lanes, int32_t number, int32_t lane)
+{
+    const int32_t k = number * b->passes->lanes + lane;
+    return b->type == SPHG_F64 ? ((const double *)lanes)[k] : (double)((const float *)lanes)[k];
+}
+
+static void lane_set(const struct batch *b, void *lanes, int32_t number, int32_t lane, double x)
+{
+    const int32_t k = number * b->passes->lanes + lane;
+    if (b->type == SPHG_F64)
+        ((double *)lanes)[k] = x;
+    else
+        ((float *)lanes)[k] = (float)x;
+}
+
+/* ---- Moments -------------------------------------------------------------------------------- */
+
+static bool volumes_are_valid(const struct batch *b, const void *volume, int32_t count)
+{
+    for (int32_t l = 0; l < count; ++l) {
+        const double v = lane_get(b, volume, 0, l);
+        if (!(v >= 0) || !isfinite(v))
+            return false;
+    }
+    return true;
+}
+
+/* moments = factor * ours; see sphgi_table_scales(): the inverse takes the same factor. */
+static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct batch *b = data;
+    const struct sphgi_passes *p = b->passes;
+    const double factor = sphgi_table_scales(b->scheme).value;
+    const int32_t numbers = b->in.count;
+    const double per_volume = sphgi_power(1 / b->scheme->radius, b->dimension);
+    struct sphgi_tally *tally = &b->tallies[worker];
+    LANES_BUFFER(moments, 6);
+    LANES_BUFFER(correction, 6);
+    LANES_BUFFER(volume, 1);
+    LANES_BUFFER(lambda_min, 1);
+    for (int32_t g = begin; g < end; ++g) {
+        int32_t items[SPHGI_LANES_MOST];
+        struct sphgi_verdict verdict;
+        const int32_t count = items_of(b, g, items);
+        p->load_lanes(&b->in, items, count, moments);
+        p->scale(numbers, moments, factor, NULL, moments);
+        if (b->volume.count) {
+            p->load_lanes(&b->volume, items, count, volume);
+            tally->bad_volume |= !volumes_are_valid(b, volume, count);
+            p->scale(1, volume, per_volume, NULL, volume);
+        }
+        p->invert(&b->threshold, moments, b->volume.count ? volume : NULL, correction, lambda_min,
+                  &verdict);
+        p->scale(numbers, correction, factor, NULL, correction);
+        sphgi_tally_verdict(tally, &verdict, lambda_min, b->type, count);
+        if (b->out[0].count)
+            p->store_lanes(&b->out[0], items, count, correction, false);
+        if (b->out[1].count)
+            p->store_lanes(&b->out[1], items, count, lambda_min, false);
+        for (int32_t l = 0; b->rank.count && l < count; ++l)
+            *(uint8_t *)(uintptr_t)(b->rank.at[0] + items[l] * b->rank.stride) = verdict.rank[l];
+    }
+}
+
+static sphg_result check_batch(struct sphgi_checker checker, const sphg_view *view,
+                               const char *name, int32_t numbers, const struct batch *b,
+                               enum sphgi_use use, sphg_type type, bool required)
+{
+    const struct sphgi_expected expected = {.name = name,
+                                            .type = type,
+                                            .numbers = numbers,
+                                            .dimension = b->dimension,
+                                            .count = b->count,
+                                            .use = use,
+                                            .required = required && b->count > 0};
+    return sphgi_check_view(checker, view, &expected);
+}
+
+/* The type of a batch is that of its matrices. */
+static sphg_result begin_batch(struct sphgi_checker checker, const sphg_view *matrices,
+                               const char *name, int32_t count, struct batch *b)
+{
+    sphg_context *context = checker.context;
+    if (count < 0)
+        return sphgi_fail(context, SPHG_ERROR_ARGUMENT, "%s: count is %d", checker.function,
+                          (int)count);
+    b->context = context;
+    b->count = count;
+    b->type = matrices->x ? matrices->type : SPHG_F32;
+    if (b->type != SPHG_F32 && b->type != SPHG_F64)
+        return sphgi_fail(context, SPHG_ERROR_TYPE, "%s: %s.type is %d, must be 1 (f32) or 2 (f64)",
+                          checker.function, name, (int)b->type);
+    b->passes = sphgi_passes_of(context, b->type);
+    return SPHG_OK;
+}
+
+static sphg_result check_inversion(struct sphgi_checker checker, const struct sphgi_scheme *scheme,
+                                   const sphg_view *moments, const sphg_view *volume,
+                                   const sphg_inversion *wanted, struct batch *b)
+{
+    const char *f = checker.function;
+    if (scheme->method == SPHG_PLAIN || sphgi_is_classic(scheme->method))
+        return sphgi_fail(checker.context, SPHG_ERROR_UNSUPPORTED,
+                          "%s: scheme.method is %d, only KGC, MLS and RKPM have moments", f,
+                          (int)scheme->method);
+    const bool mls = scheme->method == SPHG_MLS;
+    const int32_t numbers = sphgi_correction_width(scheme->method, scheme->dimension);
+    sphg_result result = sphgi_check_range(checker, scheme, b->type);
+    if (!result)
+        result = check_batch(checker, moments, "moments", numbers, b, SPHGI_INPUT, b->type, true);
+    if (!result)
+        result = check_batch(checker, volume, "volume", 1, b, SPHGI_INPUT, b->type, mls);
+    if (!result)
+        result = check_batch(checker, &wanted->correction, "wanted.correction", numbers, b,
+                             SPHGI_OUTPUT, b->type, false);
+    if (!result)
+        result = check_batch(checker, &wanted->lambda_min, "wanted.lambda_min", 1, b, SPHGI_OUTPUT,
+                             b->type, false);
+    if (!result)
+        result =
+            check_batch(checker, &wanted->rank, "wanted.rank", 1, b, SPHGI_OUTPUT, SPHG_U8, false);
+    if (result)
+        return result;
+    b->in = sphgi_flat_columns(moments, numbers);
+    b->out[0] = sphgi_flat_columns(&wanted->correction, numbers);
+    b->out[1] = sphgi_flat_columns(&wanted->lambda_min, 1);
+    b->rank = sphgi_flat_columns(&wanted->rank, 1);
+    if (mls)
+        b->volume = sphgi_flat_columns(volume, 1);
+    const bool in_place =
+        moments->x == wanted->correction.x && moments->stride == wanted->correction.stride;
+    const size_t size = sphgi_size_of_type(b->type);
+    const struct sphgi_extent extents[] = {
+        {"moments", in_place ? (struct sphgi_columns){.count = 0} : b->in, b->count, size, false},
+        {"volume", b->volume, b->count, size, false},
+        {"wanted.correction", b->out[0], b->count, size, true},
+        {"wanted.lambda_min", b->out[1], b->count, size, true},
+        {"wanted.rank", b->rank, b->count, 1, true}};
+    return sphgi_check_overlap(checker, extents, 5);
+}
+
+static sphg_result run_inversion(struct sphgi_checker checker, struct batch *b, sphg_stats *stats)
+{
+    sphg_context *context = checker.context;
+    if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
+                       sizeof *b->tallies))
+        return sphgi_fail_memory(context, checker.function);
+    b->tallies = context->workers.data;
+    struct sphgi_tally total;
+    sphgi_tally_clear(&total);
+    for (int32_t t = 0; t < context->threads; ++t)
+        sphgi_tally_clear(&b->tallies[t]);
+    sphgi_parallel_for(context, invert_task, b, group_count(b), GRAIN);
+    for (int32_t t = 0; t < context->threads; ++t)
+        sphgi_tally_add(&total, &b->tallies[t]);
+    if (stats)
+        *stats = total.stats;
+    if (total.bad_volume && !context->config.trusted)
+        return sphgi_fail(context, SPHG_ERROR_VOLUME, "%s: a volume is negative or not finite",
+                          checker.function);
+    return SPHG_OK;
+}
+
+sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme, int32_t count,
+                                sphg_view moments, sphg_view volume, const sphg_inversion *wanted)
+{
+    const struct sphgi_checker checker = {context, "sphg_invert_moments"};
+    struct sphgi_scheme checked = {0};
+    struct batch batch = {.scheme = &checked};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_scheme(checker, scheme, &checked);
+    if (!result)
+        result = sphgi_check_pointer(checker, wanted, "wanted");
+    if (!result)
+        result = begin_batch(checker, &moments, "moments", count, &batch);
+    batch.dimension = checked.dimension;
+    batch.threshold =
+        (struct sphgi_threshold){checked.policy, checked.threshold, checked.dimension};
+    if (!result)
+        result = check_inversion(checker, &checked, &moments, &volume, wanted, &batch);
+    if (!result)
+        result = run_inversion(checker, &batch, wanted->stats);
+    return sphgi_leave(context, result);
+}
+
+/* ---- Eigenvalues ---------------------------------------------------------------------------- */
+
+/* Powers of two that keep products of entries in range; f32 is widened anyway. */
+static void scale_lanes(const struct batch *b, void *matrices, int32_t numbers, int *exponents)
+{
+    for (int32_t l = 0; l < b->passes->lanes; ++l) {
+        double largest = 0;
+        exponents[l] = 0;
+        for (int32_t k = 0; k < numbers; ++k)
+            largest = fmax(largest, fabs(lane_get(b, matrices, k, l)));
+        if (b->type == SPHG_F32 || !(largest > 0) || !isfinite(largest))
+            continue;
+        frexp(largest, &exponents[l]);
+        for (int32_t k = 0; k < numbers; ++k)
+            lane_set(b, matrices, k, l, ldexp(lane_get(b, matrices, k, l), -exponents[l]));
+    }
+}
+
+struct eigen {
+    double value[3], vector[3][3]; /* vector[column][row] */
+};
+
+static void swap_pair(struct eigen *e, int32_t a, int32_t b)
+{
+    const struct eigen held = *e;
+    e->value[a] = held.value[b];
+    e->value[b] = held.value[a];
+    memcpy(e->vector[a], held.vector[b], sizeof e->vector[a]);
+    memcpy(e->vector[b], held.vector[a], sizeof e->vector[b]);
+}
+
+/* Descending, and det Q = 1: rotations give +1, each exchange turns it over. */
+static void order_pairs(struct eigen *e, int32_t d)
+{
+    bool odd = false;
+    for (int32_t pass = 0; pass + 1 < d; ++pass)
+        for (int32_t k = 0; k + 1 < d; ++k)
+            if (e->value[k] < e->value[k + 1]) {
+                swap_pair(e, k, k + 1);
+                odd = !odd;
+            }
+    for (int32_t r = 0; odd && r < d; ++r)
+        e->vector[d - 1][r] = -e->vector[d - 1][r];
+}
+
+static void eigen_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct batch *b = data;
+    const int32_t d = b->dimension;
+    LANES_BUFFER(matrices, 6);
+    LANES_BUFFER(values, 3);
+    LANES_BUFFER(vectors, 9);
+    (void)worker;
+    for (int32_t g = begin; g < end; ++g) {
+        int32_t items[SPHGI_LANES_MOST];
+        int exponents[SPHGI_LANES_MOST];
+        const int32_t count = items_of(b, g, items);
+        b->passes->load_lanes(&b->in, items, count, matrices);
+        scale_lanes(b, matrices, b->in.count, exponents);
+        b->passes->eigen(d, matrices, values, vectors);
+        for (int32_t l = 0; l < count; ++l) {
+            struct eigen e;
+            for (int32_t c = 0; c < d; ++c) {
+                e.value[c] = ldexp(lane_get(b, values, c, l), exponents[l]);
+                for (int32_t r = 0; r < d; ++r)
+                    e.vector[c][r] = lane_get(b, vectors, r * d + c, l);
+            }
+            order_pairs(&e, d);
+            for (int32_t c = 0; c < d; ++c) {
+                lane_set(b, values, c, l, e.value[c]);
+                for (int32_t r = 0; r < d; ++r)
+                    lane_set(b, vectors, r * d + c, l, e.vector[c][r]);
+            }
+        }
+        if (b->out[0].count)
+            b->passes->store_lanes(&b->out[0], items, count, values, false);
+        if (b->out[1].count)
+            b->passes->store_lanes(&b->out[1], items, count, vectors, false);
+    }
+}
+
+static sphg_result check_shapes(struct sphgi_checker checker, struct batch *b,
+                                const sphg_view *const *views, const char *const *names,
+                                const sphg_shape *shapes, int32_t count)
+{
+    struct sphgi_extent extents[4];
+    for (int32_t k = 0; k < count; ++k) {
+        const struct sphgi_expected expected = {.name = names[k],
+                                                .type = b->type,
+                                                .shape = shapes[k],
+                                                .dimension = b->dimension,
+                                                .count = b->count,
+                                                .use = k ? SPHGI_OUTPUT : SPHGI_INPUT,
+                                                .required = !k && b->count > 0};
+        const sphg_result result = sphgi_check_view(checker, views[k], &expected);
+        if (result)
+            return result;
+        struct sphgi_columns *columns = k ? &b->out[k - 1] : &b->in;
+        *columns = sphgi_columns_of(views[k], shapes[k], b->dimension);
+        extents[k] =
+            (struct sphgi_extent){names[k], *columns, b->count, sphgi_size_of_type(b->type), k > 0};
+    }
+    return sphgi_check_overlap(checker, extents, count);
+}
+
+sphg_result sphg_eigen(sphg_context *context, int32_t dimension, int32_t count, sphg_view matrices,
+                       sphg_view values, sphg_view vectors)
+{
+    const struct sphgi_checker checker = {context, "sphg_eigen"};
+    const sphg_view *views[] = {&matrices, &values, &vectors};
+    static const char *const names[] = {"matrices", "values", "vectors"};
+    static const sphg_shape shapes[] = {SPHG_SYM_TENSOR, SPHG_VECTOR, SPHG_TENSOR};
+    struct batch batch = {.dimension = dimension};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    if (dimension != 2 && dimension != 3)
+        result = sphgi_fail(context, SPHG_ERROR_ARGUMENT, "%s: dimension is %d, must be 2 or 3",
+                            checker.function, (int)dimension);
+    if (!result)
+        result = begin_batch(checker, &matrices, "matrices", count, &batch);
+    if (!result)
+        result = check_shapes(checker, &batch, views, names, shapes, 3);
+    if (!result)
+        sphgi_parallel_for(context, eigen_task, &batch, group_count(&batch), GRAIN);
+    return sphgi_leave(context, result);
+}
+
+/* ---- SVD ------------------------------------------------------------------------------------ */
+
+static void svd_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct batch *b = data;
+    LANES_BUFFER(matrices, 9);
+    LANES_BUFFER(u, 9);
+    LANES_BUFFER(sigma, 3);
+    LANES_BUFFER(v, 9);
+    const void *results[3] = {u, sigma, v};
+    (void)worker;
+    for (int32_t g = begin; g < end; ++g) {
+        int32_t items[SPHGI_LANES_MOST];
+        const int32_t count = items_of(b, g, items);
+        b->passes->load_lanes(&b->in, items, count, matrices);
+        for (int32_t l = 0; l < count; ++l) {
+            double a[9], left[9], values[3], right[9];
+            for (int32_t k = 0; k < 9; ++k)
+                a[k] = lane_get(b, matrices, k, l);
+            sphgi_svd(a, left, values, right);
+            for (int32_t k = 0; k < 9; ++k) {
+                lane_set(b, u, k, l, left[k]);
+                lane_set(b, v, k, l, right[k]);
+            }
+            for (int32_t k = 0; k < 3; ++k)
+                lane_set(b, sigma, k, l, values[k]);
+        }
+        for (int32_t k = 0; k < 3; ++k)
+            if (b->out[k].count)
+                b->passes->store_lanes(&b->out[k], items, count, results[k], false);
+    }
+}
+
+sphg_result sphg_svd(sphg_context *context, int32_t count, sphg_view matrices, sphg_view u,
+                     sphg_view sigma, sphg_view v)
+{
+    const struct sphgi_checker checker = {context, "sphg_svd"};
+    const sphg_view *views[] = {&matrices, &u, &sigma, &v};
+    static const char *const names[] = {"matrices", "u", "sigma", "v"};
+    static const sphg_shape shapes[] = {SPHG_TENSOR, SPHG_TENSOR, SPHG_VECTOR, SPHG_TENSOR};
+    struct batch batch = {.dimension = 3};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = begin_batch(checker, &matrices, "matrices", count, &batch);
+    if (!result)
+        result = check_shapes(checker, &batch, views, names, shapes, 4);
+    if (!result)
+        sphgi_parallel_for(context, svd_task, &batch, group_count(&batch), GRAIN);
+    return sphgi_leave(context, result);
+}

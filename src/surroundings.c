@@ -1,0 +1,114 @@
+/* What lies around a block of the grid. */
+#include "grid.h"
+
+/* The staged cells along one axis: one before the block, the block, one behind it. */
+struct line {
+    int64_t block[SPHGI_STAGED_WIDTH_MOST];
+    int32_t local[SPHGI_STAGED_WIDTH_MOST];
+    int32_t count;
+};
+
+static struct line line_of(const struct sphgi_axis *axis, int64_t block, bool used)
+{
+    struct line line = {.count = 1, .block = {block}};
+    const int64_t length = (int64_t)1 << axis->shift;
+    if (!used)
+        return line;
+    line.count = (int32_t)length + 2;
+    for (int32_t k = 0; k < line.count; ++k) {
+        int64_t cell = block * length + k - 1;
+        if (axis->cells)
+            cell = (cell % axis->cells + axis->cells) % axis->cells;
+        line.block[k] = cell >> axis->shift;
+        line.local[k] = (int32_t)(cell & (length - 1));
+    }
+    return line;
+}
+
+static int32_t find_block(const struct sphgi_grid *grid, int64_t x, int64_t y, int64_t z)
+{
+    return sphgi_find_block(grid, (const int64_t[3]){x, y, z});
+}
+
+void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
+                           struct sphgi_surroundings *around)
+{
+    const struct sphgi_lattice *lattice = &sources->lattice;
+    struct line line[3];
+    for (int32_t a = 0; a < 3; ++a)
+        line[a] = line_of(&lattice->axis[a], block[a], a < lattice->dimension);
+    const int32_t *start = sources->cell_start.data;
+    const int32_t shift_x = lattice->axis[0].shift;
+    const int32_t shift_xy = shift_x + lattice->axis[1].shift;
+    around->ranges = 0;
+    around->staged = 1;
+    int32_t row = 0;
+    for (int32_t z = 0; z < line[2].count; ++z)
+        for (int32_t y = 0; y < line[1].count; ++y, ++row) {
+            int32_t found = -1;
+            int32_t behind = -1; /* where the last range ends, if it may go on */
+            for (int32_t x = 0; x < line[0].count; ++x) {
+                around->offset[row][x] = around->staged;
+                if (x == 0 || line[0].block[x] != line[0].block[x - 1])
+                    found =
+                        find_block(sources, line[0].block[x], line[1].block[y], line[2].block[z]);
+                if (found < 0)
+                    continue;
+                const int32_t cell =
+                    line[2].local[z] << shift_xy | line[1].local[y] << shift_x | line[0].local[x];
+                const int32_t *at = start + (size_t)found * (size_t)sources->cells + cell;
+                const int32_t count = at[1] - at[0];
+                if (!count)
+                    continue;
+                if (at[0] == behind)
+                    around->count[around->ranges - 1] += count;
+                else {
+                    around->begin[around->ranges] = at[0];
+                    around->count[around->ranges++] = count;
+                }
+                behind = at[1];
+                around->staged += count;
+            }
+            around->offset[row][line[0].count] = around->staged;
+        }
+}
+
+/* Position of a cell of the block among the staged ones. */
+static void staged_position(const struct sphgi_lattice *lattice, int32_t cell, int32_t *at)
+{
+    for (int32_t a = 0; a < 3; ++a) {
+        const int32_t shift = lattice->axis[a].shift;
+        at[a] = (cell & ((1 << shift) - 1)) + (a < lattice->dimension);
+        cell >>= shift;
+    }
+}
+
+static int32_t staged_row(const struct sphgi_lattice *lattice, int32_t y, int32_t z)
+{
+    return z * ((1 << lattice->axis[1].shift) + 2) + y;
+}
+
+int32_t sphgi_candidate_runs(const struct sphgi_lattice *lattice,
+                             const struct sphgi_surroundings *around, int32_t cell, int32_t *begin,
+                             int32_t *length)
+{
+    int32_t at[3], runs = 0;
+    const struct sphgi_axis *axis = lattice->axis;
+    staged_position(lattice, cell, at);
+    for (int32_t z = at[2] + axis[2].low; z <= at[2] + axis[2].high; ++z)
+        for (int32_t y = at[1] + axis[1].low; y <= at[1] + axis[1].high; ++y) {
+            const int32_t *offset = around->offset[staged_row(lattice, y, z)];
+            begin[runs] = offset[at[0] + axis[0].low];
+            length[runs] = offset[at[0] + axis[0].high + 1] - begin[runs];
+            runs += length[runs] > 0;
+        }
+    return runs;
+}
+
+int32_t sphgi_staged_cell(const struct sphgi_lattice *lattice,
+                          const struct sphgi_surroundings *around, int32_t cell)
+{
+    int32_t at[3];
+    staged_position(lattice, cell, at);
+    return around->offset[staged_row(lattice, at[1], at[2])][at[0]];
+}

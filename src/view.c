@@ -1,0 +1,53 @@
+#include "view.h"
+
+int32_t sphgi_components(sphg_shape shape, int32_t dimension)
+{
+    switch (shape) {
+    case SPHG_SCALAR:
+        return 1;
+    case SPHG_VECTOR:
+        return dimension;
+    case SPHG_SYM_TENSOR:
+        return dimension * (dimension + 1) / 2;
+    case SPHG_TENSOR:
+        return dimension * dimension;
+    }
+    return 0;
+}
+
+/* Components that stand behind one pointer; the next ones start at y and z. */
+static int32_t components_per_pointer(sphg_shape shape, int32_t dimension)
+{
+    return shape == SPHG_VECTOR ? 1 : shape == SPHG_TENSOR ? dimension : 1;
+}
+
+struct sphgi_columns sphgi_columns_of(const sphg_view *view, sphg_shape shape, int32_t dimension)
+{
+    const int32_t count = sphgi_components(shape, dimension);
+    struct sphgi_columns columns = sphgi_flat_columns(view, count);
+    const bool split = view->y && (shape == SPHG_VECTOR || shape == SPHG_TENSOR);
+    if (!columns.count || !split)
+        return columns;
+    const char *start[3] = {view->x, view->y, view->z};
+    const int32_t each = components_per_pointer(shape, dimension);
+    const size_t size = sphgi_size_of_type(view->type);
+    for (int32_t c = 0; c < count; ++c)
+        columns.at[c] = start[c / each] + (size_t)(c % each) * size;
+    return columns;
+}
+
+struct sphgi_columns sphgi_flat_columns(const sphg_view *view, int32_t count)
+{
+    struct sphgi_columns columns = {.stride = view->stride, .count = view->x ? count : 0};
+    for (int32_t c = 0; c < columns.count; ++c)
+        columns.at[c] = (const char *)view->x + (size_t)c * sphgi_size_of_type(view->type);
+    return columns;
+}
+
+struct sphgi_columns sphgi_dense_columns(const void *data, int32_t count, int32_t item_numbers,
+                                         sphg_type type)
+{
+    const size_t size = sphgi_size_of_type(type);
+    const sphg_view view = {data, NULL, NULL, (ptrdiff_t)((size_t)item_numbers * size), type};
+    return sphgi_flat_columns(&view, count);
+}

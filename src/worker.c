@@ -1,0 +1,554 @@
+#include "worker.h"
+#include "finish.h"
+#include "kernel.h"
+#include "view.h"
+#include <string.h>
+
+/* ---- Memory --------------------------------------------------------------------------------- */
+
+struct layout {
+    size_t total;
+};
+
+static size_t claim(struct layout *layout, size_t count, size_t size)
+{
+    const size_t here = layout->total;
+    layout->total += sphgi_round_up(count * size, SPHGI_ALIGNMENT);
+    return here;
+}
+
+static void *place(char *base, size_t offset)
+{
+    return base ? base + offset : NULL;
+}
+
+/* Carves the memory of one worker; base NULL: only measures. */
+static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, char *base)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const size_t size = sphgi_size_of_type(plan->type), lanes = (size_t)sweep->passes->lanes;
+    const size_t position = sphgi_size_of_type(n->position_type);
+    const size_t staged = (size_t)sphgi_max32(sweep->staged_most, SPHGI_PIECE + 1);
+    const size_t streams = (size_t)plan->stream_count, row = SPHGI_ROW * size;
+    struct layout layout = {0};
+#define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
+    CARVE(tally, 1, sizeof(struct sphgi_tally));
+    CARVE(rows, streams + 1, sizeof(void *));
+    CARVE(staged_positions, staged, SPHGI_ROW * position);
+    CARVE(staged_rows, staged * streams, row);
+    CARVE(arrays, SPHGI_ARRAYS * SPHGI_PIECE, size);
+    CARVE(masked_ids, SPHGI_PIECE, sizeof(uint32_t));
+    CARVE(clean_ids, SPHGI_PIECE, sizeof(uint32_t));
+    CARVE(local_items, SPHGI_PIECE, sizeof(uint32_t));
+    CARVE(partial, (size_t)plan->sums * lanes * lanes, size);
+    CARVE(reduced, (size_t)plan->sums * lanes, size);
+    CARVE(at_target, (size_t)plan->target_lanes * lanes, size);
+    CARVE(raw, 16 * lanes, size);
+    CARVE(coefficients, 16 * lanes, size);
+    CARVE(lambda_min, lanes, size);
+    CARVE(volume, lanes, size);
+    CARVE(density, lanes, size);
+    CARVE(self, lanes, size);
+    CARVE(jacobian, 27 * lanes, size);
+    CARVE(contracted, 6 * lanes, size);
+    CARVE(extra, 8 * lanes, size);
+    CARVE(staged_items, sweep->pairs ? staged : 0, sizeof(int32_t));
+    CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n, sphgi_finder_room(n)) : 0,
+          1);
+#undef CARVE
+    return layout.total;
+}
+
+size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
+{
+    struct sphgi_worker measured;
+    return carve(&measured, sweep, NULL);
+}
+
+void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    const struct sphgi_scheme *scheme = &plan->scheme;
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const int32_t d = plan->dimension;
+    const double sigma = sphgi_kernel_sigma(scheme->kernel, d);
+    const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
+    const bool by_value = scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM;
+    *w = (struct sphgi_worker){.sweep = sweep, .passes = sweep->passes};
+    carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
+    w->gather = (struct sphgi_gather){.inverse_h = 1 / scheme->radius,
+                                      .inverse_volume = sphgi_power(1 / scheme->radius, d),
+                                      .cutoff = scheme->radius,
+                                      .periodic = n->periodic,
+                                      .dimension = d};
+    memcpy(w->gather.period, n->period, sizeof n->period);
+    w->gather.superset = n->kind == SPHGI_HOST_LISTS || n->skin > 0 || scheme->radius < n->radius;
+    w->shape =
+        (struct sphgi_shape){.kernel = scheme->kernel,
+                             .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
+                             .dimension = d,
+                             .w_scale = by_value ? sigma / mu2 : sigma,
+                             .value_scale = sigma};
+    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d};
+    w->piece.arrays = w->arrays;
+    w->piece.wide = false;
+}
+
+/* ---- Pairs into sums ------------------------------------------------------------------------ */
+
+static char *partial_at(const struct sphgi_worker *w, int32_t sum)
+{
+    const size_t lanes = (size_t)w->passes->lanes;
+    return w->partial + (size_t)sum * lanes * lanes * sphgi_size_of_type(w->sweep->plan->type);
+}
+
+static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *field,
+                     enum sphgi_array gradient, const char *at_target)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    for (int32_t k = 0; k < field->streams; ++k) {
+        const int32_t first = k * SPHGI_ROW;
+        const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
+        w->passes->sum_field(&w->piece, plan->dimension, gradient, w->rows[field->stream + k],
+                             count, sphgi_lane(w, (char *)(uintptr_t)at_target, first),
+                             partial_at(w, field->sum + first * plan->dimension));
+    }
+}
+
+/* The target's own value is subtracted in the difference form; elsewhere 0 is. */
+static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const char *zeros = w->jacobian; /* free until the group is finished */
+    const char *own = sphgi_lane(w, w->at_target, field->at_target);
+    sum_rows(w, field, SPHGI_GX, field->form == SPHG_DIFFERENCE ? own : zeros);
+}
+
+/* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
+static void sum_transposed(struct sphgi_worker *w, bool symmetric)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const bool own_volume = plan->scheme.method == SPHG_MLS || plan->classic;
+    const enum sphgi_weight weight =
+        symmetric ? (own_volume ? SPHGI_WEIGHT_V_PER_DENSITY : SPHGI_WEIGHT_PER_DENSITY)
+                  : (own_volume ? SPHGI_WEIGHT_V : SPHGI_WEIGHT_ONE);
+    const void *density = plan->density_stream < 0 ? NULL : w->rows[plan->density_stream];
+    const void *table[4] = {NULL, NULL, NULL, NULL};
+    const int32_t streams = plan->correction_stream < 0 ? 0
+                            : plan->classic             ? plan->dimension + 1
+                                                        : plan->dimension - 1;
+    for (int32_t k = 0; k < streams; ++k)
+        table[k] = w->rows[plan->correction_stream + k];
+    if (plan->classic) {
+        const struct sphgi_scales host = sphgi_table_scales(&plan->scheme);
+        const struct sphgi_scales ours = {1 / host.value, 1 / host.slope};
+        w->passes->transposed_classic(&w->piece, plan->dimension, table, &ours,
+                                      plan->weighted ? w->volume : NULL, density, weight);
+    } else
+        w->passes->transposed(&w->piece, plan->dimension, table, density, weight);
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (field->differentiates && field->form == (symmetric ? SPHG_SYMMETRIC : SPHG_ADJOINT))
+            sum_rows(w, field, SPHGI_TX, w->jacobian);
+    }
+    w->passes->sum_vectors(&w->piece, plan->dimension, symmetric ? density : NULL,
+                           partial_at(w, plan->vector_sum[symmetric]));
+}
+
+static void sum_fields(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (plan->classic && plan->corrects)
+        w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted, w->coefficients);
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (field->differentiates && field->form <= SPHG_DIRECT)
+            sum_forward(w, field);
+        for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
+            w->passes->sum_value(&w->piece, w->rows[field->stream + s],
+                                 sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
+                                 partial_at(w, field->value_sum + s * SPHGI_ROW));
+    }
+    for (int symmetric = 0; symmetric < 2; ++symmetric)
+        if (plan->transposes[symmetric])
+            sum_transposed(w, symmetric);
+}
+
+static uint32_t id_at(const struct sphgi_piece *piece, int32_t part, int32_t k)
+{
+    return piece->wide ? ((const uint32_t *)piece->ids[part])[k]
+                       : ((const uint16_t *)piece->ids[part])[k];
+}
+
+static void put_pair(const struct sphgi_worker *w, int64_t place, int32_t source, int32_t at)
+{
+    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
+    const size_t size = sphgi_size_of_type(w->sweep->plan->type);
+    pairs->indices[place] = source;
+    for (int32_t a = 0; a < pairs->gradient.count; ++a)
+        memcpy((char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
+               w->arrays + ((size_t)(SPHGI_GX + a) * SPHGI_PIECE + (size_t)at) * size, size);
+}
+
+/* Hands on the pairs inside the cutoff; counts them in any case. */
+static void write_pairs(struct sphgi_worker *w)
+{
+    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
+    const struct sphgi_piece *piece = &w->piece;
+    if (pairs->gradient.count)
+        w->passes->pair_gradients(
+            piece, w->sweep->plan->dimension,
+            w->sweep->plan->classic || !w->sweep->plan->corrects ? NULL : w->coefficients,
+            w->gather.inverse_h);
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        const int32_t lane = piece->lane[p];
+        const int32_t row = pairs->row_of_target[w->group.target[lane]];
+        for (int32_t k = 0; k < piece->count[p]; ++k) {
+            const uint32_t id = id_at(piece, p, k);
+            if (w->gather.superset && id == w->gather.dummy)
+                continue;
+            if (pairs->offsets)
+                put_pair(w, pairs->offsets[row] + w->written[lane],
+                         w->items ? w->items[id] : (int32_t)id, piece->begin[p] + k);
+            ++w->written[lane];
+        }
+    }
+}
+
+static void evaluate_piece(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    struct sphgi_piece *piece = &w->piece;
+    const int32_t count = piece->begin[piece->parts];
+    if (plan->classic || plan->wants_value || plan->mean_volume)
+        p->shape_weights(&w->shape, piece->arrays, count);
+    if (!plan->classic && (plan->wants_value || plan->mean_volume))
+        p->shape_values(piece->arrays, count);
+    if (!plan->classic && (plan->differentiates || plan->computes))
+        p->shape_vectors(&w->shape, piece->arrays, count);
+    if (w->summing & SPHGI_SUM_MOMENTS) {
+        if (plan->classic)
+            p->sum_classic(piece, plan->dimension, plan->weighted, partial_at(w, plan->moment_sum));
+        else
+            p->sum_moments(piece, plan->dimension, partial_at(w, plan->moment_sum));
+        if (plan->mean_volume)
+            p->sum_volume(piece, partial_at(w, plan->volume_sum));
+    }
+    if (w->summing & SPHGI_SUM_FIELDS)
+        sum_fields(w);
+    if ((w->summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)
+        write_pairs(w);
+    ++w->pieces;
+}
+
+static void empty_piece(struct sphgi_worker *w)
+{
+    w->piece.parts = 0;
+    w->piece.begin[0] = 0;
+}
+
+/* ---- A group -------------------------------------------------------------------------------- */
+
+static void load_targets(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_group *g = &w->group;
+    const struct sphgi_passes *p = w->passes;
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        char *to = sphgi_lane(w, w->at_target, field->at_target);
+        if (field->target.count)
+            p->load_lanes(&field->target, g->target, g->lanes, to);
+        else
+            memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
+    }
+    if (plan->transposes[0] || plan->transposes[1]) {
+        if (plan->target_volume.count) {
+            p->load_lanes(&plan->target_volume, g->target, g->lanes, w->volume);
+            p->scale(1, w->volume, w->gather.inverse_volume, NULL, w->volume);
+        }
+        if (plan->target_density.count)
+            p->load_lanes(&plan->target_density, g->target, g->lanes, w->density);
+    }
+    memset(w->jacobian, 0, (size_t)(sphgi_lane(w, w->jacobian, 27) - w->jacobian));
+}
+
+/* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
+ * formed; the sums of the linearised methods are multiplied with them at the end. */
+static bool needs_coefficients_first(const struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    return (plan->classic || w->sweep->pairs) && (w->sweep->steps & SPHGI_SUM_FIELDS) &&
+           plan->corrects;
+}
+
+void sphgi_group_begin(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const size_t size = sphgi_size_of_type(plan->type), lanes = (size_t)w->passes->lanes;
+    memset(w->partial, 0, (size_t)plan->sums * lanes * lanes * size);
+    load_targets(w);
+    w->pieces = 0;
+    memset(w->written, 0, sizeof w->written);
+    empty_piece(w);
+    w->summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
+    if (needs_coefficients_first(w)) {
+        if (w->summing & SPHGI_SUM_MOMENTS)
+            w->summing = SPHGI_SUM_MOMENTS;
+        else
+            sphgi_load_corrections(w);
+    }
+}
+
+/* Copies the rows behind clean ids, so that they can be read like staged ones; ids become places.
+ */
+static void make_local(struct sphgi_worker *w, uint32_t *rows, int32_t count, int32_t at)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const size_t position = SPHGI_ROW * sphgi_size_of_type(n->position_type);
+    const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
+    const bool searched = n->kind == SPHGI_SEARCHED;
+    char *positions = w->staged_positions + (size_t)at * position;
+    int32_t *items = (int32_t *)(void *)w->local_items + at;
+    for (int32_t k = 0; k < count; ++k) {
+        memcpy(positions + (size_t)k * position,
+               (const char *)n->sources.rows.data + (size_t)rows[k] * position, position);
+        items[k] = searched ? ((const int32_t *)n->sources.order.data)[rows[k]] : (int32_t)rows[k];
+    }
+    if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
+            positions, &sweep->set->volume, items, 0, count, positions))
+        w->tally->bad_volume = true;
+    for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
+        const struct sphgi_stream *stream = &sweep->set->streams[s];
+        char *to = w->staged_rows + ((size_t)s * (size_t)(SPHGI_PIECE + 1) + (size_t)at) * row;
+        w->passes->load_rows(&stream->columns, items, 0, count, stream->first,
+                             stream->columns.count ? stream->count : 0, to);
+    }
+    for (int32_t k = 0; k < count; ++k)
+        rows[k] = (uint32_t)(at + k);
+}
+
+/* Drops the target itself and what is no source; returns what is left, packed into `clean`. */
+static int32_t clean_list(struct sphgi_worker *w, int32_t target, const int32_t *list,
+                          int32_t count, uint32_t *clean)
+{
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    const uint32_t mask = n->lists.index_mask ? (uint32_t)n->lists.index_mask : UINT32_MAX;
+    const uint32_t sources = (uint32_t)n->source_count;
+    const uint32_t self = n->part_of ? (uint32_t)target : UINT32_MAX;
+    int32_t kept = 0;
+    bool bad = false;
+    for (int32_t k = 0; k < count; ++k) {
+        const uint32_t id = (uint32_t)list[k] & mask;
+        clean[kept] = id;
+        bad |= id >= sources;
+        kept += id < sources && id != self;
+    }
+    struct sphgi_tally *tally = w->tally;
+    if (bad && (tally->bad_target < 0 || target < tally->bad_target)) {
+        tally->bad_target = target;
+        for (int32_t k = count - 1; k >= 0; --k)
+            if (((uint32_t)list[k] & mask) >= sources)
+                tally->bad_index = (int32_t)((uint32_t)list[k] & mask); /* -1 reads as -1 */
+    }
+    return kept;
+}
+
+/* One part of the piece: pairs of one lane, at most what is left of it. */
+static void add_part(struct sphgi_worker *w, int32_t lane, const void *ids, int32_t count,
+                     bool wide)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    struct sphgi_piece *piece = &w->piece;
+    const int32_t at = piece->begin[piece->parts];
+    const int32_t padded = (int32_t)sphgi_round_up((size_t)count, SPHGI_PAD);
+    const size_t id_size = wide ? sizeof(uint32_t) : sizeof(uint16_t);
+    char *masked = w->masked_ids + (size_t)at * id_size;
+    sweep->position_passes->gather[sweep->plan->type == SPHG_F64](
+        &w->gather, w->group.x[lane], ids, wide, count, w->arrays, at, masked);
+    piece->wide = wide;
+    piece->ids[piece->parts] = w->gather.superset ? masked : ids;
+    piece->lane[piece->parts] = lane;
+    piece->count[piece->parts] = count;
+    piece->begin[++piece->parts] = at + padded;
+}
+
+static int32_t room_of(struct sphgi_worker *w, int64_t wanted)
+{
+    struct sphgi_piece *piece = &w->piece;
+    const int32_t room = SPHGI_PIECE - piece->begin[piece->parts];
+    const bool fits = piece->parts < SPHGI_LANES_MOST && wanted <= room;
+    if (!fits && piece->parts) {
+        evaluate_piece(w);
+        empty_piece(w);
+        return SPHGI_PIECE;
+    }
+    return room;
+}
+
+/* Ids in the host's numbers, or in those of rows: cleaned, and copied if rows are local. */
+static void add_listed(struct sphgi_worker *w, int32_t lane, const void *ids, int64_t count)
+{
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    while (count > 0) {
+        const int32_t part = (int32_t)(count < SPHGI_PIECE ? count : SPHGI_PIECE);
+        room_of(w, part);
+        const int32_t at = w->piece.begin[w->piece.parts];
+        uint32_t *clean = (uint32_t *)(void *)w->clean_ids + at;
+        int32_t kept = part;
+        if (n->kind == SPHGI_HOST_LISTS)
+            kept = clean_list(w, w->group.target[lane], ids, part, clean);
+        else
+            memcpy(clean, ids, (size_t)part * sizeof *clean);
+        if (w->local)
+            make_local(w, clean, kept, at);
+        const int32_t padded = (int32_t)sphgi_round_up((size_t)kept, SPHGI_PAD);
+        for (int32_t k = kept; k < padded; ++k)
+            clean[k] = w->gather.dummy;
+        if (kept)
+            add_part(w, lane, clean, kept, true);
+        ids = (const char *)ids + (size_t)part * sizeof(int32_t);
+        count -= part;
+    }
+}
+
+void sphgi_group_add(struct sphgi_worker *w, int32_t lane, const void *ids, int64_t count,
+                     bool wide)
+{
+    if (wide) {
+        add_listed(w, lane, ids, count);
+        return;
+    }
+    while (count > 0) {
+        const int32_t room = room_of(w, count);
+        const int32_t part = (int32_t)(count < room ? count : room);
+        add_part(w, lane, ids, part, false);
+        ids = (const char *)ids + (size_t)part * sizeof(uint16_t);
+        count -= part;
+    }
+}
+
+static void reduce(struct sphgi_worker *w)
+{
+    w->passes->reduce(w->partial, w->sweep->plan->sums, w->reduced);
+}
+
+/* After all pairs were added: is another round needed? Classic, corrections and fields in one
+ * sweep: the first round gives the coefficients. If one piece held everything, the second round
+ * reads it again by itself. */
+bool sphgi_group_again(struct sphgi_worker *w)
+{
+    const bool rest = w->piece.parts > 0;
+    if (rest)
+        evaluate_piece(w);
+    const bool first_round = needs_coefficients_first(w) && (w->sweep->steps & SPHGI_SUM_MOMENTS) &&
+                             w->summing == SPHGI_SUM_MOMENTS;
+    if (!first_round)
+        return false;
+    reduce(w);
+    sphgi_finish_corrections(w);
+    w->summing = SPHGI_SUM_FIELDS;
+    if (w->pieces == 0 || (w->pieces == 1 && rest)) {
+        if (rest)
+            evaluate_piece(w);
+        empty_piece(w);
+        return false;
+    }
+    empty_piece(w);
+    return true;
+}
+
+/* ---- The arena: sums of several source sets ------------------------------------------------- */
+
+static void each_arena_part(struct sphgi_worker *w, bool load)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const struct sphgi_plan *plan = sweep->plan;
+    const size_t size = sphgi_size_of_type(plan->type);
+    for (int32_t s = 0; s < plan->sums; s += SPHGI_COLUMNS_MOST) {
+        const int32_t count = sphgi_min32(SPHGI_COLUMNS_MOST, plan->sums - s);
+        const struct sphgi_columns columns =
+            sphgi_dense_columns(sweep->arena + (size_t)s * size, count, plan->sums, plan->type);
+        char *lanes = sphgi_lane(w, w->reduced, s);
+        if (load)
+            w->passes->load_lanes(&columns, w->group.target, w->group.lanes, lanes);
+        else
+            w->passes->store_lanes(&columns, w->group.target, w->group.lanes, lanes,
+                                   sweep->set_number > 0);
+    }
+}
+
+static void finish(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const unsigned steps = w->sweep->steps;
+    const bool done = needs_coefficients_first(w); /* corrections, before the fields */
+    if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
+        sphgi_finish_corrections(w);
+    else if (!done && plan->corrects)
+        sphgi_load_corrections(w);
+    if (steps & SPHGI_SUM_FIELDS)
+        sphgi_finish_fields(w);
+}
+
+/* The pair of a target with itself, whose classic gradient is not 0. */
+static void write_self(struct sphgi_worker *w, int32_t lane)
+{
+    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const int32_t target = w->group.target[lane], d = plan->dimension;
+    const int64_t place = pairs->offsets[pairs->row_of_target[target]] + w->written[lane];
+    const size_t size = sphgi_size_of_type(plan->type);
+    pairs->indices[place] = target;
+    if (!pairs->gradient.count)
+        return;
+    sphgi_self_gradient(w, w->extra);
+    for (int32_t a = 0; a < d; ++a)
+        memcpy((char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
+               sphgi_lane(w, w->extra, a) + (size_t)lane * size, size);
+}
+
+static void finish_pairs(struct sphgi_worker *w)
+{
+    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
+    for (int32_t l = 0; l < w->group.lanes; ++l) {
+        if (w->sweep->plan->classic && w->sweep->plan->own_set >= 0) {
+            if (pairs->offsets)
+                write_self(w, l);
+            ++w->written[l];
+        }
+        if (!pairs->offsets)
+            pairs->counts[pairs->row_of_target[w->group.target[l]]] = w->written[l];
+    }
+}
+
+void sphgi_group_end(struct sphgi_worker *w)
+{
+    if (w->sweep->pairs) {
+        finish_pairs(w);
+        return;
+    }
+    reduce(w);
+    if (w->sweep->steps & SPHGI_FINISH)
+        finish(w);
+    else
+        each_arena_part(w, false);
+}
+
+void sphgi_group_finish_from_arena(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    load_targets(w);
+    each_arena_part(w, true);
+    if ((w->sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes)
+        sphgi_finish_corrections(w);
+    else if (plan->corrects)
+        sphgi_load_corrections(w);
+    if (w->sweep->coefficients && (w->sweep->steps & SPHGI_SUM_MOMENTS))
+        w->passes->store_lanes(w->sweep->coefficients, w->group.target, w->group.lanes,
+                               w->coefficients, false);
+    if (w->sweep->steps & SPHGI_SUM_FIELDS)
+        sphgi_finish_fields(w);
+}

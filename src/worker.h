@@ -1,0 +1,97 @@
+/* One worker's share of a sweep: it takes groups of targets, gathers their pairs piece by piece,
+ * sums, and finishes the group. */
+#ifndef SPHGI_WORKER_H
+#define SPHGI_WORKER_H
+#include "find.h"
+#include "plan.h"
+#include "tally.h"
+
+/* What one sweep over one source set does. */
+enum sphgi_step {
+    SPHGI_SUM_MOMENTS = 1,
+    SPHGI_SUM_FIELDS = 2,
+    SPHGI_FINISH = 4 /* write results at once; otherwise add the sums to the arena */
+};
+
+/* Where pairs go that are wanted one by one (sphg_pair_gradients). */
+struct sphgi_pair_sink {
+    const int32_t *row_of_target; /* row of the output */
+    int64_t *counts;              /* first round: pairs per row */
+    const int64_t *offsets;       /* second round */
+    int32_t *indices;
+    struct sphgi_columns gradient; /* count 0: not wanted */
+};
+
+/* A sweep, the same for all its workers. */
+struct sphgi_sweep {
+    sphg_context *context;
+    const struct sphgi_plan *plan;
+    const struct sphgi_set_plan *set;
+    int32_t set_number;
+    unsigned steps;
+    const struct sphgi_passes *passes, *position_passes; /* of fields; of positions */
+    bool packed;                  /* fields and volumes stand as rows in storage order */
+    const char *packed_volume;    /* one number a source */
+    const char *packed_rows;      /* streams, source_count + 1 rows each */
+    const char *packed_positions; /* host's lists: x y z V */
+    char *arena;                  /* sums, plan->sums numbers a target */
+    const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
+    const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
+    int32_t staged_most;                      /* rows that a worker must hold */
+    char *memory;
+    size_t memory_each;
+};
+
+struct sphgi_group {
+    int32_t lanes;
+    int32_t target[SPHGI_LANES_MOST];
+    const void *x[SPHGI_LANES_MOST]; /* rows */
+};
+
+struct sphgi_worker {
+    const struct sphgi_sweep *sweep;
+    const struct sphgi_passes *passes;
+    struct sphgi_gather gather;
+    struct sphgi_shape shape;
+    struct sphgi_threshold threshold;
+    struct sphgi_piece piece;
+    struct sphgi_group group;
+    const void **rows;                 /* of each stream */
+    unsigned summing;                  /* SPHGI_SUM_..., of this pass over the group */
+    int32_t pieces;                    /* evaluated since the group began */
+    bool local;                        /* rows are copied pair by pair */
+    const int32_t *items;              /* sources behind the ids; NULL: the ids are their numbers */
+    int64_t written[SPHGI_LANES_MOST]; /* pairs of each lane so far */
+
+    /* Memory, in the order in which it is carved. */
+    struct sphgi_tally *tally;
+    char *staged_positions, *staged_rows, *arrays, *masked_ids, *clean_ids, *local_items;
+    char *partial, *reduced, *at_target, *raw, *coefficients, *lambda_min, *volume, *density;
+    char *self, *jacobian, *contracted, *extra, *staged_items;
+    char *finder_memory;
+};
+
+/* Bytes of memory of one worker; 0 on overflow. */
+size_t sphgi_worker_size(const struct sphgi_sweep *sweep);
+void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sweep,
+                       int32_t number);
+
+/* A group goes: begin; add its pairs for each round that is left; end.
+ *   do { for each lane: add } while (sphgi_group_again()); */
+void sphgi_group_begin(struct sphgi_worker *worker);
+void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids, int64_t count,
+                     bool wide);
+bool sphgi_group_again(struct sphgi_worker *worker);
+void sphgi_group_end(struct sphgi_worker *worker);
+
+/* Finishes a group whose sums stand in the arena already. */
+void sphgi_group_finish_from_arena(struct sphgi_worker *worker);
+
+/* A lane of numbers that belongs to target-side value `number` of the memory starting at base. */
+static inline char *sphgi_lane(const struct sphgi_worker *worker, char *base, int32_t number)
+{
+    const size_t size = sphgi_size_of_type(worker->sweep->plan->type);
+    return base + (size_t)number * (size_t)worker->passes->lanes * size;
+}
+
+#endif
