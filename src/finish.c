@@ -43,7 +43,7 @@ static struct sphgi_scales inverse_of(struct sphgi_scales scales)
 
 static void load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
 {
-    w->passes->load_lanes(columns, w->group.target, w->group.lanes, to);
+    w->passes->load_lanes(columns, w->group.target, to);
     w->passes->scale(1, to, w->gather.inverse_volume, NULL, to);
 }
 
@@ -67,16 +67,11 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
 static void self_weight(struct sphgi_worker *w, char *to)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_columns none = {.count = 1, .at = {NULL}};
     const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-    if (plan->own_set < 0)
-        w->passes->load_lanes(&none, NULL, 0, to);
-    else if (plan->weighted) {
+    w->passes->fill(plan->own_set < 0 ? 0 : at_zero, to);
+    if (plan->own_set >= 0 && plan->weighted) {
         load_volume(w, &plan->own_volume, to);
         w->passes->scale(1, to, at_zero, NULL, to);
-    } else {
-        w->passes->load_lanes(&none, NULL, 0, to);
-        w->passes->fill(at_zero, to);
     }
 }
 
@@ -118,10 +113,10 @@ void sphgi_load_corrections(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_group *g = &w->group;
     if (w->sweep->coefficients) {
-        w->passes->load_lanes(w->sweep->coefficients, g->target, g->lanes, w->coefficients);
+        w->passes->load_lanes(w->sweep->coefficients, g->target, w->coefficients);
         return;
     }
-    w->passes->load_lanes(&plan->target_correction, g->target, g->lanes, w->raw);
+    w->passes->load_lanes(&plan->target_correction, g->target, w->raw);
     rescale(w, w->raw, inverse_of(sphgi_table_scales(&plan->scheme)), w->coefficients);
 }
 

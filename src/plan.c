@@ -360,6 +360,7 @@ static void decide_sums(struct sphgi_plan *plan)
         plan->sums += plan->classic ? (d == 3 ? 29 : 15) : d * (d + 1) / 2;
     plan->volume_sum = plan->sums;
     plan->sums += plan->mean_volume ? 2 : 0;
+    plan->moment_sums = plan->sums;
     for (int32_t k = 0; k < 2; ++k) {
         plan->vector_sum[k] = plan->sums;
         plan->sums += plan->transposes[k] ? d : 0;

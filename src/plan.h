@@ -52,6 +52,7 @@ struct sphgi_plan {
     bool mean_volume;                          /* MLS without volumes at the targets */
     int32_t correction_stream, density_stream; /* -1: not needed */
     int32_t sums;
+    int32_t moment_sums; /* all that corrections need: they stand first */
     int32_t moment_sum, volume_sum;
     int32_t vector_sum[2]; /* of adjoint and symmetric: sum G_ij, sum rho_j G_ij */
     int32_t target_lanes;  /* numbers of all A_i */

@@ -39,7 +39,7 @@ static int32_t items_of(const struct batch *b, int32_t g, int32_t *items)
     const int32_t lanes = b->passes->lanes, first = g * lanes;
     const int32_t count = sphgi_min32(lanes, b->count - first);
     for (int32_t l = 0; l < lanes; ++l)
-        items[l] = first + l;
+        items[l] = first + (l < count ? l : 0);
     return count;
 }
 
@@ -87,10 +87,10 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
         int32_t items[SPHGI_LANES_MOST];
         struct sphgi_verdict verdict;
         const int32_t count = items_of(b, g, items);
-        p->load_lanes(&b->in, items, count, moments);
+        p->load_lanes(&b->in, items, moments);
         p->scale(numbers, moments, factor, NULL, moments);
         if (b->volume.count) {
-            p->load_lanes(&b->volume, items, count, volume);
+            p->load_lanes(&b->volume, items, volume);
             tally->bad_volume |= !volumes_are_valid(b, volume, count);
             p->scale(1, volume, per_volume, NULL, volume);
         }
@@ -287,7 +287,7 @@ static void eigen_task(void *data, int32_t begin, int32_t end, int32_t worker)
         int32_t items[SPHGI_LANES_MOST];
         int exponents[SPHGI_LANES_MOST];
         const int32_t count = items_of(b, g, items);
-        b->passes->load_lanes(&b->in, items, count, matrices);
+        b->passes->load_lanes(&b->in, items, matrices);
         scale_lanes(b, matrices, b->in.count, exponents);
         b->passes->eigen(d, matrices, values, vectors);
         for (int32_t l = 0; l < count; ++l) {
@@ -372,7 +372,7 @@ static void svd_task(void *data, int32_t begin, int32_t end, int32_t worker)
     for (int32_t g = begin; g < end; ++g) {
         int32_t items[SPHGI_LANES_MOST];
         const int32_t count = items_of(b, g, items);
-        b->passes->load_lanes(&b->in, items, count, matrices);
+        b->passes->load_lanes(&b->in, items, matrices);
         for (int32_t l = 0; l < count; ++l) {
             double a[9], left[9], values[3], right[9];
             for (int32_t k = 0; k < 9; ++k)

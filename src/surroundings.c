@@ -1,5 +1,6 @@
 /* What lies around a block of the grid. */
 #include "grid.h"
+#include <string.h>
 
 /* The staged cells along one axis: one before the block, the block, one behind it. */
 struct line {
@@ -25,9 +26,45 @@ static struct line line_of(const struct sphgi_axis *axis, int64_t block, bool us
     return line;
 }
 
-static int32_t find_block(const struct sphgi_grid *grid, int64_t x, int64_t y, int64_t z)
+/* The blocks along one line of cells in x; each is looked up once. */
+static void find_blocks(const struct sphgi_grid *grid, const struct line *line, int64_t y,
+                        int64_t z, int32_t *found)
 {
-    return sphgi_find_block(grid, (const int64_t[3]){x, y, z});
+    for (int32_t x = 0; x < line->count; ++x)
+        found[x] = x && line->block[x] == line->block[x - 1]
+                       ? found[x - 1]
+                       : sphgi_find_block(grid, (const int64_t[3]){line->block[x], y, z});
+}
+
+static bool goes_on(const struct line *line, int32_t k)
+{
+    return k && line->block[k] == line->block[k - 1];
+}
+
+/* Ranges and offsets of one row of staged cells. local: the cell's number without its x. */
+static void stage_row(const struct sphgi_grid *sources, const struct line *x_line, int32_t local,
+                      const int32_t *found, struct sphgi_surroundings *around, int32_t *offset)
+{
+    int32_t behind = -1; /* where the last range ends, if it may go on */
+    for (int32_t x = 0; x < x_line->count; ++x) {
+        offset[x] = around->staged;
+        if (found[x] < 0)
+            continue;
+        const int32_t *at = (const int32_t *)sources->cell_start.data +
+                            (ptrdiff_t)found[x] * sources->cells + local + x_line->local[x];
+        const int32_t count = at[1] - at[0];
+        if (!count)
+            continue;
+        if (at[0] == behind)
+            around->count[around->ranges - 1] += count;
+        else {
+            around->begin[around->ranges] = at[0];
+            around->count[around->ranges++] = count;
+        }
+        behind = at[1];
+        around->staged += count;
+    }
+    offset[x_line->count] = around->staged;
 }
 
 void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
@@ -35,9 +72,9 @@ void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *bloc
 {
     const struct sphgi_lattice *lattice = &sources->lattice;
     struct line line[3];
+    int32_t found[SPHGI_STAGED_ROWS_MOST][SPHGI_STAGED_WIDTH_MOST]; /* of the last rows, by y */
     for (int32_t a = 0; a < 3; ++a)
         line[a] = line_of(&lattice->axis[a], block[a], a < lattice->dimension);
-    const int32_t *start = sources->cell_start.data;
     const int32_t shift_x = lattice->axis[0].shift;
     const int32_t shift_xy = shift_x + lattice->axis[1].shift;
     around->ranges = 0;
@@ -45,31 +82,14 @@ void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *bloc
     int32_t row = 0;
     for (int32_t z = 0; z < line[2].count; ++z)
         for (int32_t y = 0; y < line[1].count; ++y, ++row) {
-            int32_t found = -1;
-            int32_t behind = -1; /* where the last range ends, if it may go on */
-            for (int32_t x = 0; x < line[0].count; ++x) {
-                around->offset[row][x] = around->staged;
-                if (x == 0 || line[0].block[x] != line[0].block[x - 1])
-                    found =
-                        find_block(sources, line[0].block[x], line[1].block[y], line[2].block[z]);
-                if (found < 0)
-                    continue;
-                const int32_t cell =
-                    line[2].local[z] << shift_xy | line[1].local[y] << shift_x | line[0].local[x];
-                const int32_t *at = start + (size_t)found * (size_t)sources->cells + cell;
-                const int32_t count = at[1] - at[0];
-                if (!count)
-                    continue;
-                if (at[0] == behind)
-                    around->count[around->ranges - 1] += count;
-                else {
-                    around->begin[around->ranges] = at[0];
-                    around->count[around->ranges++] = count;
-                }
-                behind = at[1];
-                around->staged += count;
+            if (!goes_on(&line[2], z)) {
+                if (goes_on(&line[1], y))
+                    memcpy(found[y], found[y - 1], sizeof found[y]);
+                else
+                    find_blocks(sources, &line[0], line[1].block[y], line[2].block[z], found[y]);
             }
-            around->offset[row][line[0].count] = around->staged;
+            const int32_t local = line[2].local[z] << shift_xy | line[1].local[y] << shift_x;
+            stage_row(sources, &line[0], local, found[y], around, around->offset[row]);
         }
 }
 

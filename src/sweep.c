@@ -100,30 +100,34 @@ static void stage_items(struct sphgi_worker *w, const struct sphgi_surroundings 
     w->items = (const int32_t *)(const void *)w->staged_items;
 }
 
-static void stage_block(struct sphgi_worker *w, const struct sphgi_surroundings *around)
+/* Positions with their volumes; packed rows were checked when they were packed. */
+static void stage_positions(struct sphgi_worker *w, const struct sphgi_surroundings *around)
 {
     const struct sphgi_sweep *sweep = w->sweep;
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t size = row_size(n->position_type);
-    struct sphgi_columns volume = sweep->set->volume;
-    const int32_t *order = n->sources.order.data;
-    if (sweep->packed && volume.count) {
-        volume = sphgi_dense_columns(sweep->packed_volume, 1, 1, sweep->plan->type);
-        order = NULL;
-    }
     char *to = w->staged_positions;
     memset(to, 0, size);
     to += size;
     for (int32_t r = 0; r < around->ranges; ++r) {
-        if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
-                n->sources.rows.data, &volume, order, around->begin[r], around->count[r], to))
+        const size_t count = (size_t)around->count[r];
+        if (sweep->packed)
+            memcpy(to, sweep->packed_positions + (size_t)around->begin[r] * size, count * size);
+        else if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
+                     n->sources.rows.data, &sweep->set->volume, n->sources.order.data,
+                     around->begin[r], around->count[r], to))
             w->tally->bad_volume = true;
-        to += (size_t)around->count[r] * size;
+        to += count * size;
     }
+}
+
+static void stage_block(struct sphgi_worker *w, const struct sphgi_surroundings *around)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const size_t stream_size = (size_t)around->staged * row_size(sweep->plan->type);
+    stage_positions(w, around);
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
-        stage_stream(w, around, s,
-                     w->staged_rows +
-                         (size_t)s * (size_t)around->staged * row_size(sweep->plan->type));
+        stage_stream(w, around, s, w->staged_rows + (size_t)s * stream_size);
     if (sweep->pairs)
         stage_items(w, around);
     w->gather.rows = w->staged_positions;
@@ -161,6 +165,15 @@ static bool is_active(const struct task *task, int32_t place)
     return !task->selection->active || task->selection->active[place];
 }
 
+/* The next groups' data are asked for while this one is summed. */
+static void prefetch_ahead(const struct sphgi_worker *w, int32_t place)
+{
+    enum { AHEAD = 2 * SPHGI_LANES_MOST };
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    if (place + AHEAD < n->target_count)
+        sphgi_group_prefetch(w->sweep->plan, target_at(n, place + AHEAD));
+}
+
 static void sweep_kept_block(const struct task *task, struct sphgi_worker *w, int32_t block)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
@@ -173,6 +186,7 @@ static void sweep_kept_block(const struct task *task, struct sphgi_worker *w, in
     for (int32_t c = 0; c < grid->cells; ++c) {
         const uint16_t *ids = (const uint16_t *)n->found.ids.data + cell_list[c];
         for (int32_t t = start[c]; t < start[c + 1]; ++t) {
+            prefetch_ahead(w, t);
             if (is_active(task, t))
                 add_target(w, &supply, target_at(n, t), sphgi_target_row(n, t), ids, lengths[t]);
             ids += sphgi_round_up(lengths[t], SPHGI_PAD);
@@ -373,8 +387,8 @@ static void finish_task(void *data, int32_t begin, int32_t end, int32_t number)
 
 struct packing {
     const struct sphgi_sweep *sweep;
-    char *volume, *rows, *positions;
-    const int32_t *order;
+    char *rows, *positions;
+    const int32_t *order; /* NULL: rows stand in the order of the host */
     atomic_bool bad_volume;
 };
 
@@ -382,57 +396,46 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     struct packing *packing = data;
     const struct sphgi_sweep *sweep = packing->sweep;
-    const struct sphgi_passes *p = sweep->passes;
     const sphg_neighbors *n = sweep->set->neighbors;
     const sphg_type type = sweep->plan->type;
-    const size_t size = row_size(type), number = sphgi_size_of_type(type);
-    const struct sphgi_columns *volume = &sweep->set->volume;
+    const size_t size = row_size(type);
     (void)worker;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
         const struct sphgi_stream *stream = &sweep->set->streams[s];
         const size_t at = (size_t)s * ((size_t)n->source_count + 1) + (size_t)begin;
-        p->load_rows(&stream->columns, packing->order, begin, end, stream->first,
-                     stream->columns.count ? stream->count : 0, packing->rows + at * size);
+        sweep->passes->load_rows(&stream->columns, packing->order, begin, end, stream->first,
+                                 stream->columns.count ? stream->count : 0,
+                                 packing->rows + at * size);
     }
-    if (packing->positions) {
-        const size_t place = (size_t)begin * row_size(n->position_type);
-        if (!sweep->position_passes->stage[type == SPHG_F64](
-                n->sources.rows.data, volume, NULL, begin, end - begin, packing->positions + place))
-            atomic_store(&packing->bad_volume, true);
-    } else if (volume->count)
-        for (int32_t k = begin; k < end; ++k)
-            memcpy(packing->volume + (size_t)k * number,
-                   volume->at[0] + packing->order[k] * volume->stride, number);
+    if (!sweep->position_passes->stage[type == SPHG_F64](
+            n->sources.rows.data, &sweep->set->volume, packing->order, begin, end - begin,
+            packing->positions + (size_t)begin * row_size(n->position_type)))
+        atomic_store(&packing->bad_volume, true);
 }
 
-/* Fields, volumes and (host's lists) positions as rows in storage order. */
+/* Positions with volumes, and fields, as rows in storage order. */
 static sphg_result pack(struct task *task, struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
     const sphg_neighbors *n = sweep->set->neighbors;
-    const bool listed = n->kind == SPHGI_HOST_LISTS;
     const sphg_type type = sweep->plan->type;
     const size_t rows = (size_t)n->source_count + 1, streams = (size_t)sweep->plan->stream_count;
-    const size_t volume_size = sphgi_round_up(rows * sphgi_size_of_type(type), SPHGI_ALIGNMENT);
     const size_t positions_size =
-        listed ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
+        sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT);
     if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed,
-                       volume_size + positions_size + streams * rows * row_size(type), 1))
+                       positions_size + streams * rows * row_size(type), 1))
         return SPHG_ERROR_MEMORY;
     char *memory = sweep->context->packed.data;
     struct packing packing = {.sweep = sweep,
-                              .volume = memory,
-                              .positions = listed ? memory + volume_size : NULL,
-                              .rows = memory + volume_size + positions_size,
-                              .order = listed ? NULL : n->sources.order.data};
+                              .positions = memory,
+                              .rows = memory + positions_size,
+                              .order = n->kind == SPHGI_HOST_LISTS ? NULL : n->sources.order.data};
     atomic_store(&packing.bad_volume, false);
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
     for (size_t s = 0; s < streams; ++s) /* the dummy rows */
         memset(packing.rows + ((s + 1) * rows - 1) * row_size(type), 0, row_size(type));
-    if (listed)
-        memset(packing.positions + (rows - 1) * row_size(n->position_type), 0,
-               row_size(n->position_type));
-    sweep->packed_volume = packing.volume;
+    memset(packing.positions + (rows - 1) * row_size(n->position_type), 0,
+           row_size(n->position_type));
     sweep->packed_positions = packing.positions;
     sweep->packed_rows = packing.rows;
     tally->bad_volume |= atomic_load(&packing.bad_volume);

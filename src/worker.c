@@ -50,6 +50,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(volume, lanes, size);
     CARVE(density, lanes, size);
     CARVE(self, lanes, size);
+    CARVE(zeros, 16 * lanes, size);
     CARVE(jacobian, 27 * lanes, size);
     CARVE(contracted, 6 * lanes, size);
     CARVE(extra, 8 * lanes, size);
@@ -93,6 +94,7 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d};
     w->piece.arrays = w->arrays;
     w->piece.wide = false;
+    memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
 }
 
 /* ---- Pairs into sums ------------------------------------------------------------------------ */
@@ -119,9 +121,8 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
 /* The target's own value is subtracted in the difference form; elsewhere 0 is. */
 static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
-    const char *zeros = w->jacobian; /* free until the group is finished */
     const char *own = sphgi_lane(w, w->at_target, field->at_target);
-    sum_rows(w, field, SPHGI_GX, field->form == SPHG_DIFFERENCE ? own : zeros);
+    sum_rows(w, field, SPHGI_GX, field->form == SPHG_DIFFERENCE ? own : w->zeros);
 }
 
 /* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
@@ -149,15 +150,43 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && field->form == (symmetric ? SPHG_SYMMETRIC : SPHG_ADJOINT))
-            sum_rows(w, field, SPHGI_TX, w->jacobian);
+            sum_rows(w, field, SPHGI_TX, w->zeros);
     }
     w->passes->sum_vectors(&w->piece, plan->dimension, symmetric ? density : NULL,
                            partial_at(w, plan->vector_sum[symmetric]));
 }
 
+/* Late: their cache lines were asked for when the group was filled. */
+static void load_targets(struct sphgi_worker *w)
+{
+    if (w->targets_loaded)
+        return;
+    w->targets_loaded = true;
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_group *g = &w->group;
+    const struct sphgi_passes *p = w->passes;
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        char *to = sphgi_lane(w, w->at_target, field->at_target);
+        if (field->target.count)
+            p->load_lanes(&field->target, g->target, to);
+        else
+            memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
+    }
+    if (plan->transposes[0] || plan->transposes[1]) {
+        if (plan->target_volume.count) {
+            p->load_lanes(&plan->target_volume, g->target, w->volume);
+            p->scale(1, w->volume, w->gather.inverse_volume, NULL, w->volume);
+        }
+        if (plan->target_density.count)
+            p->load_lanes(&plan->target_density, g->target, w->density);
+    }
+}
+
 static void sum_fields(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
+    load_targets(w);
     if (plan->classic && plan->corrects)
         w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted, w->coefficients);
     for (int32_t k = 0; k < plan->field_count; ++k) {
@@ -250,30 +279,6 @@ static void empty_piece(struct sphgi_worker *w)
 
 /* ---- A group -------------------------------------------------------------------------------- */
 
-static void load_targets(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
-    const struct sphgi_passes *p = w->passes;
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        char *to = sphgi_lane(w, w->at_target, field->at_target);
-        if (field->target.count)
-            p->load_lanes(&field->target, g->target, g->lanes, to);
-        else
-            memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
-    }
-    if (plan->transposes[0] || plan->transposes[1]) {
-        if (plan->target_volume.count) {
-            p->load_lanes(&plan->target_volume, g->target, g->lanes, w->volume);
-            p->scale(1, w->volume, w->gather.inverse_volume, NULL, w->volume);
-        }
-        if (plan->target_density.count)
-            p->load_lanes(&plan->target_density, g->target, g->lanes, w->density);
-    }
-    memset(w->jacobian, 0, (size_t)(sphgi_lane(w, w->jacobian, 27) - w->jacobian));
-}
-
 /* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
  * formed; the sums of the linearised methods are multiplied with them at the end. */
 static bool needs_coefficients_first(const struct sphgi_worker *w)
@@ -283,15 +288,27 @@ static bool needs_coefficients_first(const struct sphgi_worker *w)
            plan->corrects;
 }
 
+/* Lanes without a target repeat the first: they are read like the others, and never written. */
+static void pad_group(struct sphgi_group *group, int32_t lanes)
+{
+    for (int32_t l = group->lanes; l < lanes; ++l)
+        group->target[l] = group->target[0];
+}
+
+/* Sums begin at 0 with the first part of each lane. */
+static void begin_round(struct sphgi_worker *w)
+{
+    memset(w->touched, 0, sizeof w->touched);
+}
+
 void sphgi_group_begin(struct sphgi_worker *w)
 {
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const size_t size = sphgi_size_of_type(plan->type), lanes = (size_t)w->passes->lanes;
-    memset(w->partial, 0, (size_t)plan->sums * lanes * lanes * size);
-    load_targets(w);
+    pad_group(&w->group, w->passes->lanes);
+    w->targets_loaded = false;
     w->pieces = 0;
     memset(w->written, 0, sizeof w->written);
     empty_piece(w);
+    begin_round(w);
     w->summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
     if (needs_coefficients_first(w)) {
         if (w->summing & SPHGI_SUM_MOMENTS)
@@ -372,6 +389,8 @@ static void add_part(struct sphgi_worker *w, int32_t lane, const void *ids, int3
     piece->ids[piece->parts] = w->gather.superset ? masked : ids;
     piece->lane[piece->parts] = lane;
     piece->count[piece->parts] = count;
+    piece->fresh[piece->parts] = !w->touched[lane];
+    w->touched[lane] = true;
     piece->begin[++piece->parts] = at + padded;
 }
 
@@ -430,9 +449,13 @@ void sphgi_group_add(struct sphgi_worker *w, int32_t lane, const void *ids, int6
     }
 }
 
-static void reduce(struct sphgi_worker *w)
+/* Sums [first, first + count); lanes that saw no pair have none. */
+static void reduce(struct sphgi_worker *w, int32_t first, int32_t count)
 {
-    w->passes->reduce(w->partial, w->sweep->plan->sums, w->reduced);
+    for (int32_t l = 0; l < w->passes->lanes; ++l)
+        if (!w->touched[l])
+            w->passes->clear_partial(partial_at(w, first), count, l);
+    w->passes->reduce(partial_at(w, first), count, sphgi_lane(w, w->reduced, first));
 }
 
 /* After all pairs were added: is another round needed? Classic, corrections and fields in one
@@ -447,7 +470,7 @@ bool sphgi_group_again(struct sphgi_worker *w)
                              w->summing == SPHGI_SUM_MOMENTS;
     if (!first_round)
         return false;
-    reduce(w);
+    reduce(w, 0, w->sweep->plan->moment_sums);
     sphgi_finish_corrections(w);
     w->summing = SPHGI_SUM_FIELDS;
     if (w->pieces == 0 || (w->pieces == 1 && rest)) {
@@ -457,7 +480,37 @@ bool sphgi_group_again(struct sphgi_worker *w)
         return false;
     }
     empty_piece(w);
+    begin_round(w);
     return true;
+}
+
+/* First and last number of an item: they may lie on two cache lines. */
+static void ask_for(const struct sphgi_columns *columns, int32_t item, bool write)
+{
+    if (!columns->count)
+        return;
+    const char *first = columns->at[0] + item * columns->stride;
+    const char *last = columns->at[columns->count - 1] + item * columns->stride;
+    if (write) {
+        __builtin_prefetch(first, 1);
+        __builtin_prefetch(last, 1);
+    } else {
+        __builtin_prefetch(first, 0);
+        __builtin_prefetch(last, 0);
+    }
+}
+
+void sphgi_group_prefetch(const struct sphgi_plan *plan, int32_t target)
+{
+    ask_for(&plan->target_correction, target, false);
+    ask_for(&plan->correction, target, true);
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        ask_for(&field->target, target, false);
+        ask_for(&field->gradient, target, true);
+        ask_for(&field->divergence, target, true);
+        ask_for(&field->curl, target, true);
+    }
 }
 
 /* ---- The arena: sums of several source sets ------------------------------------------------- */
@@ -473,7 +526,7 @@ static void each_arena_part(struct sphgi_worker *w, bool load)
             sphgi_dense_columns(sweep->arena + (size_t)s * size, count, plan->sums, plan->type);
         char *lanes = sphgi_lane(w, w->reduced, s);
         if (load)
-            w->passes->load_lanes(&columns, w->group.target, w->group.lanes, lanes);
+            w->passes->load_lanes(&columns, w->group.target, lanes);
         else
             w->passes->store_lanes(&columns, w->group.target, w->group.lanes, lanes,
                                    sweep->set_number > 0);
@@ -485,6 +538,7 @@ static void finish(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     const unsigned steps = w->sweep->steps;
     const bool done = needs_coefficients_first(w); /* corrections, before the fields */
+    load_targets(w);
     if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);
     else if (!done && plan->corrects)
@@ -530,7 +584,8 @@ void sphgi_group_end(struct sphgi_worker *w)
         finish_pairs(w);
         return;
     }
-    reduce(w);
+    const int32_t first = needs_coefficients_first(w) ? w->sweep->plan->moment_sums : 0;
+    reduce(w, first, w->sweep->plan->sums - first);
     if (w->sweep->steps & SPHGI_FINISH)
         finish(w);
     else
@@ -540,6 +595,8 @@ void sphgi_group_end(struct sphgi_worker *w)
 void sphgi_group_finish_from_arena(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
+    pad_group(&w->group, w->passes->lanes);
+    w->targets_loaded = false;
     load_targets(w);
     each_arena_part(w, true);
     if ((w->sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes)

@@ -30,10 +30,9 @@ struct sphgi_sweep {
     int32_t set_number;
     unsigned steps;
     const struct sphgi_passes *passes, *position_passes; /* of fields; of positions */
-    bool packed;                  /* fields and volumes stand as rows in storage order */
-    const char *packed_volume;    /* one number a source */
-    const char *packed_rows;      /* streams, source_count + 1 rows each */
-    const char *packed_positions; /* host's lists: x y z V */
+    bool packed;                  /* positions, volumes, fields stand as rows in storage order */
+    const char *packed_positions; /* x y z V, source_count + 1 rows */
+    const char *packed_rows;      /* streams, as many rows each */
     char *arena;                  /* sums, plan->sums numbers a target */
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
@@ -58,16 +57,18 @@ struct sphgi_worker {
     struct sphgi_group group;
     const void **rows;                 /* of each stream */
     unsigned summing;                  /* SPHGI_SUM_..., of this pass over the group */
+    bool targets_loaded;               /* A_i, V_i, rho_i of the group */
     int32_t pieces;                    /* evaluated since the group began */
     bool local;                        /* rows are copied pair by pair */
     const int32_t *items;              /* sources behind the ids; NULL: the ids are their numbers */
+    bool touched[SPHGI_LANES_MOST];    /* had a pair in this round */
     int64_t written[SPHGI_LANES_MOST]; /* pairs of each lane so far */
 
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
     char *staged_positions, *staged_rows, *arrays, *masked_ids, *clean_ids, *local_items;
     char *partial, *reduced, *at_target, *raw, *coefficients, *lambda_min, *volume, *density;
-    char *self, *jacobian, *contracted, *extra, *staged_items;
+    char *self, *zeros, *jacobian, *contracted, *extra, *staged_items;
     char *finder_memory;
 };
 
@@ -83,6 +84,9 @@ void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids,
                      bool wide);
 bool sphgi_group_again(struct sphgi_worker *worker);
 void sphgi_group_end(struct sphgi_worker *worker);
+
+/* Asks for the cache lines that a target of the group will need. */
+void sphgi_group_prefetch(const struct sphgi_plan *plan, int32_t target);
 
 /* Finishes a group whose sums stand in the arena already. */
 void sphgi_group_finish_from_arena(struct sphgi_worker *worker);

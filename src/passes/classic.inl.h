@@ -12,7 +12,7 @@ SPHGI_TEMPLATE void classic_orders(const struct sphgi_piece *piece, int32_t p, v
     const int32_t n = part == 0 ? 1 + d + pairs : part == 1 ? d + pairs : triples;
     vec sum[10];
     for (int32_t c = 0; c < n; ++c)
-        sum[c] = *partial_of(partial, first + c, lane);
+        sum[c] = begin_sum(piece, p, partial, first + c);
     for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
         const vec x = from(piece, SPHGI_X, k), y = from(piece, SPHGI_Y, k);
         const vec z = three ? from(piece, SPHGI_Z, k) : x;

@@ -53,6 +53,7 @@ struct sphgi_piece {
     int32_t lane[SPHGI_LANES_MOST];      /* whose pairs they are */
     int32_t begin[SPHGI_LANES_MOST + 1]; /* multiples of SPHGI_PAD */
     int32_t count[SPHGI_LANES_MOST];     /* without the padding */
+    bool fresh[SPHGI_LANES_MOST];        /* the lane's first: its sums begin at 0 */
     const void *ids[SPHGI_LANES_MOST];   /* row numbers of the pairs, padded */
     bool wide;                           /* ids are uint32_t, else uint16_t */
 };
@@ -171,6 +172,7 @@ struct sphgi_passes {
     void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension, const void *rows,
                         void *partial);
     void (*sum_volume)(const struct sphgi_piece *piece, void *partial);
+    void (*clear_partial)(void *partial, int32_t sums, int32_t lane);
     void (*reduce)(const void *partial, int32_t sums, void *reduced);
 
     /* Corrections, one target a lane: sums in, numbers of the table out. */
@@ -192,8 +194,7 @@ struct sphgi_passes {
                       const void *per_lane, void *jacobian);
     void (*contract)(int32_t dimension, sphg_shape shape, const void *jacobian, void *divergence,
                      void *curl);
-    void (*load_lanes)(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
-                       void *out);
+    void (*load_lanes)(const struct sphgi_columns *columns, const int32_t *items, void *out);
     void (*store_lanes)(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
                         const void *in, bool accumulate);
 };

@@ -61,6 +61,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_value = sum_value,
     .sum_vectors = sum_vectors,
     .sum_volume = sum_volume,
+    .clear_partial = clear_partial,
     .reduce = reduce,
     .invert = invert,
     .invert_classic = invert_classic,

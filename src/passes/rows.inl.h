@@ -99,14 +99,15 @@ static double largest_move(const void *then, const void *now, int64_t begin, int
     return __builtin_sqrt(largest) * (1 + 0x1p-50);
 }
 
-/* One target a lane. Lanes beyond `lanes` get 0. */
-static void load_lanes(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
-                       void *out)
+/* One target a lane: LANES items. */
+static void load_lanes(const struct sphgi_columns *columns, const int32_t *items, void *out)
 {
     real *to = out;
-    for (int32_t c = 0; c < columns->count; ++c, to += LANES)
-        for (int32_t l = 0; l < LANES; ++l)
-            to[l] = l < lanes ? number_at(columns->at[c] + items[l] * columns->stride) : R(0);
+    for (int32_t l = 0; l < LANES; ++l) {
+        const ptrdiff_t offset = items[l] * columns->stride;
+        for (int32_t c = 0; c < columns->count; ++c)
+            to[c * LANES + l] = number_at(columns->at[c] + offset);
+    }
 }
 
 static void store_lanes(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,

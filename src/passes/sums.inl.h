@@ -5,6 +5,12 @@ SPHGI_TEMPLATE vec *partial_of(void *partial, int32_t sum, int32_t lane)
     return (vec *)partial + sum * LANES + lane;
 }
 
+/* What a sum of part p goes on from. */
+SPHGI_TEMPLATE vec begin_sum(const struct sphgi_piece *piece, int32_t p, void *partial, int32_t sum)
+{
+    return piece->fresh[p] ? splat(R(0)) : *partial_of(partial, sum, piece->lane[p]);
+}
+
 SPHGI_TEMPLATE vec from(const struct sphgi_piece *piece, enum sphgi_array array, int32_t k)
 {
     return load((const real *)piece->arrays + array * SPHGI_PIECE + k);
@@ -17,7 +23,7 @@ SPHGI_TEMPLATE void moments_as(const struct sphgi_piece *piece, void *partial, b
         const int32_t lane = piece->lane[p], n = three ? 6 : 3;
         vec m[6];
         for (int32_t c = 0; c < n; ++c)
-            m[c] = *partial_of(partial, c, lane);
+            m[c] = begin_sum(piece, p, partial, c);
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
             const vec x = from(piece, SPHGI_X, k), y = from(piece, SPHGI_Y, k);
             const vec gx = from(piece, SPHGI_GX, k), gy = from(piece, SPHGI_GY, k);
@@ -58,7 +64,7 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_array g
         for (int32_t c = 0; c < count; ++c)
             a[c] = splat(at_target[c * LANES + lane]);
         for (int32_t c = 0; c < count * d; ++c)
-            sum[c] = *partial_of(partial, c, lane);
+            sum[c] = begin_sum(piece, p, partial, c);
         for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
             const char *ids =
                 (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
@@ -107,20 +113,32 @@ static void sum_field(const struct sphgi_piece *piece, int32_t dimension, enum s
         field_of(piece, g, rows, count, at_target, partial, false);
 }
 
+/* Components of row k's source. */
+SPHGI_TEMPLATE struct four row_at(const struct sphgi_piece *piece, int32_t p, int32_t k,
+                                  const void *rows)
+{
+    const ptrdiff_t offset = (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
+    return gather_rows(rows, (const char *)piece->ids[p] + offset, piece->wide);
+}
+
 /* sum A_j PHI_j */
 static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t count,
                       void *partial)
 {
     for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = piece->lane[p], begin = piece->begin[p];
-        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
-            const char *ids =
-                (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
-            const struct four row = gather_rows(rows, ids, piece->wide);
-            const vec value[4] = {row.x, row.y, row.z, row.w}, phi = from(piece, SPHGI_PHI, k);
-            for (int32_t c = 0; c < count; ++c)
-                *partial_of(partial, c, lane) += value[c] * phi;
+        vec sum[4];
+        for (int32_t c = 0; c < 4; ++c)
+            sum[c] = c < count ? begin_sum(piece, p, partial, c) : splat(R(0));
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+            const struct four row = row_at(piece, p, k, rows);
+            const vec phi = from(piece, SPHGI_PHI, k);
+            sum[0] += row.x * phi;
+            sum[1] += row.y * phi;
+            sum[2] += row.z * phi;
+            sum[3] += row.w * phi;
         }
+        for (int32_t c = 0; c < count; ++c)
+            *partial_of(partial, c, piece->lane[p]) = sum[c];
     }
 }
 
@@ -128,27 +146,37 @@ static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t
 static void sum_vectors(const struct sphgi_piece *piece, int32_t dimension, const void *rows,
                         void *partial)
 {
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = piece->lane[p], begin = piece->begin[p];
-        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
-            const char *ids =
-                (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
-            const vec weight = rows ? gather_rows(rows, ids, piece->wide).x : splat(R(1));
-            for (int32_t c = 0; c < dimension; ++c)
-                *partial_of(partial, c, lane) +=
-                    weight * from(piece, (enum sphgi_array)(SPHGI_GX + c), k);
+    for (int32_t p = 0; p < piece->parts; ++p)
+        for (int32_t c = 0; c < dimension; ++c) {
+            vec sum = begin_sum(piece, p, partial, c);
+            for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
+                vec g = from(piece, (enum sphgi_array)(SPHGI_GX + c), k);
+                if (rows)
+                    g *= row_at(piece, p, k, rows).x;
+                sum += g;
+            }
+            *partial_of(partial, c, piece->lane[p]) = sum;
         }
-    }
 }
 
 /* sum V_j W and sum W: their quotient is the mean volume */
 static void sum_volume(const struct sphgi_piece *piece, void *partial)
 {
-    for (int32_t p = 0; p < piece->parts; ++p)
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        vec weighted = begin_sum(piece, p, partial, 0), plain = begin_sum(piece, p, partial, 1);
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            *partial_of(partial, 0, piece->lane[p]) += from(piece, SPHGI_PHI, k);
-            *partial_of(partial, 1, piece->lane[p]) += from(piece, SPHGI_S, k);
+            weighted += from(piece, SPHGI_PHI, k);
+            plain += from(piece, SPHGI_S, k);
         }
+        *partial_of(partial, 0, piece->lane[p]) = weighted;
+        *partial_of(partial, 1, piece->lane[p]) = plain;
+    }
+}
+
+static void clear_partial(void *partial, int32_t sums, int32_t lane)
+{
+    for (int32_t c = 0; c < sums; ++c)
+        *partial_of(partial, c, lane) = splat(R(0));
 }
 
 static void reduce(const void *partial, int32_t sums, void *reduced)
