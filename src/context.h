@@ -17,14 +17,15 @@ struct sphg_context {
     atomic_flag busy;
     char message[SPHGI_MESSAGE_LENGTH];
     /* Scratch that outlives a call only to spare the next one its allocation. */
-    struct sphgi_buffer workers;      /* a slice per thread */
-    struct sphgi_buffer packed;       /* rows of fields and volumes in storage order */
-    struct sphgi_buffer sums;         /* of several source sets */
-    struct sphgi_buffer coefficients; /* corrections computed for a second sweep */
-    struct sphgi_buffer selection;    /* active targets and the blocks that hold them */
-    struct sphgi_buffer input;        /* positions as rows, in the order of the host */
-    struct sphgi_buffer sort;         /* of the grid */
-    struct sphgi_buffer plan;         /* of a request */
+    struct sphgi_buffer workers;       /* a slice per thread */
+    struct sphgi_buffer packed;        /* rows of fields and volumes in storage order */
+    struct sphgi_buffer sums;          /* of several source sets */
+    struct sphgi_buffer coefficients;  /* corrections computed for a second sweep */
+    struct sphgi_buffer selection;     /* active targets and the blocks that hold them */
+    struct sphgi_buffer input;         /* positions as rows, in the order of the host */
+    struct sphgi_buffer sort;          /* of the grid */
+    struct sphgi_buffer plan;          /* of a request */
+    struct sphgi_buffer order_grid[5]; /* of sphg_neighbors_get_order() for the host's lists */
 };
 
 const struct sphgi_passes *sphgi_passes_of(const sphg_context *context, sphg_type type);

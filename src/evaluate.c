@@ -39,11 +39,24 @@ sphg_result sphg_correction(sphg_context *context, const sphg_scheme *scheme,
     return evaluate(checker, scheme, &request);
 }
 
+/* In a request an absent field is 0 and an absent result is not wanted; here it is a mistake. */
+static sphg_result refuse_absent(struct sphgi_checker checker, const char *what)
+{
+    const sphg_result result = sphgi_enter(checker.context);
+    if (result)
+        return result;
+    return sphgi_leave(checker.context, sphgi_fail(checker.context, SPHG_ERROR_ARGUMENT,
+                                                   "%s: the %s is absent", checker.function, what));
+}
+
 /* One field of one source set that holds the targets. */
 static sphg_result evaluate_field(struct sphgi_checker checker, const sphg_scheme *scheme,
                                   const sphg_sources *sources, const sphg_subset *subset,
                                   const sphg_field *field)
 {
+    const bool wants = field->gradient.x || field->divergence.x || field->curl.x;
+    if (!wants || !field->at_sources->x)
+        return refuse_absent(checker, wants ? "field" : "result");
     const sphg_request request = {
         .sources = sources, .fields = field, .set_count = 1, .field_count = 1, .subset = subset};
     return evaluate(checker, scheme, &request);

@@ -3,11 +3,15 @@
 
 /* ---- Scratch -------------------------------------------------------------------------------- */
 
-/* The most that can be staged around any block: every staged cell as full as the fullest. */
+/* The most that can be staged around any block: every staged cell as full as the fullest, rounded
+ * up to a power of two so that scratch does not grow with each particle that joins a cell. */
 int32_t sphgi_finder_room(const sphg_neighbors *neighbors)
 {
     const int64_t cells = neighbors->dimension == 3 ? 6 * 4 * 4 : 10 * 6;
-    const int64_t most = cells * neighbors->sources.fullest + 1;
+    int64_t fullest = 16;
+    while (fullest < neighbors->sources.fullest)
+        fullest *= 2;
+    const int64_t most = cells * fullest + 1;
     return most < SPHGI_STAGED_MOST ? (int32_t)most : SPHGI_STAGED_MOST;
 }
 

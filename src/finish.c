@@ -1,6 +1,7 @@
 #include "finish.h"
 #include "kernel.h"
 #include "view.h"
+#include <math.h>
 #include <string.h>
 
 /* ---- Corrections ---------------------------------------------------------------------------- */
@@ -25,25 +26,70 @@ struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
     }
 }
 
-/* to = from times the factors, number by number of the table. */
-static void rescale(const struct sphgi_worker *w, char *from, struct sphgi_scales factor, char *to)
+/* A factor as mantissa times powers of two: multiplying with those is exact, also where the factor
+ * itself is so large or small that a table could not hold its result. */
+struct split {
+    double mantissa, power[2];
+};
+
+static struct split split_of(double factor)
 {
-    const struct sphgi_plan *plan = w->sweep->plan;
+    int exponent;
+    const double mantissa = frexp(factor, &exponent);
+    const int half = exponent / 2;
+    return (struct split){mantissa, {ldexp(1, half), ldexp(1, exponent - half)}};
+}
+
+/* The numbers of a table that share a factor. */
+struct share {
+    int32_t first, count;
+    double factor;
+};
+
+static struct share share_of(const struct sphgi_plan *plan, int k)
+{
+    const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
     const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
     const int32_t values = plan->classic ? plan->dimension + 1 : width;
-    w->passes->scale(values, from, factor.value, NULL, to);
-    w->passes->scale(width - values, sphgi_lane(w, from, values), factor.slope, NULL,
-                     sphgi_lane(w, to, values));
+    return k == 0 ? (struct share){0, values, scales.value}
+                  : (struct share){values, width - values, scales.slope};
 }
 
-static struct sphgi_scales inverse_of(struct sphgi_scales scales)
+/* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
+ * holds, if one is wanted. */
+static void round_as_table(struct sphgi_worker *w, bool wanted)
 {
-    return (struct sphgi_scales){1 / scales.value, scales.slope != 0 ? 1 / scales.slope : 0};
+    const struct sphgi_plan *plan = w->sweep->plan;
+    for (int k = 0; k <= plan->classic; ++k) {
+        const struct share share = share_of(plan, k);
+        const struct split split = split_of(share.factor);
+        char *ours = sphgi_lane(w, w->coefficients, share.first);
+        char *raw = sphgi_lane(w, w->raw, share.first);
+        w->passes->scale(share.count, ours, split.mantissa, NULL, raw);
+        w->passes->divide(share.count, raw, split.mantissa, ours);
+        for (int p = 0; wanted && p < 2; ++p)
+            w->passes->scale(share.count, raw, split.power[p], NULL, raw);
+    }
 }
 
-static void load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
+static void take_from_table(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    for (int k = 0; k <= plan->classic; ++k) {
+        const struct share share = share_of(plan, k);
+        const struct split split = split_of(share.factor);
+        char *raw = sphgi_lane(w, w->raw, share.first);
+        for (int p = 0; p < 2; ++p)
+            w->passes->scale(share.count, raw, 1 / split.power[p], NULL, raw);
+        w->passes->divide(share.count, raw, split.mantissa,
+                          sphgi_lane(w, w->coefficients, share.first));
+    }
+}
+
+void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
 {
     w->passes->load_lanes(columns, w->group.target, to);
+    w->tally->bad_volume |= !w->passes->valid_volumes(to);
     w->passes->scale(1, to, w->gather.inverse_volume, NULL, to);
 }
 
@@ -56,7 +102,7 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
             w->passes->quotient(sphgi_lane(w, w->reduced, plan->volume_sum),
                                 sphgi_lane(w, w->reduced, plan->volume_sum + 1), w->extra);
         else
-            load_volume(w, &plan->target_volume, w->extra);
+            sphgi_load_volume(w, &plan->target_volume, w->extra);
         scale = w->extra;
     }
     w->passes->invert(&w->threshold, sphgi_lane(w, w->reduced, plan->moment_sum), scale,
@@ -70,7 +116,7 @@ static void self_weight(struct sphgi_worker *w, char *to)
     const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
     w->passes->fill(plan->own_set < 0 ? 0 : at_zero, to);
     if (plan->own_set >= 0 && plan->weighted) {
-        load_volume(w, &plan->own_volume, to);
+        sphgi_load_volume(w, &plan->own_volume, to);
         w->passes->scale(1, to, at_zero, NULL, to);
     }
 }
@@ -91,7 +137,6 @@ static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *ve
 void sphgi_finish_corrections(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
     struct sphgi_verdict verdict;
     if (plan->classic) {
         self_weight(w, w->self);
@@ -101,9 +146,7 @@ void sphgi_finish_corrections(struct sphgi_worker *w)
                                   w->coefficients, w->lambda_min, &verdict);
     } else
         invert_linearised(w, &verdict);
-    /* Through the host's units and back, so that a table gives the same bits as this sweep. */
-    rescale(w, w->coefficients, scales, w->raw);
-    rescale(w, w->raw, inverse_of(scales), w->coefficients);
+    round_as_table(w, plan->correction.count > 0);
     sphgi_tally_verdict(w->tally, &verdict, w->lambda_min, plan->type, w->group.lanes);
     store_verdict(w, &verdict);
 }
@@ -117,7 +160,7 @@ void sphgi_load_corrections(struct sphgi_worker *w)
         return;
     }
     w->passes->load_lanes(&plan->target_correction, g->target, w->raw);
-    rescale(w, w->raw, inverse_of(sphgi_table_scales(&plan->scheme)), w->coefficients);
+    take_from_table(w);
 }
 
 /* ---- Fields --------------------------------------------------------------------------------- */
@@ -205,7 +248,7 @@ static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *
             w->passes->scale(1, w->coefficients, 1, w->self, w->extra);
         } else {
             const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-            load_volume(w, &plan->own_volume, w->extra);
+            sphgi_load_volume(w, &plan->own_volume, w->extra);
             w->passes->scale(1, w->extra, at_zero, NULL, w->extra);
         }
         w->passes->add_outer(1, field->components, sphgi_lane(w, w->at_target, field->at_target),

@@ -6,6 +6,8 @@
 /* worker->coefficients: from the sums, or from the table; writes what is wanted of them. */
 void sphgi_finish_corrections(struct sphgi_worker *worker);
 void sphgi_load_corrections(struct sphgi_worker *worker);
+/* V / H^d of the group's targets; notes volumes that are not valid. */
+void sphgi_load_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns, char *to);
 void sphgi_finish_fields(struct sphgi_worker *worker);
 
 /* Classic: G_ii = w_0 z_k[0], d lanes. */

@@ -51,7 +51,7 @@ static int64_t cell_of(const struct sphgi_axis *axis, double x)
 }
 
 struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
-                                      double largest, sphg_type type)
+                                      const double *largest, sphg_type type)
 {
     static const int32_t shift[2][3] = {{3, 2, 0}, {2, 1, 1}};
     struct sphgi_lattice lattice = {.dimension = dimension};
@@ -64,8 +64,9 @@ struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const dou
         if (a >= dimension)
             *axis = (struct sphgi_axis){.shift = 0};
         else if (period[a] > 0) {
-            lattice.slack = 16 * unit * largest;
-            const double cells = period[a] / (wide + lattice.slack);
+            const double slack = 16 * unit * largest[a];
+            const double cells = period[a] / (wide + slack);
+            lattice.slack = slack > lattice.slack ? slack : lattice.slack;
             axis->length = period[a];
             axis->cells = cells < 1 ? 1 : cells < 0x1p40 ? (int64_t)cells : (int64_t)1 << 40;
             axis->low = axis->cells >= 3 ? -1 : 0;
@@ -334,6 +335,15 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
         ;
 }
 
+/* Occupied blocks come and go while the number of particles stays: once an array has to grow, it
+ * gets room for twice as much, up to what that many particles can need at all. */
+static bool reserve_generously(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer,
+                               size_t count, size_t most, size_t size)
+{
+    const bool enough = count * size <= buffer->size;
+    return sphgi_reserve(allocator, buffer, enough ? count : sphgi_generous(count, most), size);
+}
+
 /* Blocks of all chunks, numbered along the curve. False: out of memory. */
 static bool merge_chunks(struct sort *sort, const struct sphgi_allocator *allocator,
                          int32_t chunk_count, struct sphgi_block *all, int32_t *numbers,
@@ -344,7 +354,9 @@ static bool merge_chunks(struct sort *sort, const struct sphgi_allocator *alloca
     for (int32_t c = 0; c < chunk_count; ++c)
         total += sort->chunks[c].block_count;
     const uint32_t slots = power_of_two_above(2 * total);
-    if (!sphgi_reserve(allocator, &grid->hash, slots, sizeof(int32_t)))
+    const size_t particles = (size_t)grid->count;
+    if (!reserve_generously(allocator, &grid->hash, slots, 8 * particles + HASH_LEAST,
+                            sizeof(int32_t)))
         return false;
     int32_t *hash = grid->hash.data, count = 0;
     grid->hash_mask = slots - 1;
@@ -361,9 +373,11 @@ static bool merge_chunks(struct sort *sort, const struct sphgi_allocator *alloca
         }
     grid->block_count = count;
     grid->cells = cells_per_block(sort->lattice);
-    if (!sphgi_reserve(allocator, &grid->blocks, (size_t)count, sizeof(struct sphgi_block)) ||
-        !sphgi_reserve(allocator, &grid->cell_start, (size_t)count * (size_t)grid->cells + 1,
-                       sizeof(int32_t)))
+    const size_t cells = (size_t)grid->cells;
+    if (!reserve_generously(allocator, &grid->blocks, (size_t)count, particles,
+                            sizeof(struct sphgi_block)) ||
+        !reserve_generously(allocator, &grid->cell_start, (size_t)count * cells + 1,
+                            particles * cells + 1, sizeof(int32_t)))
         return false;
     const int32_t *sorted = sort_blocks(all, count, numbers, scratch);
     int32_t *rank = sorted == numbers ? scratch : numbers;

@@ -46,9 +46,9 @@ struct sphgi_grid {
     struct sphgi_buffer order;      /* int32_t: the particle behind each row */
 };
 
-/* period[a] 0: open. largest: the largest |coordinate| of all particles. */
+/* period[a] 0: open. largest[a]: the largest |coordinate| along a periodic axis. */
 struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
-                                      double largest, sphg_type type);
+                                      const double *largest, sphg_type type);
 
 /* Sorts the rows (x y z 0, finite) of count particles; type is that of the positions. Gives OK or
  * MEMORY. Cost: O(count), and O(blocks log blocks) for the curve. */

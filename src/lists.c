@@ -195,15 +195,17 @@ sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
 {
     struct sphgi_found *found = &n->found;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const size_t targets = (size_t)n->target_count, blocks = (size_t)grid->block_count;
+    const size_t targets = (size_t)n->target_count;
+    /* as many as the grid has room for: no other reason to allocate than the grid's own */
+    const size_t blocks_of_grid = grid->blocks.size / sizeof(struct sphgi_block);
+    const size_t cells_of_grid = grid->cell_start.size / sizeof(int32_t);
     struct build build = {.context = context, .neighbors = n, .room = sphgi_finder_room(n)};
     build.memory_each = sphgi_finder_size(n, build.room);
     if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
                        build.memory_each) ||
         !sphgi_reserve(&n->allocator, &found->lengths, targets, sizeof(uint16_t)) ||
-        !sphgi_reserve(&n->allocator, &found->wide, blocks, 1) ||
-        !sphgi_reserve(&n->allocator, &found->cell_list, blocks * (size_t)grid->cells,
-                       sizeof(int64_t)))
+        !sphgi_reserve(&n->allocator, &found->wide, blocks_of_grid, 1) ||
+        !sphgi_reserve(&n->allocator, &found->cell_list, cells_of_grid, sizeof(int64_t)))
         return SPHG_ERROR_MEMORY;
     if (!found->ids.size &&
         !sphgi_reserve(&n->allocator, &found->ids, targets * FIRST_GUESS + 1, sizeof(uint16_t)))

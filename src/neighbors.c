@@ -270,17 +270,16 @@ static sphg_result remember_positions(sphg_neighbors *n, const struct geometry *
 
 /* ---- Search --------------------------------------------------------------------------------- */
 
-static double largest_coordinate(const struct geometry *g)
+static void largest_coordinates(const struct geometry *g, double *largest)
 {
     const int64_t rows = (int64_t)g->source_count + (g->part_of ? 0 : g->target_count);
-    double largest = 0;
     for (int64_t k = 0; k < rows * SPHGI_ROW; ++k) {
         const double x = g->position_type == SPHG_F64
                              ? ((const double *)(const void *)g->source_rows)[k]
                              : (double)((const float *)(const void *)g->source_rows)[k];
-        largest = fabs(x) > largest ? fabs(x) : largest;
+        double *most = &largest[k % SPHGI_ROW];
+        *most = fabs(x) > *most ? fabs(x) : *most;
     }
-    return largest;
 }
 
 static void adopt(sphg_neighbors *n, const struct geometry *g, const sphg_geometry *given,
@@ -307,9 +306,11 @@ static void adopt(sphg_neighbors *n, const struct geometry *g, const sphg_geomet
 
 static sphg_result build_grids(sphg_context *context, sphg_neighbors *n, const struct geometry *g)
 {
+    double largest[SPHGI_ROW] = {0};
+    if (n->periodic)
+        largest_coordinates(g, largest);
     const struct sphgi_lattice lattice =
-        sphgi_lattice_of(n->dimension, n->radius + n->skin, n->period,
-                         n->periodic ? largest_coordinate(g) : 0, n->position_type);
+        sphgi_lattice_of(n->dimension, n->radius + n->skin, n->period, largest, n->position_type);
     sphg_result result = sphgi_grid_build(context, &n->sources, &n->allocator, &lattice,
                                           n->position_type, g->source_rows, n->source_count);
     if (!result && !n->same)
@@ -452,18 +453,25 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
     return sphgi_leave(context, result);
 }
 
-/* The host's lists have no order of their own: sort the positions as a search would. */
+/* The host's lists have no order of their own: sort the positions as a search would, in a grid
+ * whose memory stays with the context. */
 static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n, int32_t *order)
 {
+    static const double none[3] = {0};
     struct sphgi_grid grid = {.count = 0};
     const struct sphgi_lattice lattice =
-        sphgi_lattice_of(n->dimension, n->radius, (const double[3]){0}, 0, n->position_type);
+        sphgi_lattice_of(n->dimension, n->radius, none, none, n->position_type);
+    struct sphgi_buffer *own[] = {&grid.blocks, &grid.cell_start, &grid.hash, &grid.rows,
+                                  &grid.order};
+    for (int k = 0; k < 5; ++k)
+        *own[k] = context->order_grid[k];
     const sphg_result result =
         sphgi_grid_build(context, &grid, &context->allocator, &lattice, n->position_type,
                          n->sources.rows.data, n->source_count);
     if (!result)
         memcpy(order, grid.order.data, (size_t)n->source_count * sizeof *order);
-    sphgi_grid_free(&grid, &context->allocator);
+    for (int k = 0; k < 5; ++k)
+        context->order_grid[k] = *own[k];
     return result ? sphgi_fail_memory(context, "sphg_neighbors_get_order") : SPHG_OK;
 }
 

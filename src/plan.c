@@ -117,11 +117,13 @@ static sphg_result take_volume(struct making *making, int32_t s)
 
 /* The targets' own view, else the view of the set that they are part of. */
 static sphg_result take_target_side(struct making *making, const sphg_view *own,
-                                    const sphg_view *of_set, const char *name, sphg_shape shape,
-                                    int32_t numbers, struct sphgi_columns *columns)
+                                    const sphg_view *of_set, const char *name,
+                                    const char *name_of_set, sphg_shape shape, int32_t numbers,
+                                    struct sphgi_columns *columns)
 {
-    const sphg_view *view = sphgi_is_absent(own) && of_set ? of_set : own;
-    return take_input(making, view, name, shape, numbers, making->plan->target_count, columns);
+    const bool from_set = sphgi_is_absent(own) && of_set;
+    return take_input(making, from_set ? of_set : own, from_set ? name_of_set : name, shape,
+                      numbers, making->plan->target_count, columns);
 }
 
 static sphg_result take_targets(struct making *making)
@@ -132,14 +134,15 @@ static sphg_result take_targets(struct making *making)
     const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
     sphg_result result =
         take_target_side(making, &request->target_volume, own ? &own->volume : NULL,
-                         "target_volume", SPHG_SCALAR, 1, &plan->target_volume);
+                         "target_volume", "sources.volume", SPHG_SCALAR, 1, &plan->target_volume);
     if (!result)
         result = take_target_side(making, &request->target_density, own ? &own->density : NULL,
-                                  "target_density", SPHG_SCALAR, 1, &plan->target_density);
+                                  "target_density", "sources.density", SPHG_SCALAR, 1,
+                                  &plan->target_density);
     if (!result && width)
-        result =
-            take_target_side(making, &request->target_correction, own ? &own->correction : NULL,
-                             "target_correction", (sphg_shape)0, width, &plan->target_correction);
+        result = take_target_side(
+            making, &request->target_correction, own ? &own->correction : NULL, "target_correction",
+            "sources.correction", (sphg_shape)0, width, &plan->target_correction);
     if (own)
         plan->own_volume = plan->sets[plan->own_set].volume;
     return result;
@@ -237,8 +240,10 @@ static sphg_result take_field_at_target(struct making *making, int32_t k)
         REFUSE(SPHG_ERROR_ARGUMENT,
                "%s: fields[%d].at_targets is absent, and the targets are part of no source set",
                making->checker.function, (int)k);
-    return take_target_side(making, own, of_set, name_of(making, "fields[%d].at_targets", k, 0),
-                            given->shape, 0, &field->target);
+    const bool from_set = sphgi_is_absent(own) && of_set;
+    const char *name = name_of(
+        making, from_set ? "fields[%d].at_sources[%d]" : "fields[%d].at_targets", k, plan->own_set);
+    return take_target_side(making, own, of_set, name, name, given->shape, 0, &field->target);
 }
 
 static sphg_result take_field(struct making *making, int32_t k)

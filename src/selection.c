@@ -28,7 +28,8 @@ bool sphgi_selection_mark(sphg_context *context, struct sphgi_selection *selecti
 {
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const size_t targets = sphgi_round_up((size_t)n->target_count + 1, SPHGI_ALIGNMENT);
-    const size_t blocks = sphgi_round_up((size_t)grid->block_count + 1, SPHGI_ALIGNMENT);
+    const size_t room = grid->blocks.size / sizeof(struct sphgi_block); /* >= block_count */
+    const size_t blocks = sphgi_round_up(room + 1, SPHGI_ALIGNMENT);
     const size_t before = context->selection.size;
     if (!sphgi_reserve(&context->allocator, &context->selection,
                        targets + blocks * (1 + sizeof(int32_t)), 1))

@@ -60,16 +60,6 @@ static void lane_set(const struct batch *b, void *lanes, int32_t number, int32_t
 
 /* ---- Moments -------------------------------------------------------------------------------- */
 
-static bool volumes_are_valid(const struct batch *b, const void *volume, int32_t count)
-{
-    for (int32_t l = 0; l < count; ++l) {
-        const double v = lane_get(b, volume, 0, l);
-        if (!(v >= 0) || !isfinite(v))
-            return false;
-    }
-    return true;
-}
-
 /* moments = factor * ours; see sphgi_table_scales(): the inverse takes the same factor. */
 static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
@@ -91,7 +81,7 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
         p->scale(numbers, moments, factor, NULL, moments);
         if (b->volume.count) {
             p->load_lanes(&b->volume, items, volume);
-            tally->bad_volume |= !volumes_are_valid(b, volume, count);
+            tally->bad_volume |= !p->valid_volumes(volume);
             p->scale(1, volume, per_volume, NULL, volume);
         }
         p->invert(&b->threshold, moments, b->volume.count ? volume : NULL, correction, lambda_min,

@@ -138,7 +138,8 @@ void sphgi_svd(const double *a, double *u, double *sigma, double *v)
     sort_columns(&m);
     directions_of((const double(*)[3])m.b, direction);
     for (int c = 0; c < 3; ++c) {
-        sigma[c] = ldexp(fabs(dot(direction[c], m.b[c])), exponent);
+        const double length = ldexp(fabs(dot(direction[c], m.b[c])), exponent);
+        sigma[c] = c && length > sigma[c - 1] ? sigma[c - 1] : length; /* rounding may exchange */
         for (int r = 0; r < 3; ++r) {
             u[3 * r + c] = direction[c][r];
             v[3 * r + c] = m.v[c][r];

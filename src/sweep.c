@@ -561,19 +561,32 @@ static bool is_bad_volume(const struct sphgi_columns *volume, sphg_type type, in
     return !(*value >= 0) || !isfinite(*value);
 }
 
+static int32_t first_bad_volume(const struct sphgi_columns *volume, sphg_type type, int32_t count,
+                                double *value)
+{
+    for (int32_t k = 0; volume->count && k < count; ++k)
+        if (is_bad_volume(volume, type, k, value))
+            return k;
+    return -1;
+}
+
 static sphg_result report_volume(struct sphgi_checker checker, const struct sphgi_plan *plan)
 {
+    static const char *const rule = "must be >= 0 and finite";
+    double value = 0;
     for (int32_t s = 0; s < plan->set_count; ++s) {
         const struct sphgi_set_plan *set = &plan->sets[s];
-        double value;
-        for (int32_t k = 0; set->volume.count && k < set->neighbors->source_count; ++k)
-            if (is_bad_volume(&set->volume, plan->type, k, &value))
-                return sphgi_fail(checker.context, SPHG_ERROR_VOLUME,
-                                  "%s: sources[%d].volume[%d] is %g, must be >= 0 and finite",
-                                  checker.function, (int)s, (int)k, value);
+        const int32_t k =
+            first_bad_volume(&set->volume, plan->type, set->neighbors->source_count, &value);
+        if (k >= 0)
+            return sphgi_fail(checker.context, SPHG_ERROR_VOLUME,
+                              "%s: sources[%d].volume[%d] is %g, %s", checker.function, (int)s,
+                              (int)k, value, rule);
     }
-    return sphgi_fail(checker.context, SPHG_ERROR_VOLUME, "%s: a volume is not valid",
-                      checker.function);
+    const int32_t k =
+        first_bad_volume(&plan->target_volume, plan->type, plan->target_count, &value);
+    return sphgi_fail(checker.context, SPHG_ERROR_VOLUME, "%s: target_volume[%d] is %g, %s",
+                      checker.function, (int)k, value, rule);
 }
 
 static sphg_result report_index(struct sphgi_checker checker, const struct sphgi_tally *tally)

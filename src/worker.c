@@ -141,9 +141,8 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
     for (int32_t k = 0; k < streams; ++k)
         table[k] = w->rows[plan->correction_stream + k];
     if (plan->classic) {
-        const struct sphgi_scales host = sphgi_table_scales(&plan->scheme);
-        const struct sphgi_scales ours = {1 / host.value, 1 / host.slope};
-        w->passes->transposed_classic(&w->piece, plan->dimension, table, &ours,
+        const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
+        w->passes->transposed_classic(&w->piece, plan->dimension, table, &units,
                                       plan->weighted ? w->volume : NULL, density, weight);
     } else
         w->passes->transposed(&w->piece, plan->dimension, table, density, weight);
@@ -174,10 +173,8 @@ static void load_targets(struct sphgi_worker *w)
             memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
     }
     if (plan->transposes[0] || plan->transposes[1]) {
-        if (plan->target_volume.count) {
-            p->load_lanes(&plan->target_volume, g->target, w->volume);
-            p->scale(1, w->volume, w->gather.inverse_volume, NULL, w->volume);
-        }
+        if (plan->target_volume.count)
+            sphgi_load_volume(w, &plan->target_volume, w->volume);
         if (plan->target_density.count)
             p->load_lanes(&plan->target_density, g->target, w->density);
     }
@@ -485,7 +482,7 @@ bool sphgi_group_again(struct sphgi_worker *w)
 }
 
 /* First and last number of an item: they may lie on two cache lines. */
-static void ask_for(const struct sphgi_columns *columns, int32_t item, bool write)
+SPHGI_TEMPLATE void ask_for(const struct sphgi_columns *columns, int32_t item, bool write)
 {
     if (!columns->count)
         return;
@@ -511,6 +508,7 @@ void sphgi_group_prefetch(const struct sphgi_plan *plan, int32_t target)
         ask_for(&field->divergence, target, true);
         ask_for(&field->curl, target, true);
     }
+    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
 }
 
 /* ---- The arena: sums of several source sets ------------------------------------------------- */

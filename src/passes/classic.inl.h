@@ -128,8 +128,7 @@ static void transposed_classic(const struct sphgi_piece *piece, int32_t dimensio
     const int32_t d = dimension;
     for (int32_t p = 0; p < piece->parts; ++p) {
         const real volume = target_volume ? ((const real *)target_volume)[piece->lane[p]] : R(1);
-        const vec y_scale = splat(R(scales->value) * volume);
-        const vec z_scale = splat(R(scales->slope) * volume);
+        const vec y_unit = splat(R(scales->value)), z_unit = splat(R(scales->slope));
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
             const char *ids = (const char *)piece->ids[p] +
                               (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
@@ -143,11 +142,12 @@ static void transposed_classic(const struct sphgi_piece *piece, int32_t dimensio
                 if (d == 3)
                     polynomial[m] += c.w * x[2];
             }
-            const vec slope = weight * from(piece, SPHGI_D, k) * y_scale * polynomial[0];
-            const vec s = weight * from(piece, SPHGI_S, k) * z_scale;
+            /* Units meet the coefficients first: both may be far from 1, their quotient is not. */
+            const vec slope = weight * from(piece, SPHGI_D, k) * (volume * (polynomial[0] / y_unit));
+            const vec s = weight * from(piece, SPHGI_S, k);
             real *t = array_of(piece->arrays, SPHGI_TX) + k;
             for (int32_t a = 0; a < d; ++a)
-                store(t + a * SPHGI_PIECE, slope * x[a] - s * polynomial[1 + a]);
+                store(t + a * SPHGI_PIECE, slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
         }
     }
 }

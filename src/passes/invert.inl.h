@@ -88,6 +88,21 @@ SPHGI_TEMPLATE void correct_lanes(const struct sphgi_threshold *threshold, const
     }
 }
 
+/* |c|_F; entries so small that their squares would vanish are scaled first. */
+SPHGI_TEMPLATE vec frobenius(const vec *c, bool three)
+{
+    const vec trace = three ? c[0] + c[3] + c[5] : c[0] + c[2];
+    const mask tiny = trace < splat(REAL_IS_F64 ? R(0x1p-400) : R(0x1p-40));
+    const vec up = select(tiny, splat(REAL_IS_F64 ? R(0x1p900) : R(0x1p100)), splat(R(1)));
+    vec s[6];
+    for (int k = 0; k < (three ? 6 : 3); ++k)
+        s[k] = c[k] * up;
+    const vec square = three ? s[0] * s[0] + s[3] * s[3] + s[5] * s[5] +
+                                   R(2) * (s[1] * s[1] + s[2] * s[2] + s[4] * s[4])
+                             : s[0] * s[0] + s[2] * s[2] + R(2) * s[1] * s[1];
+    return vsqrt(square) / up;
+}
+
 /* LDL^T inverse of one symmetric matrix a lane; gives the lanes that pass the certificate
  * |A^-1|_F (eps_hi + 80 u tr A) < 1, pivots > 0: there every eigenvalue exceeds eps_hi for sure,
  * so that the threshold would not have touched it. Written so that NaN fails. */
@@ -108,8 +123,6 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
         c[2] = k2 * i2;
         c[1] = -l1 * i1 - l3 * c[2];
         c[0] = i0 + l1 * l1 * i1 + k2 * c[2];
-        *norm = vsqrt(c[0] * c[0] + c[3] * c[3] + c[5] * c[5] +
-                      R(2) * (c[1] * c[1] + c[2] * c[2] + c[4] * c[4]));
     } else {
         const vec i0 = R(1) / m[0], l1 = m[1] * i0, d1 = m[2] - l1 * m[1], i1 = R(1) / d1;
         pivots = (m[0] > zero) & (d1 > zero);
@@ -117,8 +130,8 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
         c[2] = i1;
         c[1] = -l1 * i1;
         c[0] = i0 - l1 * c[1];
-        *norm = vsqrt(c[0] * c[0] + c[2] * c[2] + R(2) * c[1] * c[1]);
     }
+    *norm = frobenius(c, three);
     return pivots & less(*norm * (eps_high + R(80 * UNIT_ROUNDOFF) * trace), splat(R(1)));
 }
 

@@ -92,7 +92,7 @@ enum sphgi_weight {
     SPHGI_WEIGHT_V_PER_DENSITY
 };
 
-/* From the host's classic coefficients to those in units of H: y and z times these. */
+/* The host's table is ours times these: value all of a linearised one, or y; slope z_k. */
 struct sphgi_scales {
     double value, slope;
 };
@@ -188,7 +188,9 @@ struct sphgi_passes {
     void (*apply)(int32_t dimension, int32_t count, const void *correction, const void *sums,
                   double scale, void *jacobian);
     void (*scale)(int32_t count, const void *in, double factor, const void *per_lane, void *out);
-    void (*fill)(double value, void *out);                     /* in every lane */
+    void (*divide)(int32_t count, const void *in, double divisor, void *out);
+    bool (*valid_volumes)(const void *volumes); /* >= 0 and finite in every lane */
+    void (*fill)(double value, void *out);      /* in every lane */
     void (*quotient)(const void *a, const void *b, void *out); /* a NULL: 1; 0 where b is 0 */
     void (*add_outer)(int32_t dimension, int32_t count, const void *a, const void *b,
                       const void *per_lane, void *jacobian);

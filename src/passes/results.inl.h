@@ -1,23 +1,32 @@
 /* From sums and corrections to results, one target a lane. jacobian: [component][axis][lane]. */
 
 /* J[a][b] = scale sum_c C[b][c] sums[a][c]; correction NULL: the sums are gradients already. */
-static void apply(int32_t dimension, int32_t count, const void *correction, const void *sums,
-                  double scale, void *jacobian)
+SPHGI_TEMPLATE void apply_as(int32_t count, const real *c, const real *sums, vec factor, real *j,
+                             int32_t d)
 {
-    const int32_t d = dimension;
-    const real *b = sums, *c = correction;
-    real *j = jacobian;
-    const vec factor = splat(R(scale));
-    for (int32_t a = 0; a < count; ++a, b += d * LANES, j += d * LANES)
+    for (int32_t a = 0; a < count; ++a, sums += d * LANES, j += d * LANES) {
+        vec b[3];
+        for (int32_t k = 0; k < d; ++k)
+            b[k] = load(sums + k * LANES);
         for (int32_t row = 0; row < d; ++row) {
-            vec sum = load(b + row * LANES);
+            vec sum = b[row];
             if (c) {
-                sum = load(c + pair_index(row, 0, d) * LANES) * load(b);
+                sum = load(c + pair_index(row, 0, d) * LANES) * b[0];
                 for (int32_t k = 1; k < d; ++k)
-                    sum += load(c + pair_index(row, k, d) * LANES) * load(b + k * LANES);
+                    sum += load(c + pair_index(row, k, d) * LANES) * b[k];
             }
             store(j + row * LANES, factor * sum);
         }
+    }
+}
+
+static void apply(int32_t dimension, int32_t count, const void *correction, const void *sums,
+                  double scale, void *jacobian)
+{
+    if (dimension == 3)
+        apply_as(count, correction, sums, splat(R(scale)), jacobian, 3);
+    else
+        apply_as(count, correction, sums, splat(R(scale)), jacobian, 2);
 }
 
 /* G_ij = scale C_i g_ij in place, for each pair of the piece. */
@@ -57,6 +66,20 @@ static void scale_lanes(int32_t count, const void *in, double factor, const void
         each *= load(per_lane);
     for (int32_t c = 0; c < count; ++c)
         store((real *)out + c * LANES, each * load((const real *)in + c * LANES));
+}
+
+/* All lanes >= 0 and finite. */
+static bool valid_volumes(const void *volumes)
+{
+    const vec v = load(volumes), zero = splat(R(0));
+    return bits_of((mask)(v >= zero) & (mask)(v - v == zero)) == (1u << LANES) - 1;
+}
+
+/* out[c] = in[c] / divisor */
+static void divide_lanes(int32_t count, const void *in, double divisor, void *out)
+{
+    for (int32_t c = 0; c < count; ++c)
+        store((real *)out + c * LANES, load((const real *)in + c * LANES) / splat(R(divisor)));
 }
 
 static void fill(double value, void *out)

@@ -8,10 +8,13 @@ SPHGI_TEMPLATE real number_at(const char *at)
 static void load_rows(const struct sphgi_columns *columns, const int32_t *order, int64_t begin,
                       int64_t end, int32_t first, int32_t count, void *rows)
 {
+    enum { AHEAD = 16 };
     const ptrdiff_t stride = columns->stride;
     real *row = rows;
     for (int64_t k = begin; k < end; ++k, row += SPHGI_ROW) {
         const ptrdiff_t offset = (order ? order[k] : k) * stride;
+        if (order && count && k + AHEAD < end)
+            __builtin_prefetch(columns->at[first] + order[k + AHEAD] * stride);
         for (int32_t c = 0; c < count; ++c)
             row[c] = number_at(columns->at[first + c] + offset);
         for (int32_t c = count; c < SPHGI_ROW; ++c)

@@ -125,7 +125,7 @@ SPHGI_TEMPLATE void collect(const struct sphgi_find *find, struct candidates *c,
         for (int32_t k = find->run_begin[run]; k < end; k += LANES) {
             const vec x = load(sx + k), y = load(sy + k), z = load(sz + k);
             const vec square = distance_to(x, y, z, ball.x, ball.y, ball.z, w, periodic);
-            unsigned bits = bits_of(less(square, ball.square));
+            unsigned bits = bits_of((mask)(square <= ball.square)); /* both may be infinite */
             bits &= end - k >= LANES ? (1u << LANES) - 1 : (1u << (end - k)) - 1;
             const uint64_t order = find->pack_order[bits];
             pack_numbers(c->x + n, x, order);

@@ -1,0 +1,122 @@
+# Shared by bench/run and tests/run (sourced by bash): packages, and builds that are quiet unless
+# they fail or warn. A need is met if its probe works, from whichever package that came.
+
+probe_compiler() {
+    local out
+    out=$(mktemp) || return 1
+    printf '#include <math.h>\nint main(int n, char **v) { (void)v; return (int)sqrt(n - 1.0); }\n' |
+        "$1" -x "$2" - -o "$out" -lm "${@:3}" >/dev/null 2>&1 && "$out"
+    local status=$?
+    rm -f "$out"
+    return $status
+}
+probe_build_essential() { probe_compiler gcc c && probe_compiler g++ c++ && command -v make >/dev/null; }
+probe_cmake() { command -v cmake >/dev/null; }
+probe_pkg_config() { command -v pkg-config >/dev/null; }
+probe_cmocka() { pkg-config --exists cmocka 2>/dev/null; }
+probe_lapacke() { pkg-config --exists lapacke 2>/dev/null; }
+probe_cjson() { pkg-config --exists libcjson 2>/dev/null; }
+probe_gnuplot() { gnuplot -e 'set terminal pngcairo' >/dev/null 2>&1; }
+probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
+probe_clang_openmp() { probe_compiler clang c -fopenmp; }
+
+package_of() {
+    case $1 in
+        build_essential) echo build-essential ;;
+        cmake) echo cmake ;;
+        pkg_config) echo pkg-config ;;
+        cmocka) echo libcmocka-dev ;;
+        lapacke) echo liblapacke-dev ;;
+        cjson) echo libcjson-dev ;;
+        gnuplot) echo gnuplot-nox ;;
+        clang) echo clang ;;
+        clang_openmp) echo libomp-dev ;;
+    esac
+}
+
+missing_packages() {
+    local need
+    for need; do
+        "probe_$need" || package_of "$need"
+    done
+}
+
+# explain_packages REASON PACKAGE...: the one line for those who must install by themselves.
+explain_packages() {
+    echo "sphgrad needs, by their Debian names: ${*:2}. Please install them: $1." >&2
+    return 1
+}
+
+install_packages() {
+    local log as_root=()
+    if ! command -v apt-get >/dev/null; then
+        explain_packages 'there is no apt-get here to do it' "$@"
+        return 1
+    fi
+    if [ "$(id -u)" != 0 ]; then
+        if ! command -v sudo >/dev/null; then
+            explain_packages 'this user is not root and there is no sudo' "$@"
+            return 1
+        fi
+        as_root=(sudo)
+        [ -t 0 ] || as_root=(sudo -n)
+    fi
+    echo "installing $*" >&2
+    log=$(mktemp) || return 1
+    if "${as_root[@]}" apt-get update >"$log" 2>&1 &&
+        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -y --no-install-recommends "$@" >>"$log" 2>&1; then
+        rm -f "$log"
+        return 0
+    fi
+    tail -n 20 "$log" >&2
+    rm -f "$log"
+    explain_packages 'apt-get could not (see above)' "$@"
+}
+
+# require_packages NEED...: installs what is missing, touches nothing (no network) if all is there.
+require_packages() {
+    local packages version
+    mapfile -t packages < <(missing_packages "$@")
+    if [ ${#packages[@]} -gt 0 ]; then
+        install_packages "${packages[@]}" || return 1
+        mapfile -t packages < <(missing_packages "$@")
+        if [ ${#packages[@]} -gt 0 ]; then
+            explain_packages 'apt-get did, but they do not work' "${packages[@]}"
+            return 1
+        fi
+    fi
+    version=$(cmake --version | sed -n '1s/.* //p')
+    if [ "$(printf '%s\n3.23\n' "$version" | sort -V | head -n 1)" != 3.23 ]; then
+        echo "sphgrad needs CMake 3.23 or newer, this is $version (Debian 12, Ubuntu 24.04 have it)" >&2
+        return 1
+    fi
+}
+
+# quietly COMMAND...: the output is shown only if the command fails, and what it warned of.
+quietly() {
+    local log
+    log=$(mktemp) || return 1
+    if "$@" >"$log" 2>&1; then
+        grep -A 4 'warning:' "$log" >&2
+        rm -f "$log"
+        return 0
+    fi
+    grep -v '^\[ *[0-9]*%\] ' "$log" >&2 # less make's progress
+    rm -f "$log"
+    echo "failed: $*" >&2
+    return 1
+}
+
+# build_preset PRESET [CONFIGURE OPTION...] [-- BUILD OPTION...], from the root of the sources.
+build_preset() {
+    local preset=$1 configure=()
+    shift
+    while [ $# -gt 0 ] && [ "$1" != -- ]; do
+        configure+=("$1")
+        shift
+    done
+    [ $# -eq 0 ] || shift
+    quietly cmake --preset "$preset" "${configure[@]}" &&
+        quietly cmake --build --preset "$preset" -j "$(nproc)" "$@"
+}

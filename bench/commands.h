@@ -1,0 +1,8 @@
+/* The commands of sphgrad-bench. A new one: a declaration here, a row in main.c, a file. */
+#ifndef SPHGRAD_BENCH_COMMANDS_H
+#define SPHGRAD_BENCH_COMMANDS_H
+
+/* argv[0] names the command, options follow. Return the exit status. */
+int command_table1(int argc, char **argv);
+int command_fields(int argc, char **argv);
+#endif

@@ -1,0 +1,75 @@
+#include "library.h"
+#include "options.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+sphg_context *library_open(int32_t threads)
+{
+    sphg_context *context = NULL;
+    const sphg_config config = {.threads = threads};
+    const sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
+    if (result != SPHG_OK) {
+        fprintf(stderr, "sphgrad-bench: no context: %s\n", sphg_result_string(result));
+        exit(EXIT_FAILURE);
+    }
+    return context;
+}
+
+void library_check(const sphg_context *context, sphg_result result)
+{
+    if (result == SPHG_OK)
+        return;
+    fprintf(stderr, "sphgrad-bench: %s (%s)\n", sphg_last_message(context),
+            sphg_result_string(result));
+    exit(result > 0 ? EXIT_REFUSED : EXIT_FAILURE); /* positive: what it was given is at fault */
+}
+
+const char *library_version(void)
+{
+    static char text[32];
+    const int version = sphg_version();
+    snprintf(text, sizeof text, "%d.%d.%d", version / 10000, version / 100 % 100, version % 100);
+    return text;
+}
+
+/* The library does not name its choice, but says which ones it could not serve. */
+const char *library_isa(void)
+{
+    static const struct {
+        sphg_isa isa;
+        const char *name;
+    } best_first[] = {
+        {SPHG_ISA_X86_V4, "x86-64-v4"}, {SPHG_ISA_X86_V3, "x86-64-v3"}, {SPHG_ISA_NEON, "NEON"}};
+    for (size_t k = 0; k < sizeof best_first / sizeof best_first[0]; k++) {
+        sphg_context *context = NULL;
+        const sphg_config config = {.threads = 1, .isa = best_first[k].isa};
+        const sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
+        sphg_context_destroy(context);
+        if (result == SPHG_OK)
+            return best_first[k].name;
+    }
+    return "baseline";
+}
+
+void library_volumes(sphg_context *context, const sphg_scheme *scheme,
+                     const sphg_neighbors *neighbors, struct numbers *volumes)
+{
+    sphg_scheme plain = *scheme;
+    plain.method = SPHG_PLAIN;
+    struct numbers one = numbers_create(volumes->type, 1, 1);
+    numbers_set(&one, 0, 0, 1);
+    sphg_view ones = numbers_view(&one);
+    ones.stride = 0;
+    const sphg_sources sources = {.neighbors = neighbors, .volume = ones};
+    const sphg_field field = {.shape = SPHG_SCALAR,
+                              .form = SPHG_DIRECT,
+                              .at_sources = &ones,
+                              .value = numbers_view(volumes)};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
+    library_check(context, sphg_evaluate(context, &plain, &request));
+    for (int32_t i = 0; i < volumes->count; i++)
+        numbers_set(volumes, i, 0, 1 / numbers_get(volumes, i, 0));
+    numbers_destroy(&one);
+}

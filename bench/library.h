@@ -1,0 +1,15 @@
+/* The library as the benchmark uses it: any failure ends the program with the library's words. */
+#ifndef SPHGRAD_BENCH_LIBRARY_H
+#define SPHGRAD_BENCH_LIBRARY_H
+#include "numbers.h"
+
+sphg_context *library_open(int32_t threads); /* 0: the library's default */
+void library_check(const sphg_context *context, sphg_result result);
+
+const char *library_version(void);
+const char *library_isa(void); /* the best instruction set that runs here */
+
+/* V_j = 1 / sum_k W_jk, j itself included: volumes from the positions alone. */
+void library_volumes(sphg_context *context, const sphg_scheme *scheme,
+                     const sphg_neighbors *neighbors, struct numbers *volumes);
+#endif

@@ -1,0 +1,61 @@
+/* sphgrad-bench: finds the command and hands over. */
+#include "commands.h"
+#include "options.h"
+
+#include <sphgrad/sphgrad.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct command {
+    const char *name, *summary;
+    int (*run)(int argc, char **argv);
+};
+
+/* The first is the default. */
+static const struct command commands[] = {
+    {"table1", "time the corrections and gradients of a million particles (default)",
+     command_table1},
+    {"fields", "error of plain and corrected derivatives on a square: tables, CSV, pictures",
+     command_fields},
+};
+static const int command_count = (int)(sizeof commands / sizeof commands[0]);
+
+static int print_overview(void)
+{
+    printf("Usage: sphgrad-bench [COMMAND] [OPTIONS]\n\n");
+    for (int k = 0; k < command_count; k++)
+        printf("  %-10s %s\n", commands[k].name, commands[k].summary);
+    printf("\nsphgrad-bench COMMAND --help lists the options of a command.\n");
+    return EXIT_SUCCESS;
+}
+
+static int print_version(void)
+{
+    const int version = sphg_version();
+    printf("sphgrad-bench %d.%d.%d\n", version / 10000, version / 100 % 100, version % 100);
+    return EXIT_SUCCESS;
+}
+
+static int run(const struct command *command, int argc, char **argv)
+{
+    char name[64]; /* in front of messages about options */
+    snprintf(name, sizeof name, "sphgrad-bench %s", command->name);
+    argv[0] = name;
+    return command->run(argc, argv);
+}
+
+int main(int argc, char **argv)
+{
+    const char *first = argc > 1 ? argv[1] : "";
+    if (strcmp(first, "--help") == 0 || strcmp(first, "-?") == 0 || strcmp(first, "-h") == 0)
+        return print_overview();
+    if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0)
+        return print_version();
+    if (argc < 2 || first[0] == '-')
+        return run(&commands[0], argc, argv);
+    for (int k = 0; k < command_count; k++)
+        if (strcmp(first, commands[k].name) == 0)
+            return run(&commands[k], argc - 1, argv + 1);
+    options_refuse("there is no command '%s' (sphgrad-bench --help lists them)", first);
+}

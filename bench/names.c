@@ -1,0 +1,50 @@
+#include "names.h"
+
+#include <stddef.h>
+
+const char *const precision_names[] = {"f32", "f64", "mixed", NULL};
+
+const char *const kernel_names[] = {
+    [SPHG_CUBIC_SPLINE] = "cubic",
+    [SPHG_QUINTIC_SPLINE] = "quintic",
+    [SPHG_WENDLAND_C2] = "wendland-c2",
+    [SPHG_WENDLAND_C4] = "wendland-c4",
+    [SPHG_WENDLAND_C6] = "wendland-c6",
+    [SPHG_POLY6] = "poly6",
+    [SPHG_SPIKY] = "spiky",
+    NULL,
+};
+
+const char *const method_names[] = {
+    [SPHG_KGC] = "KGC",
+    [SPHG_MLS] = "MLS",
+    [SPHG_RKPM] = "RKPM",
+    [SPHG_CMLS] = "CMLS",
+    [SPHG_CRKPM] = "CRKPM",
+    [SPHG_PLAIN] = "SPH",
+    NULL,
+};
+
+const char *kernel_title(sphg_kernel kernel)
+{
+    static const char *const titles[] = {
+        [SPHG_CUBIC_SPLINE] = "cubic spline",
+        [SPHG_QUINTIC_SPLINE] = "quintic spline",
+        [SPHG_WENDLAND_C2] = "Wendland C2",
+        [SPHG_WENDLAND_C4] = "Wendland C4",
+        [SPHG_WENDLAND_C6] = "Wendland C6",
+        [SPHG_POLY6] = "poly6",
+        [SPHG_SPIKY] = "spiky",
+    };
+    return titles[kernel];
+}
+
+sphg_type position_type(enum precision precision)
+{
+    return precision == PRECISION_F32 ? SPHG_F32 : SPHG_F64;
+}
+
+sphg_type field_type(enum precision precision)
+{
+    return precision == PRECISION_F64 ? SPHG_F64 : SPHG_F32;
+}

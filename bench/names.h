@@ -1,0 +1,20 @@
+/* What precisions, kernels and methods are called on the command line and in tables. */
+#ifndef SPHGRAD_BENCH_NAMES_H
+#define SPHGRAD_BENCH_NAMES_H
+#include <sphgrad/sphgrad.h>
+
+enum precision {
+    PRECISION_F32,
+    PRECISION_F64,
+    PRECISION_MIXED /* positions f64, fields and results f32 */
+};
+
+/* NULL-terminated, indexed by the value. */
+extern const char *const precision_names[];
+extern const char *const kernel_names[]; /* as typed */
+extern const char *const method_names[]; /* as in the paper's tables */
+
+const char *kernel_title(sphg_kernel kernel); /* as written in a sentence */
+sphg_type position_type(enum precision precision);
+sphg_type field_type(enum precision precision);
+#endif

@@ -1,0 +1,22 @@
+/* Tables of numbers whose precision is chosen at run time. */
+#ifndef SPHGRAD_BENCH_NUMBERS_H
+#define SPHGRAD_BENCH_NUMBERS_H
+#include <sphgrad/sphgrad.h>
+
+struct numbers {
+    void *data; /* count x width, row-major */
+    sphg_type type;
+    int32_t count, width;
+};
+
+/* All zero. Ends the program where memory runs out. */
+struct numbers numbers_create(sphg_type type, int32_t count, int32_t width);
+void numbers_destroy(struct numbers *numbers);
+
+double numbers_get(const struct numbers *numbers, int32_t item, int32_t component);
+void numbers_set(struct numbers *numbers, int32_t item, int32_t component, double value);
+sphg_view numbers_view(const struct numbers *numbers);
+
+/* malloc that ends the program where memory runs out; free() releases it. */
+void *allocate_or_exit(size_t count, size_t size);
+#endif

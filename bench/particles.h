@@ -1,0 +1,35 @@
+/* The particles that table1 runs on: a cubic lattice, or a host's own from a file. */
+#ifndef SPHGRAD_BENCH_PARTICLES_H
+#define SPHGRAD_BENCH_PARTICLES_H
+#include "names.h"
+#include "numbers.h"
+
+#include <stdbool.h>
+
+struct particle_source {
+    const char *input; /* CSV file; NULL: a lattice */
+    double mass;       /* of each particle in a file with densities; 0: not known */
+    int32_t side;      /* of the lattice, in particles */
+    double jitter;     /* share of the spacing */
+    bool shuffled;     /* random order in memory */
+    enum precision precision;
+};
+
+struct particles {
+    struct numbers positions, velocities;
+    struct numbers volumes; /* count 0: not known yet */
+    int32_t count;
+    bool own_velocities;       /* read from the file; else v = (-y, x, 2z) */
+    const char *volume_origin; /* where the volumes are from, in words */
+};
+
+/* 1/128: a power of two, so that pairs at exactly r = H are exactly not neighbours. */
+extern const double lattice_spacing;
+
+/* Ends the program with one line where the file is not usable. */
+struct particles particles_create(const struct particle_source *source);
+void particles_destroy(struct particles *particles);
+
+/* v = (-y, x, 2z) at the positions as stored. Exact in the precision of positions. */
+void particles_linear_field(const struct particles *particles, struct numbers *field);
+#endif

@@ -1,0 +1,233 @@
+/* The measurements of table1. Each repetition goes once through everything: the search, then each
+ * method's three calls. So a slow second of the machine hits all columns alike. */
+#include "library.h"
+#include "progress.h"
+#include "table1.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* What all measurements share. */
+struct bench {
+    struct table1 *table;
+    sphg_context *context;
+    sphg_neighbors *neighbors;
+    struct numbers corrections; /* room for the widest; each method uses the start of it */
+    struct numbers jacobians;
+    uint8_t *ranks;
+};
+
+static sphg_scheme scheme_of(const struct bench *bench, sphg_method method)
+{
+    return (sphg_scheme){.dimension = 3,
+                         .method = method,
+                         .kernel = bench->table->options.kernel,
+                         .support_radius = bench->table->support_radius};
+}
+
+static sphg_sources sources_of(const struct bench *bench)
+{
+    return (sphg_sources){.neighbors = bench->neighbors,
+                          .volume = numbers_view(&bench->table->particles.volumes)};
+}
+
+static sphg_view correction_table(const struct bench *bench, sphg_method method)
+{
+    const sphg_scheme scheme = scheme_of(bench, method);
+    struct numbers table = bench->corrections;
+    table.width = sphg_correction_width(&scheme);
+    return table.width > 0 ? numbers_view(&table) : sphg_absent();
+}
+
+static void search(struct bench *bench)
+{
+    const struct particles *particles = &bench->table->particles;
+    const sphg_scheme scheme = scheme_of(bench, SPHG_KGC);
+    const sphg_geometry geometry = {.sources = numbers_view(&particles->positions),
+                                    .source_count = particles->count,
+                                    .target_count = particles->count,
+                                    .precision = bench->jacobians.type};
+    library_check(bench->context,
+                  sphg_neighbors_search(bench->context, bench->neighbors, &scheme, &geometry));
+}
+
+static void compute_matrix(struct bench *bench, sphg_method method)
+{
+    const sphg_scheme scheme = scheme_of(bench, method);
+    const sphg_sources sources = sources_of(bench);
+    library_check(bench->context, sphg_correction(bench->context, &scheme, &sources, NULL,
+                                                  correction_table(bench, method), sphg_absent()));
+}
+
+static void compute_gradient(struct bench *bench, sphg_method method, const struct numbers *field)
+{
+    const sphg_scheme scheme = scheme_of(bench, method);
+    sphg_sources sources = sources_of(bench);
+    sources.correction = correction_table(bench, method);
+    library_check(bench->context,
+                  sphg_jacobian(bench->context, &scheme, &sources, NULL, numbers_view(field),
+                                numbers_view(&bench->jacobians)));
+}
+
+/* stats, ranks: wanted where they are not NULL. */
+static void compute_fused(struct bench *bench, sphg_method method, const struct numbers *field,
+                          sphg_stats *stats, uint8_t *ranks)
+{
+    const sphg_scheme scheme = scheme_of(bench, method);
+    const sphg_sources sources = sources_of(bench);
+    const sphg_view at_sources = numbers_view(field);
+    const sphg_field wanted = {.shape = SPHG_VECTOR,
+                               .form = SPHG_DIFFERENCE,
+                               .at_sources = &at_sources,
+                               .gradient = numbers_view(&bench->jacobians)};
+    const sphg_request request = {.sources = &sources,
+                                  .fields = &wanted,
+                                  .set_count = 1,
+                                  .field_count = 1,
+                                  .rank = ranks ? sphg_view_u8(ranks, 1) : sphg_absent(),
+                                  .stats = stats};
+    library_check(bench->context, sphg_evaluate(bench->context, &scheme, &request));
+}
+
+static int64_t count_not_finite(const struct numbers *numbers)
+{
+    int64_t count = 0;
+    for (int32_t i = 0; i < numbers->count; i++)
+        for (int32_t k = 0; k < numbers->width; k++)
+            count += !isfinite(numbers_get(numbers, i, k));
+    return count;
+}
+
+/* |J_i - J|_F / |J|_F of v = (-y, x, 2z). */
+static double linear_field_error(const struct numbers *jacobians, int32_t i)
+{
+    static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
+    double difference = 0, size = 0;
+    for (int32_t k = 0; k < 9; k++) {
+        const double d = numbers_get(jacobians, i, k) - expected[k];
+        difference += d * d;
+        size += expected[k] * expected[k];
+    }
+    return sqrt(difference / size);
+}
+
+/* Plain SPH corrects nothing and has no rank: all particles count. NaN is not overlooked, and is
+ * what comes out where no particle counts. */
+static double largest_error(const struct bench *bench, sphg_method method)
+{
+    double most = -1;
+    for (int32_t i = 0; i < bench->jacobians.count; i++) {
+        if (method != SPHG_PLAIN && bench->ranks[i] < 3)
+            continue;
+        const double error = linear_field_error(&bench->jacobians, i);
+        most = error <= most ? most : error;
+    }
+    return most < 0 ? NAN : most;
+}
+
+static void measure_errors(struct bench *bench, struct column *column,
+                           const struct numbers *linear_field)
+{
+    const sphg_method method = column->method;
+    const int corrected = method != SPHG_PLAIN;
+    compute_fused(bench, method, linear_field, corrected ? &column->stats : NULL,
+                  corrected ? bench->ranks : NULL);
+    column->fused_error = largest_error(bench, method);
+    column->not_finite += count_not_finite(&bench->jacobians);
+    if (corrected)
+        compute_matrix(bench, method);
+    compute_gradient(bench, method, linear_field);
+    column->gradient_error = largest_error(bench, method);
+    column->not_finite += count_not_finite(&bench->jacobians);
+}
+
+static void warm_up(struct bench *bench)
+{
+    const struct particles *particles = &bench->table->particles;
+    struct numbers linear_field = numbers_create(particles->velocities.type, particles->count, 3);
+    particles_linear_field(particles, &linear_field);
+    for (int k = 0; k < TABLE1_COLUMNS; k++) {
+        struct column *column = &bench->table->columns[k];
+        progress_show("warm-up: %s", method_names[column->method]);
+        measure_errors(bench, column, &linear_field);
+        if (particles->own_velocities) {
+            compute_gradient(bench, column->method, &particles->velocities);
+            column->not_finite += count_not_finite(&bench->jacobians);
+        }
+    }
+    numbers_destroy(&linear_field);
+}
+
+static void time_method(struct bench *bench, struct column *column)
+{
+    const struct numbers *field = &bench->table->particles.velocities;
+    if (column->method != SPHG_PLAIN) {
+        const struct moment matrix_start = now();
+        compute_matrix(bench, column->method);
+        samples_add_since(&column->matrix, matrix_start);
+    }
+    const struct moment gradient_start = now();
+    compute_gradient(bench, column->method, field);
+    samples_add_since(&column->gradient, gradient_start);
+    if (column->method == SPHG_PLAIN)
+        return;
+    const struct moment fused_start = now();
+    compute_fused(bench, column->method, field, NULL, NULL);
+    samples_add_since(&column->fused, fused_start);
+}
+
+static void repeat(struct bench *bench)
+{
+    struct table1 *table = bench->table;
+    for (int32_t repetition = 0; repetition < table->options.repetitions; repetition++) {
+        progress_show("repetition %d of %d", repetition + 1, table->options.repetitions);
+        const struct moment start = now();
+        search(bench);
+        samples_add_since(&table->search, start);
+        for (int k = 0; k < TABLE1_COLUMNS; k++)
+            time_method(bench, &table->columns[k]);
+    }
+    progress_clear();
+}
+
+/* Volumes that neither lattice nor file gave. */
+static void complete_volumes(struct bench *bench)
+{
+    struct particles *particles = &bench->table->particles;
+    if (particles->volumes.data)
+        return;
+    const sphg_scheme scheme = scheme_of(bench, SPHG_PLAIN);
+    particles->volumes = numbers_create(bench->jacobians.type, particles->count, 1);
+    library_volumes(bench->context, &scheme, bench->neighbors, &particles->volumes);
+}
+
+static void first_search(struct bench *bench)
+{
+    progress_show("warm-up: search");
+    const double start = now().wall;
+    search(bench);
+    bench->table->first_search = now().wall - start;
+    library_check(bench->context, sphg_neighbors_get_info(bench->context, bench->neighbors,
+                                                          &bench->table->neighbors));
+}
+
+void table1_measure(struct table1 *table)
+{
+    const sphg_scheme widest = {.method = SPHG_CMLS, .support_radius = 1};
+    const sphg_type type = table->particles.velocities.type;
+    const int32_t count = table->particles.count;
+    struct bench bench = {.table = table, .context = library_open(table->options.threads)};
+    bench.corrections = numbers_create(type, count, sphg_correction_width(&widest));
+    bench.jacobians = numbers_create(type, count, 9);
+    bench.ranks = allocate_or_exit((size_t)count, 1);
+    library_check(bench.context, sphg_neighbors_create(bench.context, &bench.neighbors));
+    first_search(&bench);
+    complete_volumes(&bench);
+    warm_up(&bench);
+    repeat(&bench);
+    sphg_neighbors_destroy(bench.neighbors);
+    sphg_context_destroy(bench.context);
+    numbers_destroy(&bench.corrections);
+    numbers_destroy(&bench.jacobians);
+    free(bench.ranks);
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# bench_options.sh PROGRAM: a bad option is answered by one line on stderr and exit status 2.
+program=$1
+status=0
+
+refuses() {
+    message=$("$program" "$@" 2>&1 >/dev/null)
+    code=$?
+    lines=$(printf '%s\n' "$message" | wc -l)
+    if [ "$code" -ne 2 ] || [ -z "$message" ] || [ "$lines" -ne 1 ]; then
+        echo "sphgrad-bench $*: exit status $code, on stderr: $message" >&2
+        status=1
+    fi
+}
+
+refuses --nonsense
+refuses nonsense
+refuses --particles
+refuses --particles none
+refuses --particles -8
+refuses --threads 1.5
+refuses --support 0
+refuses --support nan
+refuses --kernel gaussian
+refuses --precision f16
+refuses --order random
+refuses --repetitions 0
+refuses --jitter -1
+refuses fields --input /nonexistent.csv
+refuses --input /nonexistent.csv
+exit $status

@@ -1,0 +1,199 @@
+#include "fixture.h"
+#include <string.h>
+
+void fixture_ok(const sphg_context *context, sphg_result result, const char *call)
+{
+    if (result != SPHG_OK)
+        fail_msg("%s: %s (%s)", call, sphg_result_string(result),
+                 context ? sphg_last_message(context) : "no context");
+}
+
+/* ---- Context ------------------------------------------------------------------------------ */
+
+static void destroy_context(void *context)
+{
+    sphg_context_destroy(context);
+}
+
+sphg_context *fixture_context_of(int threads)
+{
+    sphg_config config = {0};
+    config.threads = threads;
+    sphg_context *context = NULL;
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+    test_at_end(destroy_context, context);
+    return context;
+}
+
+sphg_context *fixture_context_on(sphg_isa isa)
+{
+    sphg_config config = {0};
+    config.threads = 1;
+    config.isa = isa;
+    sphg_context *context = NULL;
+    sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
+    if (result == SPHG_ERROR_UNSUPPORTED)
+        return NULL;
+    FIXTURE_OK(NULL, result);
+    test_at_end(destroy_context, context);
+    return context;
+}
+
+sphg_context *fixture_context(void)
+{
+    return fixture_context_of(2);
+}
+
+/* ---- Arrays ------------------------------------------------------------------------------- */
+
+static size_t size_of(sphg_type type)
+{
+    return type == SPHG_F64 ? sizeof(double) : type == SPHG_F32 ? sizeof(float) : 1;
+}
+
+enum { canary = 0xA5 };
+
+fixture_array fixture_output(sphg_type type, int count, int width)
+{
+    fixture_array array = {NULL, type, count, width};
+    size_t bytes = (size_t)count * (size_t)width * size_of(type);
+    array.data = test_memory(bytes);
+    memset(array.data, canary, bytes);
+    return array;
+}
+
+fixture_array fixture_numbers(sphg_type type, int count, int width, const double *numbers)
+{
+    fixture_array array = fixture_output(type, count, width);
+    for (int k = 0; k < count * width; k++) {
+        if (type == SPHG_F64)
+            ((double *)array.data)[k] = numbers[k];
+        else
+            ((float *)array.data)[k] = (float)numbers[k];
+    }
+    return array;
+}
+
+sphg_view fixture_view(const fixture_array *array)
+{
+    sphg_view view = {array->data, NULL, NULL, 0, array->type};
+    view.stride = (ptrdiff_t)((size_t)array->width * size_of(array->type));
+    return view;
+}
+
+double fixture_get(const fixture_array *array, int item, int component)
+{
+    int k = item * array->width + component;
+    if (array->type == SPHG_F64)
+        return ((const double *)array->data)[k];
+    if (array->type == SPHG_F32)
+        return (double)((const float *)array->data)[k];
+    return ((const uint8_t *)array->data)[k];
+}
+
+double *fixture_doubles(const fixture_array *array)
+{
+    int total = array->count * array->width;
+    double *numbers = test_memory((size_t)total * sizeof *numbers);
+    for (int k = 0; k < total; k++)
+        numbers[k] = fixture_get(array, k / array->width, k % array->width);
+    return numbers;
+}
+
+int fixture_same_bits(const fixture_array *a, const fixture_array *b)
+{
+    size_t bytes = (size_t)a->count * (size_t)a->width * size_of(a->type);
+    return a->type == b->type && a->count == b->count && a->width == b->width &&
+           memcmp(a->data, b->data, bytes) == 0;
+}
+
+int fixture_is_canary(const fixture_array *array, int item)
+{
+    size_t bytes = (size_t)array->width * size_of(array->type);
+    const unsigned char *data = (const unsigned char *)array->data + (size_t)item * bytes;
+    for (size_t k = 0; k < bytes; k++)
+        if (data[k] != canary)
+            return 0;
+    return 1;
+}
+
+/* ---- Scheme, geometry, neighbours --------------------------------------------------------- */
+
+sphg_scheme fixture_scheme(const test_case *test, double support_radius)
+{
+    sphg_scheme scheme = {0};
+    scheme.dimension = test->dimension;
+    scheme.method = test->method;
+    scheme.kernel = test->kernel;
+    scheme.support_radius = support_radius;
+    return scheme;
+}
+
+fixture_array fixture_positions(const test_case *test, cloud *points)
+{
+    if (test_position_type(test) == SPHG_F32)
+        cloud_round_to_single(points);
+    return fixture_numbers(test_position_type(test), points->count, points->dimension, points->x);
+}
+
+sphg_geometry fixture_geometry(const test_case *test, const cloud *points,
+                               const fixture_array *positions)
+{
+    sphg_geometry geometry = {0};
+    geometry.sources = fixture_view(positions);
+    geometry.source_count = points->count;
+    geometry.target_count = points->count;
+    geometry.precision = test_field_type(test);
+    return geometry;
+}
+
+static void destroy_neighbors(void *neighbors)
+{
+    sphg_neighbors_destroy(neighbors);
+}
+
+static sphg_neighbors *created(sphg_context *context)
+{
+    sphg_neighbors *neighbors = NULL;
+    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+    test_at_end(destroy_neighbors, neighbors);
+    return neighbors;
+}
+
+sphg_neighbors *fixture_search(sphg_context *context, const sphg_scheme *scheme,
+                               const sphg_geometry *geometry)
+{
+    sphg_neighbors *neighbors = created(context);
+    FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, scheme, geometry));
+    return neighbors;
+}
+
+sphg_neighbors *fixture_lists(sphg_context *context, const sphg_scheme *scheme,
+                              const sphg_geometry *geometry, const sphg_lists *lists)
+{
+    sphg_neighbors *neighbors = created(context);
+    FIXTURE_OK(context, sphg_neighbors_use_lists(context, neighbors, scheme, geometry, lists));
+    return neighbors;
+}
+
+sphg_neighbors *fixture_neighbors(sphg_context *context, const test_case *test,
+                                  const sphg_scheme *scheme, cloud *points)
+{
+    fixture_array positions = fixture_positions(test, points);
+    sphg_geometry geometry = fixture_geometry(test, points, &positions);
+    return fixture_search(context, scheme, &geometry);
+}
+
+int fixture_width(sphg_shape shape, int dimension)
+{
+    switch (shape) {
+    case SPHG_SCALAR:
+        return 1;
+    case SPHG_VECTOR:
+        return dimension;
+    case SPHG_SYM_TENSOR:
+        return dimension * (dimension + 1) / 2;
+    default:
+        return dimension * dimension;
+    }
+}

@@ -1,0 +1,82 @@
+/* The reference: every result by brute force in quadruple precision, written from docs/theory.md
+ * and sharing no code with the library, on the same rounded inputs. Beside each result stands
+ * its bound D (docs/theory.md, errors): what one rounding of everything could do to it. Tests
+ * compare |error| / D with a gate. */
+#ifndef TESTS_SUPPORT_ORACLE_H
+#define TESTS_SUPPORT_ORACLE_H
+#include "oracle_kernel.h"
+#include "oracle_matrix.h"
+
+/* One source set; its first target_count particles are the targets unless `targets` is set. */
+typedef struct oracle_scene {
+    sphg_scheme scheme;
+    double unit;          /* u of fields and results */
+    int single_positions; /* 1: neighbours are decided in f32 */
+    double period[3];
+    int source_count, target_count;
+    const double *sources, *targets;
+    const double *volume, *density;               /* at sources; NULL: absent */
+    const double *target_volume, *target_density; /* NULL: those of the sources if part of them */
+} oracle_scene;
+
+typedef struct oracle_pair {
+    int j;
+    quad x[3], r; /* x_ij */
+    quad s;       /* linearised: s_ij; classic: the weight w_j */
+    quad slope;   /* classic: (W'/r) [V_j] */
+    quad spread;  /* linearised: |s| + r |ds/dr|; classic: w + r |w'| */
+    quad slope_spread;
+    quad gradient[3]; /* G_ij */
+    quad bound;       /* D of G_ij */
+} oracle_pair;
+
+/* Everything about one target. */
+typedef struct oracle_point {
+    int pair_count;
+    oracle_pair *pairs;
+    int has_self;  /* the target is one of the sources */
+    int undecided; /* an eigenvalue so near the threshold that rounding decides */
+    quad volume;   /* V_i, 0 where absent */
+    quad scale;    /* m_ref; classic: S0 mu2 */
+    quad spread;   /* T = sum a r^2 */
+    oracle_filter filter;
+    int rank;
+    quad correction_norm;  /* |C_i| */
+    quad correction_bound; /* D of C_i */
+    oracle_matrix moment, correction;
+    /* classic */
+    quad mass;        /* S0 */
+    quad self_weight; /* w_0 */
+    quad y[oracle_rows], z[3][oracle_rows];
+    quad self_gradient[3], self_bound;
+    quad y_norm, z_norm, condition;
+    quad z_bound; /* k |z| and what cancels in z */
+} oracle_point;
+
+typedef struct oracle oracle;
+/* The scene is copied, the arrays are borrowed. Released when the test case ends. */
+oracle *oracle_of(const oracle_scene *scene);
+/* Target i, solved on first use. */
+const oracle_point *oracle_at(oracle *reference, int i);
+
+typedef struct oracle_field {
+    sphg_shape shape;
+    sphg_form form;
+    const double *at_sources; /* items of the shape's width */
+    const double *at_targets; /* NULL: the targets are sources */
+} oracle_field;
+
+typedef struct oracle_result {
+    quad gradient[9], divergence[3], curl[3], value[9];
+    quad bound, value_bound;
+    int touched;   /* a threshold acted on a particle involved */
+    int undecided; /* one of them is undecided: do not compare */
+} oracle_result;
+
+oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i);
+
+/* G_ij for target i's neighbour given as a pair of its list, from coefficients of `point`; used
+ * for G_ji with the pair seen from the other side. */
+quad oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair);
+
+#endif

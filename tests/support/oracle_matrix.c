@@ -1,0 +1,144 @@
+#include "oracle_matrix.h"
+
+/* ---- Eigenvalues: cyclic Jacobi ------------------------------------------------------------- */
+
+static void rotate(int n, oracle_matrix a, oracle_matrix vectors, int p, int q)
+{
+    /* So small beside the diagonal that it no longer counts, and theta^2 would overflow. */
+    if (quad_abs(a[p][q]) <= 0x1p-240 * (quad_abs(a[p][p]) + quad_abs(a[q][q]))) {
+        a[p][q] = a[q][p] = 0;
+        return;
+    }
+    quad theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+    quad t = (theta < 0 ? -1 : 1) / (quad_abs(theta) + quad_sqrt(theta * theta + 1));
+    quad c = 1 / quad_sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < n; k++) {
+        quad left = a[k][p], right = a[k][q];
+        a[k][p] = c * left - s * right;
+        a[k][q] = s * left + c * right;
+    }
+    for (int k = 0; k < n; k++) {
+        quad left = a[p][k], right = a[q][k];
+        a[p][k] = c * left - s * right;
+        a[q][k] = s * left + c * right;
+        left = vectors[k][p], right = vectors[k][q];
+        vectors[k][p] = c * left - s * right;
+        vectors[k][q] = s * left + c * right;
+    }
+    a[p][q] = a[q][p] = 0;
+}
+
+void oracle_eigen(int n, oracle_matrix a, quad *values, oracle_matrix vectors)
+{
+    enum { sweeps = 12 };
+    oracle_matrix work;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            work[i][j] = a[i][j];
+            vectors[i][j] = i == j;
+        }
+    for (int sweep = 0; sweep < sweeps; sweep++)
+        for (int p = 0; p < n; p++)
+            for (int q = p + 1; q < n; q++)
+                rotate(n, work, vectors, p, q);
+    for (int i = 0; i < n; i++)
+        values[i] = work[i][i];
+}
+
+quad oracle_spectral_norm(int n, oracle_matrix a)
+{
+    quad values[oracle_rows], largest = 0;
+    oracle_matrix vectors;
+    oracle_eigen(n, a, values, vectors);
+    for (int k = 0; k < n; k++)
+        largest = quad_max(largest, quad_abs(values[k]));
+    return largest;
+}
+
+/* ---- Policies ------------------------------------------------------------------------------- */
+
+/* f and f' of one eigenvalue; kept: f = 1/lambda exactly. */
+typedef struct policy_value {
+    quad f, derivative;
+    int kept;
+} policy_value;
+
+static policy_value inverse_of(quad lambda)
+{
+    policy_value value = {1 / lambda, -1 / (lambda * lambda), 1};
+    return value;
+}
+
+static policy_value constant(int below)
+{
+    policy_value value = {below, 0, 0};
+    return value;
+}
+
+static policy_value blended(quad lambda, quad eps, int below)
+{
+    quad t = (lambda - eps) / (3 * eps);
+    if (t >= 1)
+        return inverse_of(lambda);
+    if (t <= 0)
+        return constant(below);
+    quad w = t * t * (3 - 2 * t), rate = 6 * t * (1 - t) / (3 * eps);
+    policy_value value = {w / lambda + (1 - w) * below,
+                          rate * (1 / lambda - below) - w / (lambda * lambda), 0};
+    return value;
+}
+
+static policy_value apply(sphg_policy policy, quad lambda, quad lambda_min, quad eps, int below)
+{
+    switch (policy) {
+    case SPHG_BLEND:
+        return blended(lambda, eps, below);
+    case SPHG_REPLACE:
+        return lambda > eps ? inverse_of(lambda) : constant(below);
+    case SPHG_TRUNCATE:
+        return lambda > eps ? inverse_of(lambda) : constant(0);
+    default:
+        return lambda_min > eps ? inverse_of(lambda) : constant(below);
+    }
+}
+
+static quad smallest(int n, const quad *values)
+{
+    quad least = values[0];
+    for (int k = 1; k < n; k++)
+        least = values[k] < least ? values[k] : least;
+    return least;
+}
+
+oracle_filter oracle_filtered(int n, oracle_matrix normalised, sphg_policy policy, quad eps,
+                              int below)
+{
+    oracle_filter filter = {.n = n, .eps = eps};
+    quad derivative[oracle_rows];
+    oracle_eigen(n, normalised, filter.lambda, filter.axes);
+    filter.lambda_min = smallest(n, filter.lambda);
+    for (int k = 0; k < n; k++) {
+        policy_value value = apply(policy, filter.lambda[k], filter.lambda_min, eps, below);
+        filter.f[k] = value.f;
+        filter.rank += value.kept;
+        derivative[k] = value.derivative;
+    }
+    for (int k = 0; k < n; k++)
+        for (int l = 0; l < n; l++) {
+            quad gap = filter.lambda[k] - filter.lambda[l];
+            quad size = quad_abs(filter.lambda[k]) + quad_abs(filter.lambda[l]);
+            filter.divided[k][l] =
+                quad_abs(gap) <= size * 0x1p-50 ? derivative[k] : (filter.f[k] - filter.f[l]) / gap;
+        }
+    return filter;
+}
+
+void oracle_recompose(const oracle_filter *filter, oracle_matrix result)
+{
+    for (int a = 0; a < filter->n; a++)
+        for (int b = 0; b < filter->n; b++) {
+            result[a][b] = 0;
+            for (int k = 0; k < filter->n; k++)
+                result[a][b] += filter->axes[a][k] * filter->f[k] * filter->axes[b][k];
+        }
+}

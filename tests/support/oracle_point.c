@@ -1,0 +1,453 @@
+/* One target: neighbours, moments, corrections, G_ij. */
+#include "oracle.h"
+#include "oracle_internal.h"
+#include "test.h"
+
+/* ---- Neighbours ----------------------------------------------------------------------------- */
+
+/* fl(fl(x_i - x_j) + k L) with the k that makes it smallest, in the precision of the positions. */
+static double shifted(double difference, double period, int single)
+{
+    if (period <= 0)
+        return difference;
+    double k = -nearbyint(difference / period), best = INFINITY;
+    for (double near = k - 1; near <= k + 1; near++) {
+        double candidate = single ? (double)((float)difference + (float)(near * period))
+                                  : difference + near * period;
+        best = fabs(candidate) < fabs(best) ? candidate : best;
+    }
+    return best;
+}
+
+static int is_inside(const double *difference, int dimension, double support, int single)
+{
+    const double *d = difference;
+    if (single) {
+        float x = (float)d[0], y = (float)d[1], z = dimension == 3 ? (float)d[2] : 0;
+        float square = x * x, limit = (float)support * (float)support;
+        square += y * y;
+        square += z * z;
+        return square < limit;
+    }
+    double square = d[0] * d[0];
+    square += d[1] * d[1];
+    square += dimension == 3 ? d[2] * d[2] : 0;
+    return square < support * support;
+}
+
+/* The exact x_ij that belongs to the shift chosen in working precision. */
+static quad exact_difference(double a, double b, double rounded, double period)
+{
+    quad exact = (quad)a - b;
+    if (period > 0)
+        exact += nearbyint((double)((rounded - exact) / period)) * (quad)period;
+    return exact;
+}
+
+static int measure(const oracle_scene *scene, const double *x, int j, oracle_pair *pair)
+{
+    int d = scene->scheme.dimension, single = scene->single_positions;
+    const double *other = scene->sources + j * d;
+    double difference[3] = {0};
+    for (int k = 0; k < d; k++) {
+        double plain = single ? (double)((float)x[k] - (float)other[k]) : x[k] - other[k];
+        difference[k] = shifted(plain, scene->period[k], single);
+        pair->x[k] = exact_difference(x[k], other[k], difference[k], scene->period[k]);
+    }
+    if (!is_inside(difference, d, scene->scheme.support_radius, single))
+        return 0;
+    pair->j = j;
+    pair->r = quad_norm(pair->x, d);
+    return 1;
+}
+
+/* A listed pair whose exact distance rounds up to H carries W = W' = 0 either way. */
+static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
+{
+    const double *x = oracle_target(scene, i);
+    point->pairs = test_memory((size_t)scene->source_count * sizeof *point->pairs);
+    for (int j = 0; j < scene->source_count; j++) {
+        oracle_pair pair = {0};
+        if (!(point->has_self && j == i) && measure(scene, x, j, &pair))
+            point->pairs[point->pair_count++] = pair;
+    }
+}
+
+/* ---- Weights -------------------------------------------------------------------------------- */
+
+/* |f| + r |f'| of W and of W'/r. Within a few roundings of the rim the first order is not enough:
+ * there the values a little further in count. */
+static void spread_weights(const oracle_scene *scene, quad r, const oracle_weights *at,
+                           quad *weight, quad *slope)
+{
+    const sphg_scheme *scheme = &scene->scheme;
+    oracle_weights inner = *at;
+    if (r > .99 * scheme->support_radius)
+        inner = oracle_weights_at(scheme->kernel, scheme->dimension, scheme->support_radius,
+                                  r * (1 - 4 * (quad)scene->unit));
+    *weight =
+        quad_max(at->w + r * r * quad_abs(at->slope), inner.w + r * r * quad_abs(inner.slope));
+    *slope = quad_max(quad_abs(at->slope) + r * quad_abs(at->slope_rate),
+                      quad_abs(inner.slope) + r * quad_abs(inner.slope_rate));
+}
+
+/* The weight of a pair under the volume of its source. */
+void oracle_weigh(const oracle_scene *scene, quad volume, oracle_pair *pair)
+{
+    const sphg_scheme *scheme = &scene->scheme;
+    oracle_weights at =
+        oracle_weights_at(scheme->kernel, scheme->dimension, scheme->support_radius, pair->r);
+    int has_volume = scheme->method != SPHG_MLS && scheme->method != SPHG_CMLS;
+    quad v = has_volume ? volume : 1, weight_spread, slope_spread;
+    spread_weights(scene, pair->r, &at, &weight_spread, &slope_spread);
+    if (oracle_is_classic(scheme->method)) {
+        pair->s = v * at.w;
+        pair->slope = v * at.slope;
+        pair->spread = v * weight_spread;
+        pair->slope_spread = v * slope_spread;
+    } else if (scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM) {
+        pair->s = -v * at.w;
+        pair->spread = v * weight_spread;
+    } else {
+        pair->s = v * at.slope;
+        pair->spread = v * slope_spread;
+    }
+}
+
+static quad mean_volume(const oracle_scene *scene, const oracle_point *point)
+{
+    quad sum = 0, weights = 0;
+    for (int k = 0; k < point->pair_count; k++) {
+        const oracle_pair *pair = &point->pairs[k];
+        sum += -pair->s * scene->volume[pair->j];
+        weights += -pair->s;
+    }
+    return weights > 0 ? sum / weights : 1;
+}
+
+/* ---- Linearised ------------------------------------------------------------------------------ */
+
+static quad reference_moment(const oracle_scene *scene, const oracle_point *point)
+{
+    const sphg_scheme *scheme = &scene->scheme;
+    quad h = scheme->support_radius;
+    quad second = oracle_mu2(scheme->kernel, scheme->dimension) * h * h;
+    if (scheme->method == SPHG_RKPM)
+        return second;
+    if (scheme->method != SPHG_MLS)
+        return 1;
+    return second / (point->volume > 0 ? point->volume : mean_volume(scene, point));
+}
+
+static void sum_moments(int d, oracle_point *point)
+{
+    for (int k = 0; k < point->pair_count; k++) {
+        const oracle_pair *pair = &point->pairs[k];
+        point->spread += pair->spread * pair->r * pair->r;
+        for (int a = 0; a < d; a++)
+            for (int b = 0; b < d; b++)
+                point->moment[a][b] -= pair->s * pair->x[a] * pair->x[b];
+    }
+}
+
+/* eps_i = max(eps, 16 u tr Mhat). */
+static quad threshold(const oracle_scene *scene, int d, oracle_matrix normalised)
+{
+    double eps = scene->scheme.threshold > 0 ? scene->scheme.threshold : 1e-2;
+    quad trace = 0;
+    for (int k = 0; k < d; k++)
+        trace += normalised[k][k];
+    return quad_max(eps, 16 * scene->unit * trace);
+}
+
+static void filter_moments(const oracle_scene *scene, int below, oracle_point *point)
+{
+    int d = scene->scheme.dimension;
+    oracle_matrix normalised = {{0}};
+    for (int a = 0; a < d; a++)
+        for (int b = 0; b < d; b++)
+            normalised[a][b] = point->moment[a][b] / point->scale;
+    quad eps = threshold(scene, d, normalised);
+    point->filter = oracle_filtered(d, normalised, scene->scheme.policy, eps, below);
+    point->rank = point->filter.rank;
+    oracle_recompose(&point->filter, point->correction);
+    for (int a = 0; a < d; a++)
+        for (int b = 0; b < d; b++)
+            point->correction[a][b] /= point->scale;
+    quad blur = 8 * scene->unit * point->spread / point->scale;
+    for (int k = 0; k < d; k++)
+        if (scene->scheme.policy != SPHG_BLEND && quad_abs(point->filter.lambda[k] - eps) <= blur)
+            point->undecided = 1;
+}
+
+static quad largest_divided(const oracle_filter *filter, int l)
+{
+    quad largest = 0;
+    for (int k = 0; k < filter->n; k++)
+        largest = quad_max(largest, quad_abs(filter->divided[k][l]));
+    return largest;
+}
+
+/* (T / m^2) sum_l max_k |f[lambda_k, lambda_l]| |b_l|, for b of `width` columns. */
+quad oracle_filter_error(const oracle_point *point, int width, const quad *b)
+{
+    quad sum = 0;
+    int d = point->filter.n;
+    for (int l = 0; l < d; l++) {
+        quad row[9] = {0};
+        for (int k = 0; k < d; k++)
+            for (int c = 0; c < width; c++)
+                row[c] += point->filter.axes[k][l] * b[k * width + c];
+        sum += largest_divided(&point->filter, l) * quad_norm(row, width);
+    }
+    return sum * point->spread / (point->scale * point->scale);
+}
+
+static void solve_linearised(const oracle_scene *scene, oracle_point *point)
+{
+    int d = scene->scheme.dimension;
+    sum_moments(d, point);
+    point->scale = reference_moment(scene, point);
+    filter_moments(scene, 1, point);
+    if (scene->scheme.method == SPHG_PLAIN) {
+        for (int a = 0; a < d; a++)
+            for (int b = 0; b < d; b++)
+                point->correction[a][b] = a == b;
+        point->filter = (oracle_filter){.n = d, .f = {1, 1, 1}};
+        point->rank = d;
+        point->undecided = 0;
+        point->spread = 0;
+    }
+    for (int k = 0; k < d; k++) {
+        quad size = quad_abs(point->filter.f[k]) / point->scale;
+        point->correction_norm = quad_max(point->correction_norm, size);
+        quad error =
+            largest_divided(&point->filter, k) * point->spread / (point->scale * point->scale);
+        point->correction_bound = quad_max(point->correction_bound, error);
+    }
+    point->correction_bound = scene->unit * (point->correction_bound + point->correction_norm);
+}
+
+/* ---- Classic --------------------------------------------------------------------------------- */
+
+typedef struct classic_sums {
+    oracle_matrix a, b[3], a_spread;
+    quad first[oracle_rows];
+} classic_sums;
+
+static void basis_of(const oracle_scene *scene, const oracle_pair *pair, quad *p)
+{
+    p[0] = 1;
+    for (int k = 0; k < scene->scheme.dimension; k++)
+        p[k + 1] = -pair->x[k] / scene->scheme.support_radius;
+}
+
+static void sum_classic(const oracle_scene *scene, const oracle_point *point, classic_sums *sums)
+{
+    int d = scene->scheme.dimension;
+    sums->a[0][0] = sums->a_spread[0][0] = point->self_weight;
+    for (int k = 0; k < point->pair_count; k++) {
+        const oracle_pair *pair = &point->pairs[k];
+        quad p[oracle_rows];
+        basis_of(scene, pair, p);
+        for (int a = 0; a <= d; a++)
+            for (int b = 0; b <= d; b++) {
+                sums->a[a][b] += pair->s * p[a] * p[b];
+                sums->a_spread[a][b] += pair->spread * p[a] * p[b];
+                for (int c = 0; c < d; c++)
+                    sums->b[c][a][b] += pair->slope * pair->x[c] * p[a] * p[b];
+            }
+    }
+}
+
+/* M_c = sum w (xi - xb)(xi - xb)^T about the centre xb, the target itself at 0. */
+static void centre_moments(const oracle_scene *scene, oracle_point *point, const quad *centre)
+{
+    int d = scene->scheme.dimension;
+    for (int k = -1; k < point->pair_count; k++) {
+        quad p[oracle_rows] = {1};
+        quad w = k < 0 ? point->self_weight : point->pairs[k].s;
+        quad spread = k < 0 ? w : point->pairs[k].spread, square = 0;
+        if (k >= 0)
+            basis_of(scene, &point->pairs[k], p);
+        for (int a = 0; a < d; a++) {
+            square += p[a + 1] * p[a + 1];
+            for (int b = 0; b < d; b++)
+                point->moment[a][b] += w * (p[a + 1] - centre[a]) * (p[b + 1] - centre[b]);
+        }
+        point->spread += spread * square;
+    }
+}
+
+/* [ 1/S0 + xb.C xb , -(C xb)^T ; -C xb , C ] */
+static void bordered_inverse(int d, const oracle_point *point, const quad *centre,
+                             oracle_matrix inverse)
+{
+    quad image[3], product = 0;
+    for (int a = 0; a < d; a++) {
+        image[a] = 0;
+        for (int b = 0; b < d; b++) {
+            image[a] += point->correction[a][b] * centre[b];
+            inverse[a + 1][b + 1] = point->correction[a][b];
+        }
+        product += image[a] * centre[a];
+        inverse[0][a + 1] = inverse[a + 1][0] = -image[a];
+    }
+    inverse[0][0] = 1 / point->mass + product;
+}
+
+/* y = A^-1 e_0, z_k = A^-1 (e_k / H - B_k y). */
+static void solve_coefficients(const oracle_scene *scene, oracle_matrix inverse,
+                               const classic_sums *sums, oracle_point *point)
+{
+    int d = scene->scheme.dimension, n = d + 1;
+    for (int a = 0; a < n; a++)
+        point->y[a] = inverse[a][0];
+    for (int k = 0; k < d; k++) {
+        quad right[oracle_rows] = {0};
+        right[k + 1] = 1 / (quad)scene->scheme.support_radius;
+        for (int a = 0; a < n; a++)
+            for (int b = 0; b < n; b++)
+                right[a] -= sums->b[k][a][b] * point->y[b];
+        for (int a = 0; a < n; a++) {
+            point->z[k][a] = 0;
+            for (int b = 0; b < n; b++)
+                point->z[k][a] += inverse[a][b] * right[b];
+        }
+    }
+}
+
+/* What rounding of the sums B_k does to z, before anything cancels: |A^-1 e_k| / H and
+ * sum |d_k w| |p.y| |A^-1 p|. */
+static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
+                           const oracle_point *point)
+{
+    int d = scene->scheme.dimension;
+    quad unit_part = 0, sum = 0;
+    for (int k = 1; k <= d; k++)
+        unit_part = quad_max(unit_part, quad_norm(inverse[k], d + 1));
+    for (int n = 0; n < point->pair_count; n++) {
+        const oracle_pair *pair = &point->pairs[n];
+        quad p[oracle_rows], size = 0, value = 0;
+        basis_of(scene, pair, p);
+        for (int a = 0; a <= d; a++) {
+            quad image = 0;
+            value += p[a] * point->y[a];
+            for (int b = 0; b <= d; b++)
+                image += inverse[a][b] * p[b];
+            size = quad_max(size, quad_abs(image));
+        }
+        sum += pair->slope_spread * pair->r * quad_abs(value) * size;
+    }
+    return sum + unit_part / scene->scheme.support_radius;
+}
+
+/* tr A |A^-1| in the basis (1, xi / sqrt(mu2)). */
+static quad balanced_condition(const oracle_scene *scene, oracle_matrix inverse,
+                               const classic_sums *sums)
+{
+    int d = scene->scheme.dimension;
+    quad root = quad_sqrt(oracle_mu2(scene->scheme.kernel, d)), trace = 0;
+    oracle_matrix balanced;
+    for (int a = 0; a <= d; a++) {
+        quad row = a ? root : 1;
+        trace += sums->a_spread[a][a] / (row * row);
+        for (int b = 0; b <= d; b++)
+            balanced[a][b] = inverse[a][b] * row * (b ? root : 1);
+    }
+    return trace * oracle_spectral_norm(d + 1, balanced);
+}
+
+static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
+{
+    int d = scene->scheme.dimension;
+    classic_sums sums = {0};
+    quad centre[3] = {0};
+    oracle_matrix inverse = {{0}};
+    if (point->has_self) {
+        oracle_pair self = {.j = i};
+        oracle_weigh(scene, scene->volume ? scene->volume[i] : 1, &self);
+        point->self_weight = self.s;
+    }
+    sum_classic(scene, point, &sums);
+    point->mass = sums.a[0][0];
+    if (!(point->mass > 0))
+        return;
+    for (int k = 0; k < d; k++)
+        centre[k] = sums.a[0][k + 1] / point->mass;
+    centre_moments(scene, point, centre);
+    point->scale = point->mass * oracle_mu2(scene->scheme.kernel, d);
+    filter_moments(scene, 0, point);
+    bordered_inverse(d, point, centre, inverse);
+    solve_coefficients(scene, inverse, &sums, point);
+    point->condition = balanced_condition(scene, inverse, &sums);
+    point->y_norm = quad_norm(point->y, d + 1);
+    for (int k = 0; k < d; k++) {
+        point->z_norm = quad_max(point->z_norm, quad_norm(point->z[k], d + 1));
+        point->self_gradient[k] = point->self_weight * point->z[k][0];
+    }
+    point->z_bound = point->condition * point->z_norm + blur_of_slopes(scene, inverse, point);
+    point->self_bound = scene->unit * point->self_weight * point->z_bound;
+}
+
+/* ---- G_ij ------------------------------------------------------------------------------------ */
+
+static quad linearised_gradient(const oracle_scene *scene, const oracle_point *point,
+                                oracle_pair *pair)
+{
+    int d = scene->scheme.dimension;
+    quad b[3];
+    for (int a = 0; a < d; a++) {
+        b[a] = pair->s * pair->x[a];
+        pair->gradient[a] = 0;
+        for (int c = 0; c < d; c++)
+            pair->gradient[a] += point->correction[a][c] * pair->s * pair->x[c];
+    }
+    return scene->unit *
+           (point->correction_norm * pair->spread * pair->r + oracle_filter_error(point, 1, b));
+}
+
+static quad classic_gradient(const oracle_scene *scene, const oracle_point *point,
+                             oracle_pair *pair)
+{
+    int d = scene->scheme.dimension;
+    quad p[oracle_rows], value = 0;
+    basis_of(scene, pair, p);
+    for (int a = 0; a <= d; a++)
+        value += p[a] * point->y[a];
+    for (int k = 0; k < d; k++) {
+        quad slope = 0;
+        for (int a = 0; a <= d; a++)
+            slope += p[a] * point->z[k][a];
+        pair->gradient[k] = pair->slope * pair->x[k] * value + pair->s * slope;
+    }
+    return scene->unit * quad_norm(p, d + 1) *
+           (point->condition * pair->slope_spread * pair->r * point->y_norm +
+            pair->spread * point->z_bound);
+}
+
+quad oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair)
+{
+    return oracle_is_classic(scene->scheme.method) ? classic_gradient(scene, point, pair)
+                                                   : linearised_gradient(scene, point, pair);
+}
+
+void oracle_solve(const oracle_scene *scene, int i, oracle_point *point)
+{
+    point->has_self = scene->targets == NULL;
+    const double *own = scene->target_volume;
+    if (!own && point->has_self)
+        own = scene->volume;
+    point->volume = own ? own[i] : 0;
+    find_pairs(scene, i, point);
+    for (int k = 0; k < point->pair_count; k++) {
+        oracle_pair *pair = &point->pairs[k];
+        oracle_weigh(scene, scene->volume ? scene->volume[pair->j] : 1, pair);
+    }
+    if (oracle_is_classic(scene->scheme.method))
+        solve_classic(scene, i, point);
+    else
+        solve_linearised(scene, point);
+    for (int k = 0; k < point->pair_count; k++)
+        point->pairs[k].bound = oracle_gradient_of(scene, point, &point->pairs[k]);
+}

@@ -1,0 +1,198 @@
+#include "pairs.h"
+#include "fixture.h"
+#include <math.h>
+#include <string.h>
+
+scene scene_of_cloud(const test_case *test, const cloud *points)
+{
+    scene particles = {0};
+    particles.dimension = points->dimension;
+    particles.is_double = test->precision != TEST_F32;
+    particles.precision = test_field_type(test);
+    particles.source_count = particles.target_count = points->count;
+    particles.sources = points->x;
+    for (int k = 0; k < points->count * points->dimension && !particles.is_double; k++)
+        points->x[k] = (double)(float)points->x[k];
+    return particles;
+}
+
+static sphg_view positions_of(const scene *particles, int count, const double *x)
+{
+    const sphg_type type = particles->is_double ? SPHG_F64 : SPHG_F32;
+    const fixture_array array = fixture_numbers(type, count, particles->dimension, x);
+    return fixture_view(&array);
+}
+
+sphg_geometry scene_geometry(const scene *particles)
+{
+    sphg_geometry geometry = {0};
+    geometry.sources = positions_of(particles, particles->source_count, particles->sources);
+    if (particles->targets)
+        geometry.targets = positions_of(particles, particles->target_count, particles->targets);
+    geometry.source_count = particles->source_count;
+    geometry.target_count = particles->target_count;
+    geometry.precision = particles->precision;
+    geometry.list_free = particles->list_free;
+    geometry.skin = particles->skin;
+    memcpy(geometry.period, particles->period, sizeof geometry.period);
+    return geometry;
+}
+
+/* The difference of two coordinates, shifted by whole periods to the nearest image. The tests'
+ * periods are short enough in bits for k * period to be exact. */
+static double separation(const scene *particles, double a, double b, int axis)
+{
+    const double period = particles->period[axis];
+    const volatile float single = (float)a - (float)b;
+    const volatile double full = a - b;
+    const double difference = particles->is_double ? full : (double)single;
+    double best = difference;
+    const double nearest = period > 0 ? -nearbyint(difference / period) : 0;
+    for (int k = -1; k <= 1 && period > 0; k++) {
+        const double shift = (nearest + k) * period;
+        const volatile float single_image = (float)difference + (float)shift;
+        const volatile double full_image = difference + shift;
+        const double image = particles->is_double ? full_image : (double)single_image;
+        if (fabs(image) < fabs(best))
+            best = image;
+    }
+    return best;
+}
+
+static int is_near_single(int d, const double *difference, double support_radius)
+{
+    volatile float sum = 0, square;
+    for (int k = 0; k < d; k++) {
+        square = (float)difference[k] * (float)difference[k];
+        sum = sum + square;
+    }
+    square = (float)support_radius * (float)support_radius;
+    return sum < square;
+}
+
+static int is_near_double(int d, const double *difference, double support_radius)
+{
+    volatile double sum = 0, square;
+    for (int k = 0; k < d; k++) {
+        square = difference[k] * difference[k];
+        sum = sum + square;
+    }
+    square = support_radius * support_radius;
+    return sum < square;
+}
+
+static int is_neighbour(const scene *particles, int i, int j, double support_radius)
+{
+    const int d = particles->dimension;
+    const double *target = (particles->targets ? particles->targets : particles->sources) + i * d;
+    const double *source = particles->sources + j * d;
+    double difference[3];
+    if (!particles->targets && i == j)
+        return 0;
+    for (int k = 0; k < d; k++)
+        difference[k] = separation(particles, target[k], source[k], k);
+    return particles->is_double ? is_near_double(d, difference, support_radius)
+                                : is_near_single(d, difference, support_radius);
+}
+
+rows rows_by_brute_force(const scene *particles, double support_radius)
+{
+    const int targets = particles->target_count, sources = particles->source_count;
+    char *near = test_memory((size_t)targets * (size_t)sources);
+    rows found = {targets, test_memory(((size_t)targets + 1) * sizeof(int64_t)), NULL};
+    for (int i = 0; i < targets; i++) {
+        found.offsets[i + 1] = found.offsets[i];
+        for (int j = 0; j < sources; j++) {
+            near[(size_t)i * (size_t)sources + (size_t)j] =
+                (char)is_neighbour(particles, i, j, support_radius);
+            found.offsets[i + 1] += near[(size_t)i * (size_t)sources + (size_t)j];
+        }
+    }
+    found.indices = test_memory((size_t)found.offsets[targets] * sizeof(int32_t));
+    int64_t next = 0;
+    for (int i = 0; i < targets; i++)
+        for (int j = 0; j < sources; j++)
+            if (near[(size_t)i * (size_t)sources + (size_t)j])
+                found.indices[next++] = j;
+    return found;
+}
+
+static int32_t selected_count(sphg_context *context, const sphg_neighbors *neighbors,
+                              const sphg_subset *subset)
+{
+    sphg_neighbors_info info = {0};
+    FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+    if (!subset)
+        return info.target_count;
+    int32_t count = 0;
+    for (int32_t k = subset->begin; k < subset->end; k++)
+        count += !subset->mask || subset->mask[subset->indices ? subset->indices[k] : k];
+    return count;
+}
+
+rows rows_listed(sphg_context *context, const sphg_neighbors *neighbors, const sphg_scheme *scheme,
+                 const sphg_subset *subset)
+{
+    const int32_t count = selected_count(context, neighbors, subset);
+    sphg_scheme plain = *scheme; /* the pairs alone: classic methods list i itself as well */
+    plain.method = SPHG_PLAIN;
+    rows found = {count, test_memory(((size_t)count + 1) * sizeof(int64_t)), NULL};
+    sphg_sources sources = {0};
+    sphg_pairs pairs = {0};
+    sources.neighbors = neighbors;
+    pairs.offsets = found.offsets;
+    FIXTURE_OK(context,
+               sphg_pair_gradients(context, &plain, &sources, subset, sphg_absent(), &pairs));
+    assert_int_equal(found.offsets[0], 0);
+    assert_int_equal(found.offsets[count], pairs.count);
+    found.indices = test_memory((size_t)pairs.count * sizeof(int32_t));
+    pairs.indices = found.indices;
+    pairs.capacity = pairs.count;
+    FIXTURE_OK(context,
+               sphg_pair_gradients(context, &plain, &sources, subset, sphg_absent(), &pairs));
+    return found;
+}
+
+void rows_require_equal(const rows *found, const rows *expected, const char *where)
+{
+    TEST_REQUIRE(found->count == expected->count, "%s: %d rows, not %d", where, found->count,
+                 expected->count);
+    for (int32_t i = 0; i < expected->count; i++) {
+        const int64_t length = expected->offsets[i + 1] - expected->offsets[i];
+        const int64_t listed = found->offsets[i + 1] - found->offsets[i];
+        TEST_REQUIRE(listed == length, "%s: row %d has %lld neighbours, not %lld", where, i,
+                     (long long)listed, (long long)length);
+        for (int64_t k = 0; k < length; k++) {
+            const int32_t a = found->indices[found->offsets[i] + k];
+            const int32_t b = expected->indices[expected->offsets[i] + k];
+            TEST_REQUIRE(a == b, "%s: row %d lists %d, not %d", where, i, a, b);
+        }
+    }
+}
+
+static void destroy_neighbors(void *neighbors)
+{
+    sphg_neighbors_destroy(neighbors);
+}
+
+sphg_neighbors *pairs_neighbors(sphg_context *context)
+{
+    sphg_neighbors *neighbors = NULL;
+    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+    test_at_end(destroy_neighbors, neighbors);
+    return neighbors;
+}
+
+int64_t rows_require_search_exact(sphg_context *context, sphg_neighbors *neighbors,
+                                  const scene *particles, double support_radius, const char *where)
+{
+    sphg_scheme scheme = {0};
+    scheme.dimension = particles->dimension;
+    scheme.support_radius = support_radius;
+    const sphg_geometry geometry = scene_geometry(particles);
+    FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+    const rows expected = rows_by_brute_force(particles, support_radius);
+    const rows found = rows_listed(context, neighbors, &scheme, NULL);
+    rows_require_equal(&found, &expected, where);
+    return expected.offsets[expected.count];
+}

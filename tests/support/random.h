@@ -1,0 +1,37 @@
+/* Seeded random numbers for tests: splitmix64 (Steele, Lea, Flood 2014,
+ * doi:10.1145/2660193.2660195). The same seed gives the same cloud on every machine. */
+#ifndef TESTS_SUPPORT_RANDOM_H
+#define TESTS_SUPPORT_RANDOM_H
+#include <stdint.h>
+
+typedef struct random_state {
+    uint64_t counter;
+} random_state;
+
+static inline random_state random_seeded(uint64_t seed)
+{
+    random_state state = {seed * UINT64_C(0x9e3779b97f4a7c15) + 1};
+    return state;
+}
+
+static inline uint64_t random_bits(random_state *state)
+{
+    uint64_t z = state->counter += UINT64_C(0x9e3779b97f4a7c15);
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return z ^ (z >> 31);
+}
+
+/* Uniform in [low, high); a multiple of 2^-53 (high - low). */
+static inline double random_between(random_state *state, double low, double high)
+{
+    return low + (high - low) * ((double)(random_bits(state) >> 11) * 0x1p-53);
+}
+
+/* Uniform in [0, count). */
+static inline int random_index(random_state *state, int count)
+{
+    return (int)(random_bits(state) % (uint64_t)count);
+}
+
+#endif

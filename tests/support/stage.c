@@ -1,0 +1,195 @@
+#include "stage.h"
+#include <string.h>
+
+stage stage_of(const test_case *test, const char *name, cloud points, double support)
+{
+    stage made = {.test = test, .name = name, .points = points};
+    random_state random = random_seeded(77);
+    made.scheme = fixture_scheme(test, cloud_rounded(support));
+    made.context = fixture_context();
+    made.neighbors = fixture_neighbors(made.context, test, &made.scheme, &made.points);
+    oracle_scene *scene = &made.scene;
+    scene->scheme = made.scheme;
+    scene->unit = test_unit_roundoff(test);
+    scene->single_positions = test_position_type(test) == SPHG_F32;
+    scene->source_count = scene->target_count = points.count;
+    scene->sources = made.points.x;
+    double *density = cloud_numbers(&points, .5, 1.5, &random);
+    scene->density = density;
+    made.density = fixture_numbers(test_field_type(test), points.count, 1, density);
+    return stage_with_volumes(&made, cloud_volumes(&points, .2, &random));
+}
+
+stage stage_with_volumes(const stage *made, const double *volume)
+{
+    stage other = *made;
+    other.scene.volume = volume;
+    other.volume = fixture_numbers(test_field_type(made->test), made->points.count, 1, volume);
+    other.reference = oracle_of(&other.scene);
+    return other;
+}
+
+stage stage_under(const stage *made, sphg_policy policy, double threshold)
+{
+    stage other = *made;
+    other.scheme.policy = policy;
+    other.scheme.threshold = threshold;
+    other.scene.scheme = other.scheme;
+    other.reference = oracle_of(&other.scene);
+    return other;
+}
+
+sphg_sources stage_sources(const stage *on)
+{
+    sphg_sources sources = {0};
+    sources.neighbors = on->neighbors;
+    sources.volume = fixture_view(&on->volume);
+    sources.density = fixture_view(&on->density);
+    return sources;
+}
+
+fixture_array stage_table(const stage *on)
+{
+    int width = sphg_correction_width(&on->scheme);
+    fixture_array table = fixture_output(test_field_type(on->test), on->points.count, width);
+    sphg_sources sources = stage_sources(on);
+    if (width > 0)
+        FIXTURE_OK(on->context, sphg_correction(on->context, &on->scheme, &sources, NULL,
+                                                fixture_view(&table), sphg_absent()));
+    return table;
+}
+
+sphg_view stage_table_view(const stage *on, const fixture_array *table)
+{
+    return table && on->scheme.method != SPHG_PLAIN ? fixture_view(table) : sphg_absent();
+}
+
+double *stage_random_field(const stage *on, sphg_shape shape, uint64_t seed)
+{
+    int total = on->points.count * fixture_width(shape, on->points.dimension);
+    double *numbers = test_memory((size_t)total * sizeof *numbers);
+    random_state random = random_seeded(seed);
+    for (int k = 0; k < total; k++)
+        numbers[k] = (double)(float)random_between(&random, -1, 1);
+    return numbers;
+}
+
+/* ---- Evaluation ----------------------------------------------------------------------------- */
+
+static int gradient_width(sphg_shape shape, int d)
+{
+    return shape == SPHG_SCALAR ? d : shape == SPHG_VECTOR ? d * d : 0;
+}
+
+static int divergence_width(sphg_shape shape, int d)
+{
+    return shape == SPHG_SCALAR ? 0 : shape == SPHG_VECTOR ? 1 : d;
+}
+
+static int curl_width(sphg_shape shape, int d)
+{
+    return shape == SPHG_VECTOR ? (d == 2 ? 1 : 3) : 0;
+}
+
+static sphg_view wanted(const fixture_array *array)
+{
+    return array->width ? fixture_view(array) : sphg_absent();
+}
+
+static stage_result empty_result(const stage *on, const stage_field *field)
+{
+    int n = on->points.count, d = on->points.dimension;
+    sphg_type type = test_field_type(on->test);
+    int value_width = field->form == SPHG_DIRECT ? fixture_width(field->shape, d) : 0;
+    stage_result result = {fixture_output(type, n, gradient_width(field->shape, d)),
+                           fixture_output(type, n, divergence_width(field->shape, d)),
+                           fixture_output(type, n, curl_width(field->shape, d)),
+                           fixture_output(type, n, value_width)};
+    return result;
+}
+
+stage_result stage_apply_to(const stage *on, const stage_field *field, const fixture_array *table,
+                            const sphg_subset *subset)
+{
+    int width = fixture_width(field->shape, on->points.dimension);
+    fixture_array numbers =
+        fixture_numbers(test_field_type(on->test), on->points.count, width, field->numbers);
+    sphg_view at_sources = fixture_view(&numbers);
+    stage_result result = empty_result(on, field);
+    sphg_sources sources = stage_sources(on);
+    sources.correction = stage_table_view(on, table);
+    sphg_field asked = {.shape = field->shape, .form = field->form, .at_sources = &at_sources};
+    asked.gradient = wanted(&result.gradient);
+    asked.divergence = wanted(&result.divergence);
+    asked.curl = wanted(&result.curl);
+    asked.value = wanted(&result.value);
+    sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
+    request.field_count = 1;
+    request.subset = subset;
+    request.target_correction = sources.correction;
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return result;
+}
+
+stage_result stage_apply(const stage *on, const stage_field *field, const fixture_array *table)
+{
+    return stage_apply_to(on, field, table, NULL);
+}
+
+int stage_results_have_same_bits(const stage_result *a, const stage_result *b)
+{
+    return fixture_same_bits(&a->gradient, &b->gradient) &&
+           fixture_same_bits(&a->divergence, &b->divergence) &&
+           fixture_same_bits(&a->curl, &b->curl) && fixture_same_bits(&a->value, &b->value);
+}
+
+/* ---- Comparison ------------------------------------------------------------------------------ */
+
+double stage_ratio(const fixture_array *found, int item, const quad *exact, quad bound)
+{
+    quad square = 0;
+    for (int k = 0; k < found->width; k++) {
+        quad error = (quad)fixture_get(found, item, k) - exact[k];
+        square += error * error;
+    }
+    if (square == 0)
+        return 0;
+    /* Norms of errors near the rim of f64's range still have their squares in quad. */
+    return square != square ? NAN : (double)(quad_sqrt(square) / bound);
+}
+
+static void gate(const stage *on, const char *what, double ratio, int touched, int i)
+{
+    const test_case *test = on->test;
+    const char *where = test_text("%s of particle %d, %s, %s %dD %s", what, i, on->name,
+                                  test_method_name(test->method), test->dimension,
+                                  test->precision == TEST_F32   ? "f32"
+                                  : test->precision == TEST_F64 ? "f64"
+                                                                : "mixed");
+    if (touched)
+        TEST_WITHIN(oracle_ratio_touched, ratio, where);
+    else
+        TEST_WITHIN(oracle_ratio_full, ratio, where);
+}
+
+void stage_compare(const stage *on, const stage_field *field, const stage_result *found, int i)
+{
+    oracle_field asked = {field->shape, field->form, field->numbers, NULL};
+    oracle_result exact = oracle_apply(on->reference, &asked, i);
+    if (exact.undecided)
+        return;
+    static const char *const forms[] = {"difference", "direct", "symmetric", "adjoint"};
+    const struct {
+        const char *what;
+        const fixture_array *array;
+        const quad *numbers;
+        quad bound;
+    } rows[] = {{"gradient", &found->gradient, exact.gradient, exact.bound},
+                {"divergence", &found->divergence, exact.divergence, exact.bound},
+                {"curl", &found->curl, exact.curl, exact.bound},
+                {"value", &found->value, exact.value, exact.value_bound}};
+    for (int k = 0; k < 4; k++)
+        if (rows[k].array->width > 0)
+            gate(on, test_text("%s %s", forms[field->form], rows[k].what),
+                 stage_ratio(rows[k].array, i, rows[k].numbers, rows[k].bound), exact.touched, i);
+}

@@ -1,0 +1,227 @@
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Names ------------------------------------------------------------------------------ */
+
+static const char *const precision_names[] = {"f32", "f64", "mixed"};
+static const char *const method_names[] = {"KGC", "MLS", "RKPM", "CMLS", "CRKPM", "PLAIN"};
+static const char *const kernel_names[] = {"cubic",       "quintic", "wendland_c2", "wendland_c4",
+                                           "wendland_c6", "poly6",   "spiky"};
+
+const char *test_method_name(sphg_method method)
+{
+    return method_names[method];
+}
+
+const char *test_kernel_name(sphg_kernel kernel)
+{
+    return kernel_names[kernel];
+}
+
+double test_unit_roundoff(const test_case *test)
+{
+    return test->precision == TEST_F64 ? 0x1p-53 : 0x1p-24;
+}
+
+sphg_type test_field_type(const test_case *test)
+{
+    return test->precision == TEST_F64 ? SPHG_F64 : SPHG_F32;
+}
+
+sphg_type test_position_type(const test_case *test)
+{
+    return test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
+}
+
+int test_is_classic(const test_case *test)
+{
+    return test->method == SPHG_CMLS || test->method == SPHG_CRKPM;
+}
+
+/* ---- Memory of one case ------------------------------------------------------------------- */
+
+typedef struct owned {
+    struct owned *next;
+    void (*release)(void *object);
+    void *object;
+} owned;
+
+static owned *owned_by_case;
+
+static void *required(void *memory)
+{
+    if (!memory) {
+        fputs("the tests ran out of memory\n", stderr);
+        abort();
+    }
+    return memory;
+}
+
+void test_at_end(void (*release)(void *object), void *object)
+{
+    owned *entry = required(malloc(sizeof *entry));
+    entry->next = owned_by_case;
+    entry->release = release;
+    entry->object = object;
+    owned_by_case = entry;
+}
+
+void *test_memory(size_t bytes)
+{
+    void *memory = required(calloc(bytes ? bytes : 1, 1));
+    test_at_end(free, memory);
+    return memory;
+}
+
+static void release_all(void)
+{
+    while (owned_by_case) {
+        owned *entry = owned_by_case;
+        owned_by_case = entry->next;
+        entry->release(entry->object);
+        free(entry);
+    }
+}
+
+const char *test_text(const char *format, ...)
+{
+    enum { length = 256 };
+    char *text = test_memory(length);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, length, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+/* ---- Tolerances --------------------------------------------------------------------------- */
+
+#define TEST_X(name, limit, measured, reason) {#name, limit},
+static const struct {
+    const char *name;
+    double limit;
+} tolerances[] = {TEST_TOLERANCES(TEST_X)};
+#undef TEST_X
+
+static struct {
+    double value;
+    char where[256];
+    int used;
+} worst[TEST_TOLERANCE_COUNT];
+
+void test_within(test_tolerance tolerance, double value, const char *where)
+{
+    if (!worst[tolerance].used || value > worst[tolerance].value) {
+        worst[tolerance].value = value;
+        snprintf(worst[tolerance].where, sizeof worst[tolerance].where, "%s", where);
+    }
+    worst[tolerance].used = 1;
+    if (!(value <= tolerances[tolerance].limit))
+        fail_msg("%s: %g exceeds %g at %s", tolerances[tolerance].name, value,
+                 tolerances[tolerance].limit, where);
+}
+
+static void print_worst(void)
+{
+    for (int t = 0; t < TEST_TOLERANCE_COUNT; t++)
+        if (worst[t].used)
+            printf("%-28s measured %-10.3g limit %-8g at %s\n", tolerances[t].name, worst[t].value,
+                   tolerances[t].limit, worst[t].where);
+}
+
+/* ---- Run loop ----------------------------------------------------------------------------- */
+
+typedef struct named_case {
+    test_case test;
+    test_property *property;
+    char name[128];
+} named_case;
+
+static const named_case *running;
+
+static void run_case(void **state)
+{
+    running = *state;
+    running->property(&running->test);
+}
+
+static int end_case(void **state)
+{
+    (void)state;
+    release_all();
+    return 0;
+}
+
+static void add_parameter(char *name, size_t size, const char *value)
+{
+    size_t used = strlen(name);
+    snprintf(name + used, size - used, "%s%s", strchr(name, '[') ? "," : "[", value);
+}
+
+static named_case name_case(const test_entry *entry, const test_case *test)
+{
+    named_case named = {*test, entry->property, ""};
+    size_t size = sizeof named.name;
+    snprintf(named.name, size, "%s", entry->name);
+    if (entry->precisions)
+        add_parameter(named.name, size, precision_names[test->precision]);
+    if (entry->dimensions)
+        add_parameter(named.name, size, test->dimension == 2 ? "2D" : "3D");
+    if (entry->methods)
+        add_parameter(named.name, size, method_names[test->method]);
+    if (entry->kernels)
+        add_parameter(named.name, size, kernel_names[test->kernel]);
+    if (strchr(named.name, '['))
+        strcat(named.name, "]");
+    return named;
+}
+
+static int is_in(unsigned set, unsigned fallback, int value)
+{
+    return ((set ? set : TEST_BIT(fallback)) & TEST_BIT(value)) != 0;
+}
+
+/* Writes the cases of one entry (counts only where cases is NULL). */
+static size_t expand(const test_entry *entry, named_case *cases)
+{
+    enum { all = 3 * 4 * 6 * 7 };
+    size_t count = 0;
+    for (int k = 0; k < all; k++) {
+        test_case test = {(test_precision)(k / 168), k / 42 % 4, (sphg_method)(k / 7 % 6),
+                          (sphg_kernel)(k % 7)};
+        if (!is_in(entry->precisions, TEST_F64, (int)test.precision) ||
+            !is_in(entry->dimensions, 3, test.dimension) ||
+            !is_in(entry->methods, SPHG_KGC, (int)test.method) ||
+            !is_in(entry->kernels, SPHG_CUBIC_SPLINE, (int)test.kernel))
+            continue;
+        if (cases)
+            cases[count] = name_case(entry, &test);
+        count++;
+    }
+    return count;
+}
+
+int test_run(int argc, char **argv, const test_entry *entries, size_t count)
+{
+    size_t total = 0, used = 0;
+    for (size_t e = 0; e < count; e++)
+        total += expand(&entries[e], NULL);
+    named_case *cases = required(calloc(total + 1, sizeof *cases));
+    struct CMUnitTest *tests = required(calloc(total + 1, sizeof *tests));
+    for (size_t e = 0; e < count; e++)
+        used += expand(&entries[e], cases + used);
+    for (size_t k = 0; k < used; k++) {
+        struct CMUnitTest unit = {cases[k].name, run_case, NULL, end_case, &cases[k]};
+        tests[k] = unit;
+    }
+    if (argc > 1)
+        cmocka_set_test_filter(argv[1]);
+    int failed = _cmocka_run_group_tests(argv[0], tests, used, NULL, NULL);
+    print_worst();
+    free(tests);
+    free(cases);
+    return failed != 0;
+}

@@ -1,0 +1,214 @@
+/* A moment of a real dam break, with its sheets, strings and droplets: how many particles can be
+ * corrected how far, and that nothing else comes out than finite numbers and exact derivatives.
+ * Needs dam_break_splash.csv in the folder that the environment variable SPHG_TEST_DATA names, or
+ * in ../shared/data beside the checkout; skips where there is none. */
+#include "support/fixture.h"
+#include "../bench/csv.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double support_radius = 0.05;  /* [m] */
+static const double particle_mass = 0.0125; /* [kg] */
+
+typedef struct splash {
+    sphg_context *context;
+    sphg_neighbors *neighbors;
+    fixture_array positions, velocities, volumes;
+    int count;
+} splash;
+
+static const char *data_path(void)
+{
+    const char *folder = getenv("SPHG_TEST_DATA");
+    return test_text("%s/dam_break_splash.csv", folder ? folder : "../shared/data");
+}
+
+static void destroy_table(void *table)
+{
+    csv_destroy(table);
+}
+
+/* Skips the case where the file is not there, fails where it is not readable. */
+static const struct csv_table *read_table(void)
+{
+    const char *path = data_path();
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        printf("skipped: there is no %s\n", path);
+        skip();
+    }
+    fclose(file);
+    static const char *const needed[] = {"x", "y", "z", "vx", "vy", "vz", "density", NULL};
+    char message[512];
+    struct csv_table *table = test_memory(sizeof *table);
+    TEST_REQUIRE(csv_read(path, needed, table, message, sizeof message), "%s", message);
+    test_at_end(destroy_table, table);
+    return table;
+}
+
+/* Columns of the file as an array of the type; mass / value for volumes. */
+static fixture_array columns(const struct csv_table *table, sphg_type type, int width,
+                             const char *const names[], int invert)
+{
+    double *numbers = test_memory((size_t)(table->row_count * width) * sizeof *numbers);
+    for (int k = 0; k < width; k++) {
+        const int32_t column = csv_column(table, names[k]);
+        for (int i = 0; i < table->row_count; i++) {
+            const double value = csv_value(table, i, column);
+            numbers[i * width + k] = invert ? particle_mass / value : value;
+        }
+    }
+    return fixture_numbers(type, table->row_count, width, numbers);
+}
+
+static splash open_splash(const test_case *test)
+{
+    static const char *const position_names[] = {"x", "y", "z"};
+    static const char *const velocity_names[] = {"vx", "vy", "vz"};
+    static const char *const density_name[] = {"density"};
+    const struct csv_table *table = read_table();
+    splash data = {.context = fixture_context(), .count = table->row_count};
+    data.positions = columns(table, test_position_type(test), 3, position_names, 0);
+    data.velocities = columns(table, test_field_type(test), 3, velocity_names, 0);
+    data.volumes = columns(table, test_field_type(test), 1, density_name, 1);
+    const sphg_scheme scheme = fixture_scheme(test, support_radius);
+    const sphg_geometry geometry = {.sources = fixture_view(&data.positions),
+                                    .source_count = data.count,
+                                    .target_count = data.count,
+                                    .precision = test_field_type(test)};
+    data.neighbors = fixture_search(data.context, &scheme, &geometry);
+    return data;
+}
+
+/* What is asked for beside the Jacobians; NULL: not. */
+typedef struct wanted {
+    uint8_t *ranks;
+    const fixture_array *lambdas;
+    sphg_stats *stats;
+} wanted;
+
+static void evaluate(const splash *data, const sphg_scheme *scheme, const fixture_array *field,
+                     const fixture_array *jacobians, wanted beside)
+{
+    const sphg_view at_sources = fixture_view(field);
+    const sphg_sources sources = {.neighbors = data->neighbors,
+                                  .volume = fixture_view(&data->volumes)};
+    const sphg_field jacobian = {
+        .shape = SPHG_VECTOR, .at_sources = &at_sources, .gradient = fixture_view(jacobians)};
+    const sphg_request request = {
+        .sources = &sources,
+        .set_count = 1,
+        .fields = &jacobian,
+        .field_count = 1,
+        .rank = beside.ranks ? sphg_view_u8(beside.ranks, 1) : sphg_absent(),
+        .lambda_min = beside.lambdas ? fixture_view(beside.lambdas) : sphg_absent(),
+        .stats = beside.stats};
+    FIXTURE_OK(data->context, sphg_evaluate(data->context, scheme, &request));
+}
+
+/* Positions in f32 may decide a few particles beside a threshold otherwise. */
+static void ranks_are(const test_case *test, sphg_policy policy, const int64_t expected[4])
+{
+    const splash data = open_splash(test);
+    const int64_t allowed = test->precision == TEST_F64 ? 0 : 5;
+    sphg_scheme scheme = fixture_scheme(test, support_radius);
+    scheme.policy = policy;
+    sphg_stats stats = {0};
+    int64_t counted[4] = {0};
+    uint8_t *ranks = test_memory((size_t)data.count);
+    const fixture_array jacobians = fixture_output(test_field_type(test), data.count, 9);
+    evaluate(&data, &scheme, &data.velocities, &jacobians, (wanted){ranks, NULL, &stats});
+    for (int i = 0; i < data.count; i++)
+        counted[ranks[i] < 4 ? ranks[i] : 0]++;
+    for (int rank = 0; rank < 4; rank++) {
+        TEST_REQUIRE(llabs(counted[rank] - expected[rank]) <= allowed, "%lld of rank %d, not %lld",
+                     (long long)counted[rank], rank, (long long)expected[rank]);
+        assert_int_equal(counted[rank], stats.rank[rank]);
+    }
+}
+
+static void ranks_under_blend_are_known(const test_case *test)
+{
+    static const int64_t expected[4] = {61, 186, 2476, 39559};
+    ranks_are(test, SPHG_BLEND, expected);
+}
+
+static void ranks_under_replace_are_known(const test_case *test)
+{
+    static const int64_t expected[4] = {56, 121, 1380, 40725};
+    ranks_are(test, SPHG_REPLACE, expected);
+}
+
+static void nothing_is_nan_or_infinite(const test_case *test)
+{
+    const splash data = open_splash(test);
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+        sphg_scheme scheme = fixture_scheme(test, support_radius);
+        scheme.policy = (sphg_policy)policy;
+        const fixture_array jacobians = fixture_output(test_field_type(test), data.count, 9);
+        evaluate(&data, &scheme, &data.velocities, &jacobians, (wanted){NULL, NULL, NULL});
+        for (int i = 0; i < data.count; i++)
+            for (int k = 0; k < 9; k++)
+                TEST_REQUIRE(isfinite(fixture_get(&jacobians, i, k)),
+                             "policy %d, particle %d, component %d", policy, i, k);
+    }
+}
+
+/* v = (-y, x, 2z) of the positions as stored: exact in f32 too. In mixed precision the field is
+ * rounded, and its rounding would be what is measured. */
+static fixture_array linear_field(const test_case *test, const splash *data)
+{
+    double *numbers = test_memory((size_t)(data->count * 3) * sizeof *numbers);
+    for (int i = 0; i < data->count; i++) {
+        numbers[3 * i] = -fixture_get(&data->positions, i, 1);
+        numbers[3 * i + 1] = fixture_get(&data->positions, i, 0);
+        numbers[3 * i + 2] = 2 * fixture_get(&data->positions, i, 2);
+    }
+    return fixture_numbers(test_field_type(test), data->count, 3, numbers);
+}
+
+/* |J_i - J|_F / |J|_F of that field. */
+static double relative_error(const fixture_array *jacobians, int i)
+{
+    static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
+    double sum = 0;
+    for (int k = 0; k < 9; k++)
+        sum += pow(fixture_get(jacobians, i, k) - expected[k], 2);
+    return sqrt(sum / 6);
+}
+
+static void linear_fields_are_exact_where_rank_is_full(const test_case *test)
+{
+    const splash data = open_splash(test);
+    const sphg_scheme scheme = fixture_scheme(test, support_radius);
+    const fixture_array field = linear_field(test, &data);
+    const fixture_array jacobians = fixture_output(test_field_type(test), data.count, 9);
+    const fixture_array lambdas = fixture_output(test_field_type(test), data.count, 1);
+    uint8_t *ranks = test_memory((size_t)data.count);
+    evaluate(&data, &scheme, &field, &jacobians, (wanted){ranks, &lambdas, NULL});
+    double worst = 0;
+    int where = 0, full = 0;
+    for (int i = 0; i < data.count; i++) {
+        const double scaled = relative_error(&jacobians, i) * fixture_get(&lambdas, i, 0);
+        full += ranks[i] == 3;
+        if (ranks[i] == 3 && !(scaled <= worst)) {
+            worst = scaled;
+            where = i;
+        }
+    }
+    TEST_REQUIRE(full > data.count / 2, "only %d of full rank", full);
+    TEST_WITHIN(linear_exactness, worst / test_unit_roundoff(test),
+                test_text("particle %d", where));
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(ranks_under_blend_are_known, TEST_ALL_PRECISIONS, 0, 0, 0),
+    TEST_ENTRY(ranks_under_replace_are_known, TEST_ALL_PRECISIONS, 0, 0, 0),
+    TEST_ENTRY(nothing_is_nan_or_infinite, TEST_ALL_PRECISIONS, 0, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(linear_fields_are_exact_where_rank_is_full, TEST_SINGLE_AND_DOUBLE, 0,
+               TEST_CORRECTED, 0),
+};
+
+TEST_MAIN(entries)

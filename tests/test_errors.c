@@ -1,0 +1,425 @@
+/* Every way to say no: contexts, neighbours and small matrices refuse bad arguments with the right
+ * code and a message that names the argument, write nothing, and work on the next call. */
+#include "support/subject.h"
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- Codes -------------------------------------------------------------------------------- */
+
+static void every_result_has_a_text_of_its_own(const test_case *test)
+{
+    (void)test;
+#define CODE(name, value, text) {SPHG_##name, value, text},
+    static const struct {
+        sphg_result result;
+        int value;
+        const char *text;
+    } codes[] = {SPHG_RESULT_LIST(CODE)};
+#undef CODE
+    for (size_t k = 0; k < sizeof codes / sizeof *codes; k++) {
+        assert_int_equal(codes[k].result, codes[k].value);
+        assert_string_equal(sphg_result_string(codes[k].result), codes[k].text);
+    }
+    const int unknown[] = {-100, -4, 10, 1000, INT_MAX, INT_MIN};
+    for (int k = 0; k < 6; k++) {
+        const char *text = sphg_result_string((sphg_result)unknown[k]);
+        assert_true(text && text[0] != 0);
+    }
+    assert_int_equal(sphg_version(), SPHG_VERSION);
+}
+
+/* ---- Context ------------------------------------------------------------------------------ */
+
+static void expect_no_context(int32_t version, const sphg_config *config, int expected)
+{
+    sphg_context *context = (sphg_context *)(uintptr_t)64;
+    const sphg_result result = sphg_context_create(version, config, &context);
+    TEST_REQUIRE((int)result == expected, "create: %s", sphg_result_string(result));
+    assert_null(context);
+}
+
+static void *no_memory(size_t size, size_t alignment, void *user)
+{
+    (void)size, (void)alignment, (void)user;
+    return NULL;
+}
+
+static void no_release(void *memory, size_t size, void *user)
+{
+    (void)memory, (void)size, (void)user;
+}
+
+static void no_executor(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
+{
+    (void)task, (void)data, (void)count, (void)grain, (void)user;
+}
+
+static void context_refuses_bad_configurations(const test_case *test)
+{
+    (void)test;
+    const sphg_config good = {0};
+    sphg_config config = good;
+    assert_int_equal(sphg_context_create(SPHG_VERSION, &good, NULL), SPHG_ERROR_ARGUMENT);
+    const int32_t versions[] = {0, -1, SPHG_VERSION + 1000000, INT32_MAX, INT32_MIN};
+    for (int k = 0; k < 5; k++)
+        expect_no_context(versions[k], &good, SPHG_ERROR_VERSION);
+    const int32_t threads[] = {-1, INT32_MIN};
+    for (int k = 0; k < 2; k++) {
+        config.threads = threads[k];
+        expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
+    }
+    config = good;
+    const int isas[] = {-1, 5, INT_MAX};
+    for (int k = 0; k < 3; k++) {
+        config.isa = (sphg_isa)isas[k];
+        expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
+    }
+    config = good;
+    config.parallel_for = no_executor; /* of how many workers? */
+    expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
+    config = good;
+    config.allocate = no_memory;
+    expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
+    config.allocate = NULL;
+    config.release = no_release;
+    expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
+    config.allocate = no_memory;
+    expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_MEMORY);
+}
+
+/* On any machine one of the two foreign instruction sets is missing. */
+static void context_refuses_the_instruction_set_of_another_machine(const test_case *test)
+{
+    (void)test;
+    sphg_config config = {0};
+#if defined(__x86_64__) || defined(_M_X64)
+    config.isa = SPHG_ISA_NEON;
+#else
+    config.isa = SPHG_ISA_X86_V3;
+#endif
+    expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_UNSUPPORTED);
+}
+
+static void null_handles_are_refused_and_nothing_is_destroyed_twice(const test_case *test)
+{
+    (void)test;
+    sphg_context *context = fixture_context();
+    sphg_neighbors *neighbors = NULL;
+    sphg_context_destroy(NULL);
+    sphg_neighbors_destroy(NULL);
+    assert_non_null(sphg_last_message(NULL));
+    assert_non_null(sphg_last_message(context));
+    assert_int_equal(sphg_neighbors_create(NULL, &neighbors), SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_neighbors_create(context, NULL), SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_neighbors_create(context, &neighbors), SPHG_OK);
+    sphg_neighbors_destroy(neighbors);
+}
+
+/* ---- Builds ------------------------------------------------------------------------------- */
+
+static sphg_result search(subject *own)
+{
+    return sphg_neighbors_search(own->context, own->neighbors, own->scheme_given,
+                                 own->geometry_given);
+}
+
+static sphg_result use_lists(subject *own)
+{
+    if (own->neighbors == own->built)
+        own->neighbors = own->lone;
+    return sphg_neighbors_use_lists(own->context, own->neighbors, own->scheme_given,
+                                    own->geometry_given, own->lists_given);
+}
+
+#define REFUSES(call, expected, words, change) SUBJECT_REFUSES(own, call, expected, words, change)
+
+static void *shifted(const void *memory, ptrdiff_t bytes)
+{
+    return (void *)((uintptr_t)memory + (uintptr_t)bytes);
+}
+
+typedef sphg_result subject_call(subject *own);
+
+/* What search and use_lists have in common. */
+static void refuse_bad_geometry(subject *own, subject_call *call)
+{
+    const sphg_type other = own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "geometry", own->geometry_given = NULL);
+    const int dimensions[] = {1, 4, -1, INT_MAX, INT_MIN};
+    for (int k = 0; k < 5; k++)
+        REFUSES(call, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = dimensions[k]);
+    const double radii[] = {0, -0.0, -1, NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 6; k++)
+        REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius", own->scheme.support_radius = radii[k]);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "source_count", own->geometry.source_count = -1);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "target_count", own->geometry.target_count = -1);
+    REFUSES(call, SUBJECT_REFUSED, "target_count", own->geometry.source_count = 10);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.x = NULL);
+    REFUSES(call, SUBJECT_REFUSED, "sources", own->geometry.sources.type = SPHG_U8);
+    REFUSES(call, SUBJECT_REFUSED, "sources", own->geometry.sources.type = (sphg_type)0);
+    REFUSES(call, SUBJECT_REFUSED, "sources", own->geometry.sources.type = (sphg_type)17);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.stride += 1);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
+            own->geometry.sources.x = shifted(own->geometry.sources.x, 1));
+    REFUSES(call, SPHG_ERROR_TYPE, "targets", own->geometry.targets = own->positions;
+            own->geometry.targets.type = other);
+    REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = SPHG_U8);
+    REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
+    const double periods[] = {-4, NAN, INFINITY, 1.5};
+    for (int k = 0; k < 4; k++)
+        REFUSES(call, SPHG_ERROR_ARGUMENT, "period", own->geometry.period[1] = periods[k]);
+}
+
+static void builds_refuse_bad_geometry(const test_case *test)
+{
+    subject *own = subject_create(test);
+    refuse_bad_geometry(own, search);
+    refuse_bad_geometry(own, use_lists);
+    const double skins[] = {-0.25, NAN, INFINITY};
+    for (int k = 0; k < 3; k++)
+        REFUSES(search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
+    REFUSES(search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = own->geometry.list_free = 1);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = 0.25);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "list_free", own->geometry.list_free = 1);
+    REFUSES(search, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    assert_int_equal(sphg_neighbors_search(NULL, own->built, &own->scheme, &own->geometry),
+                     SPHG_ERROR_ARGUMENT);
+    assert_int_equal(
+        sphg_neighbors_use_lists(NULL, own->built, &own->scheme, &own->geometry, &own->lists),
+        SPHG_ERROR_ARGUMENT);
+}
+
+static void put(subject *own, int item, double value)
+{
+    const int k = item * own->test->dimension + item % own->test->dimension;
+    if (own->positions.type == SPHG_F64)
+        ((double *)own->input_memory[0])[k] = value;
+    else
+        ((float *)own->input_memory[0])[k] = (float)value;
+}
+
+static double get(const subject *own, int item)
+{
+    const int k = item * own->test->dimension + item % own->test->dimension;
+    return own->positions.type == SPHG_F64 ? ((const double *)own->input_memory[0])[k]
+                                           : (double)((const float *)own->input_memory[0])[k];
+}
+
+/* The first bad particle is named; targets of their own are looked at as well. */
+static void builds_refuse_positions_that_are_not_finite(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const int items[] = {0, 31, SUBJECT_COUNT - 1};
+    const double values[] = {NAN, INFINITY, -INFINITY};
+    for (int k = 0; k < 9; k++) {
+        const int item = items[k % 3];
+        const double kept = get(own, item), last = get(own, SUBJECT_COUNT - 1);
+        const char *name = test_text("[%d]", item);
+        for (int lists = 0; lists < 2; lists++) {
+            subject_reset(own);
+            put(own, SUBJECT_COUNT - 1, NAN);
+            put(own, item, values[k / 3]);
+            subject_require(own, lists ? use_lists(own) : search(own), SPHG_ERROR_NOT_FINITE, name,
+                            "position");
+            put(own, item, kept);
+            put(own, SUBJECT_COUNT - 1, last);
+            assert_int_equal(lists ? use_lists(own) : search(own), SPHG_OK);
+        }
+    }
+    fixture_array bad = fixture_output(own->positions.type, 3, test->dimension);
+    memset(bad.data, 0xff, (size_t)(3 * test->dimension) * (test->precision == TEST_F64 ? 8 : 4));
+    REFUSES(search, SPHG_ERROR_NOT_FINITE, "targets", own->geometry.targets = fixture_view(&bad);
+            own->geometry.target_count = 3);
+}
+
+static void trusted_contexts_still_check_arguments(const test_case *test)
+{
+    subject *own = subject_create(test);
+    sphg_config config = {0};
+    config.trusted = 1;
+    sphg_context *context = NULL;
+    sphg_neighbors *neighbors = NULL;
+    assert_int_equal(sphg_context_create(SPHG_VERSION, &config, &context), SPHG_OK);
+    assert_int_equal(sphg_neighbors_create(context, &neighbors), SPHG_OK);
+    own->scheme.support_radius = -1;
+    assert_int_equal(sphg_neighbors_search(context, neighbors, &own->scheme, &own->geometry),
+                     SPHG_ERROR_ARGUMENT);
+    own->scheme.support_radius = 1;
+    assert_int_equal(sphg_neighbors_search(context, neighbors, &own->scheme, &own->geometry),
+                     SPHG_OK);
+    sphg_neighbors_destroy(neighbors);
+    sphg_context_destroy(context);
+}
+
+static int32_t no_row(int32_t target, int32_t worker, const int32_t **indices, void *user)
+{
+    (void)target, (void)worker, (void)user;
+    *indices = NULL;
+    return 0;
+}
+
+static void lists_are_refused_unless_one_group_is_whole(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const int32_t *rows[SUBJECT_COUNT] = {0};
+    const int32_t lengths[SUBJECT_COUNT] = {0};
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "lists", own->lists_given = NULL);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "lists", memset(&own->lists, 0, sizeof own->lists));
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "", own->lists.row = no_row);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "", own->lists.rows = rows;
+            own->lists.lengths = lengths);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "indices", own->lists.indices = NULL);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->lists.offsets = NULL);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "lengths", memset(&own->lists, 0, sizeof own->lists);
+            own->lists.rows = rows);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "rows", memset(&own->lists, 0, sizeof own->lists);
+            own->lists.lengths = lengths);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = 1);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = -1);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[9] = own->offsets[8] - 1);
+    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[SUBJECT_COUNT] = 0);
+}
+
+static sphg_result get_info(subject *own)
+{
+    sphg_neighbors_info info;
+    return sphg_neighbors_get_info(own->context, own->neighbors, &info);
+}
+
+static sphg_result get_order(subject *own)
+{
+    int32_t order[SUBJECT_COUNT];
+    return sphg_neighbors_get_order(own->context, own->neighbors, order);
+}
+
+static void reports_refuse_bad_handles(const test_case *test)
+{
+    subject *own = subject_create(test);
+    sphg_neighbors_info info = {0};
+    int32_t order[SUBJECT_COUNT];
+    REFUSES(get_info, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(get_order, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(get_order, SPHG_ERROR_STATE, "", own->neighbors = own->blank);
+    assert_int_equal(sphg_neighbors_get_info(own->context, own->built, NULL), SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_neighbors_get_order(own->context, own->built, NULL), SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_neighbors_get_info(NULL, own->built, &info), SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_neighbors_get_order(NULL, own->built, order), SPHG_ERROR_ARGUMENT);
+}
+
+/* ---- Small matrices ----------------------------------------------------------------------- */
+
+static sphg_result invert(subject *own)
+{
+    return sphg_invert_moments(own->context, own->scheme_given, own->count, own->table,
+                               own->volumes, own->inversion_given);
+}
+
+static sphg_result eigen(subject *own)
+{
+    return sphg_eigen(own->context, own->dimension, own->count, own->table, own->vectors_out,
+                      own->tensors_out);
+}
+
+static sphg_result svd(subject *own)
+{
+    sphg_view sigma = own->vectors_out, u = own->tensors_out, v = own->table_out;
+    const ptrdiff_t size = own->table.type == SPHG_F64 ? 8 : 4;
+    sigma.stride = sigma.stride == 2 * size ? 3 * size : sigma.stride;
+    u.stride = u.stride == 4 * size ? 9 * size : u.stride;
+    v.stride = 9 * size;
+    return sphg_svd(own->context, own->count, own->tensors, u, sigma, v);
+}
+
+static void inversion_refuses_bad_arguments(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const sphg_type other = own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    const double thresholds[] = {-0.01, 1, 2, NAN, INFINITY};
+    for (int k = 0; k < 5; k++)
+        REFUSES(invert, SPHG_ERROR_ARGUMENT, "threshold", own->scheme.threshold = thresholds[k]);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "", own->inversion_given = NULL);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "moments", own->table.x = NULL);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "moments", own->table.stride += 1);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "correction", own->inversion.correction.stride = 0);
+    REFUSES(invert, SPHG_ERROR_TYPE, "correction", own->inversion.correction.type = other);
+    REFUSES(invert, SPHG_ERROR_TYPE, "rank", own->inversion.rank.type = other);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = 4);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "policy", own->scheme.policy = (sphg_policy)4);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "method", own->scheme.method = (sphg_method)6);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "kernel", own->scheme.kernel = (sphg_kernel)7);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "support_radius", own->scheme.support_radius = NAN);
+    REFUSES(invert, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_CMLS);
+    REFUSES(invert, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_CRKPM);
+    REFUSES(invert, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_PLAIN);
+    const float bad_single[] = {-1, NAN, INFINITY};
+    const double bad[] = {-1, NAN, INFINITY};
+    for (int k = 0; k < 3; k++)
+        REFUSES(invert, SPHG_ERROR_VOLUME, "volume", own->scheme.method = SPHG_MLS;
+                own->volumes.stride = 0;
+                own->volumes.x = own->volumes.type == SPHG_F64 ? (const void *)&bad[k]
+                                                               : (const void *)&bad_single[k]);
+}
+
+static void eigen_and_svd_refuse_bad_arguments(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const sphg_type other = own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    const int dimensions[] = {1, 4, -1, INT_MAX};
+    for (int k = 0; k < 4; k++)
+        REFUSES(eigen, SPHG_ERROR_ARGUMENT, "dimension", own->dimension = dimensions[k]);
+    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
+    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "matrices", own->table.x = NULL);
+    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "values", own->vectors_out.stride = 0);
+    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "vectors", own->tensors_out.stride -= 1);
+    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "vectors",
+            own->tensors_out.x = shifted(own->tensors_out.x, 2));
+    REFUSES(eigen, SPHG_ERROR_TYPE, "values", own->vectors_out.type = other);
+    if (test->dimension == 2)
+        return;
+    REFUSES(svd, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
+    REFUSES(svd, SPHG_ERROR_ARGUMENT, "matrices", own->tensors.x = NULL);
+    REFUSES(svd, SPHG_ERROR_ARGUMENT, "sigma", own->vectors_out.stride = 0);
+    REFUSES(svd, SPHG_ERROR_TYPE, "u", own->tensors_out.type = other);
+    assert_int_equal(sphg_eigen(NULL, 3, 1, own->table, own->vectors_out, own->tensors_out),
+                     SPHG_ERROR_ARGUMENT);
+    assert_int_equal(
+        sphg_svd(NULL, 1, own->tensors, own->tensors_out, own->vectors_out, own->table_out),
+        SPHG_ERROR_ARGUMENT);
+}
+
+/* A scheme that cannot be asked has no width. */
+static void correction_width_is_that_of_the_method(const test_case *test)
+{
+    const int32_t classic = test->dimension == 2 ? 9 : 16, linear = test->dimension == 2 ? 3 : 6;
+    for (int method = 0; method < 6; method++) {
+        sphg_scheme scheme = fixture_scheme(test, 1);
+        scheme.method = (sphg_method)method;
+        const int32_t expected = method == SPHG_PLAIN                          ? 0
+                                 : method == SPHG_CMLS || method == SPHG_CRKPM ? classic
+                                                                               : linear;
+        assert_int_equal(sphg_correction_width(&scheme), expected);
+    }
+}
+
+#define EACH(property) TEST_ENTRY(property, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0)
+
+static const test_entry entries[] = {
+    TEST_ONCE(every_result_has_a_text_of_its_own),
+    TEST_ONCE(context_refuses_bad_configurations),
+    TEST_ONCE(context_refuses_the_instruction_set_of_another_machine),
+    TEST_ONCE(null_handles_are_refused_and_nothing_is_destroyed_twice),
+    EACH(builds_refuse_bad_geometry),
+    EACH(builds_refuse_positions_that_are_not_finite),
+    EACH(trusted_contexts_still_check_arguments),
+    EACH(lists_are_refused_unless_one_group_is_whole),
+    EACH(reports_refuse_bad_handles),
+    EACH(inversion_refuses_bad_arguments),
+    EACH(eigen_and_svd_refuse_bad_arguments),
+    EACH(correction_width_is_that_of_the_method),
+};
+TEST_MAIN(entries)

@@ -1,0 +1,436 @@
+/* What may change without changing the results (docs/theory.md, errors): to the bit where only
+ * exact operations are involved and sums keep their order, within the error bound elsewhere. */
+#include "support/stage.h"
+#include <string.h>
+
+static cloud unit_block(int d)
+{
+    random_state random = random_seeded(51);
+    cloud points = cloud_jittered(d, d == 2 ? 6 : 4, 1, .3, &random);
+    cloud_snap(&points, 0x1p-8);
+    return points;
+}
+
+/* ---- Sums in a given order: host lists
+ * ------------------------------------------------------------ */
+
+typedef struct host_lists {
+    int64_t *offsets;
+    int32_t *indices;
+} host_lists;
+
+/* Everybody else is a candidate; the library leaves out who is too far. */
+static host_lists everybody(int count)
+{
+    host_lists lists;
+    lists.offsets = test_memory(((size_t)count + 1) * sizeof *lists.offsets);
+    lists.indices = test_memory((size_t)count * (size_t)count * sizeof *lists.indices);
+    int64_t used = 0;
+    for (int i = 0; i < count; i++) {
+        for (int j = 0; j < count; j++)
+            if (j != i)
+                lists.indices[used++] = j;
+        lists.offsets[i + 1] = used;
+    }
+    return lists;
+}
+
+/* The stage with neighbours from lists, so that sums run in the order of the indices. */
+static stage in_list_order(const stage *made)
+{
+    stage on = *made;
+    int n = on.points.count;
+    host_lists host = everybody(n);
+    sphg_lists lists = {.offsets = host.offsets, .indices = host.indices};
+    fixture_array positions = fixture_positions(on.test, &on.points);
+    sphg_geometry geometry = fixture_geometry(on.test, &on.points, &positions);
+    on.neighbors = fixture_lists(on.context, &on.scheme, &geometry, &lists);
+    return on;
+}
+
+static stage listed_stage(const test_case *test, cloud points, double support)
+{
+    stage made = stage_of(test, "listed block", points, support);
+    return in_list_order(&made);
+}
+
+/* ---- Scaling by powers of two
+ * ----------------------------------------------------------------------- */
+
+static cloud copy_of(const cloud *points)
+{
+    cloud copy = *points;
+    size_t bytes = (size_t)(points->count * points->dimension) * sizeof *points->x;
+    copy.x = memcpy(test_memory(bytes), points->x, bytes);
+    return copy;
+}
+
+static double *scaled(const double *numbers, int count, int exponent)
+{
+    double *result = test_memory((size_t)count * sizeof *result);
+    for (int k = 0; k < count; k++)
+        result[k] = ldexp(numbers[k], exponent);
+    return result;
+}
+
+/* found * 2^exponent equals expected, to the bit. */
+static void require_scaled(const fixture_array *expected, const fixture_array *found, int exponent,
+                           const char *what, int k)
+{
+    for (int n = 0; n < expected->count * expected->width; n++) {
+        int i = n / expected->width, c = n % expected->width;
+        double exact = ldexp(fixture_get(expected, i, c), exponent);
+        TEST_REQUIRE(exact == fixture_get(found, i, c), "%s at 2^%d, item %d: %a, not %a", what, k,
+                     i, fixture_get(found, i, c), exact);
+    }
+}
+
+static stage scaled_stage(const stage *made, int k)
+{
+    cloud points = copy_of(&made->points);
+    int d = points.dimension;
+    for (int n = 0; n < points.count * d; n++)
+        points.x[n] = ldexp(points.x[n], k);
+    points.spacing = ldexp(points.spacing, k);
+    stage on = stage_of(made->test, "scaled", points, ldexp(made->scheme.support_radius, k));
+    return stage_with_volumes(&on, scaled(made->scene.volume, points.count, d * k));
+}
+
+static void require_scaled_field(const stage *small, const stage *large, const stage_field *field,
+                                 int with_table, int k)
+{
+    enum { a = 3 };
+    int d = small->points.dimension;
+    int width = fixture_width(field->shape, d), total = small->points.count * width;
+    fixture_array table = stage_table(small), large_table = stage_table(large);
+    stage_field times = *field;
+    times.numbers = scaled(field->numbers, total, a);
+    stage_result one = stage_apply(small, field, with_table ? &table : NULL);
+    stage_result two = stage_apply(large, &times, with_table ? &large_table : NULL);
+    int power = field->form == SPHG_ADJOINT ? a + (d - 1) * k : a - k;
+    require_scaled(&one.gradient, &two.gradient, power, "gradient", k);
+    require_scaled(&one.divergence, &two.divergence, power, "divergence", k);
+    require_scaled(&one.curl, &two.curl, power, "curl", k);
+    require_scaled(&one.value, &two.value, a, "value", k);
+}
+
+/* As far as V and 1 / H^d are normal numbers, and so are the entries of the table, which has the
+ * host's units: C of RKPM is 1 / L^2, the interpolant's coefficients of CMLS are L^d. */
+static int largest_exponent(const test_case *test, int sign)
+{
+    static const int limits[2][2] = {{62, 510}, {41, 340}};       /* [3D][f64] */
+    static const int table_limits[2][2] = {{48, 480}, {32, 320}}; /* [3D][f64] */
+    int is_double = test->precision == TEST_F64, is_space = test->dimension == 3;
+    if ((test->method == SPHG_RKPM && !is_space) || (test->method == SPHG_CMLS && sign < 0))
+        return table_limits[is_space][is_double];
+    return limits[is_space][is_double];
+}
+
+static void powers_of_two_scale_to_the_bit(const test_case *test)
+{
+    int most = largest_exponent(test, 1), least = -largest_exponent(test, -1);
+    int exponents[] = {1, -7, most / 2, most, least};
+    cloud points = unit_block(test->dimension);
+    for (int k = 0; k < points.count * points.dimension; k++)
+        points.x[k] *= .6875; /* so that 1 / H^d and V are normal numbers at both limits */
+    points.spacing = .6875;
+    stage small = stage_of(test, "block", points, 1.5);
+    for (int e = 0; e < 5; e++) {
+        int k = exponents[e];
+        stage large = scaled_stage(&small, k);
+        stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                             stage_random_field(&small, SPHG_VECTOR, 1)};
+        require_scaled_field(&small, &large, &field, 0, k);
+        field.form = SPHG_DIRECT;
+        require_scaled_field(&small, &large, &field, 1, k);
+        field.form = SPHG_ADJOINT;
+        require_scaled_field(&small, &large, &field, 1, k);
+    }
+}
+
+static void powers_of_two_keep_ranks_and_scale_corrections(const test_case *test)
+{
+    stage small = stage_of(test, "block", unit_block(test->dimension), 1.5);
+    int d = test->dimension, exponents[] = {5, -9, 20};
+    for (int e = 0; e < 3; e++) {
+        int k = exponents[e];
+        stage stages[] = {small, scaled_stage(&small, k)};
+        fixture_array table[2], rank[2];
+        for (int s = 0; s < 2; s++) {
+            table[s] = stage_table(&stages[s]);
+            rank[s] = fixture_output(SPHG_U8, small.points.count, 1);
+            sphg_sources sources = stage_sources(&stages[s]);
+            FIXTURE_OK(small.context,
+                       sphg_correction(small.context, &stages[s].scheme, &sources, NULL,
+                                       fixture_view(&table[s]), fixture_view(&rank[s])));
+        }
+        int power = test->method == SPHG_KGC ? 0 : test->method == SPHG_RKPM ? -2 * k : (d - 2) * k;
+        require_scaled(&table[0], &table[1], power, "C", k);
+        assert_true(fixture_same_bits(&rank[0], &rank[1]));
+    }
+}
+
+/* ---- Translation, constants, mirror
+ * ---------------------------------------------------------------- */
+
+static void require_same_bits(const stage *a, const stage *b, sphg_form form)
+{
+    stage_field field = {SPHG_VECTOR, form, stage_random_field(a, SPHG_VECTOR, 2)};
+    stage_result one = stage_apply(a, &field, NULL), two = stage_apply(b, &field, NULL);
+    assert_true(stage_results_have_same_bits(&one, &two));
+}
+
+static void exact_translation_keeps_every_bit(const test_case *test)
+{
+    static const double vector[] = {1024, -512, 2048};
+    stage here = listed_stage(test, unit_block(test->dimension), 2.25);
+    cloud moved = copy_of(&here.points);
+    cloud_shift(&moved, vector);
+    stage there = listed_stage(test, moved, 2.25);
+    require_same_bits(&here, &there, SPHG_DIFFERENCE);
+    require_same_bits(&here, &there, SPHG_DIRECT);
+}
+
+static void exact_constants_added_keep_every_bit(const test_case *test)
+{
+    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    int total = on.points.count * test->dimension;
+    double *numbers = test_memory((size_t)total * sizeof *numbers);
+    double *raised = test_memory((size_t)total * sizeof *raised);
+    random_state random = random_seeded(52);
+    for (int k = 0; k < total; k++) {
+        numbers[k] = random_index(&random, 4096) * 0x1p-10;
+        raised[k] = numbers[k] + 24;
+    }
+    stage_field one = {SPHG_VECTOR, SPHG_DIFFERENCE, numbers};
+    stage_field two = {SPHG_VECTOR, SPHG_DIFFERENCE, raised};
+    stage_result a = stage_apply(&on, &one, NULL), b = stage_apply(&on, &two, NULL);
+    assert_true(stage_results_have_same_bits(&a, &b));
+}
+
+/* Mirrored at x = 0: d/dx changes sign, the rest stays. */
+static void mirror_images_have_mirrored_bits(const test_case *test)
+{
+    int d = test->dimension;
+    stage here = listed_stage(test, unit_block(d), 2.25);
+    cloud mirrored = copy_of(&here.points);
+    for (int i = 0; i < mirrored.count; i++)
+        mirrored.x[i * d] = -mirrored.x[i * d];
+    stage there = listed_stage(test, mirrored, 2.25);
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&here, SPHG_SCALAR, 5)};
+    stage_result one = stage_apply(&here, &field, NULL), two = stage_apply(&there, &field, NULL);
+    for (int n = 0; n < mirrored.count * d; n++) {
+        double expected = fixture_get(&one.gradient, n / d, n % d) * (n % d == 0 ? -1 : 1);
+        TEST_REQUIRE(expected == fixture_get(&two.gradient, n / d, n % d), "item %d", n / d);
+    }
+}
+
+/* ---- Subsets and threads
+ * ---------------------------------------------------------------------------- */
+
+static void require_subset(const stage *on, const stage_field *field, const stage_result *full,
+                           const sphg_subset *subset, const uint8_t *expected)
+{
+    stage_result part = stage_apply_to(on, field, NULL, subset);
+    int width = full->gradient.width;
+    for (int i = 0; i < on->points.count; i++) {
+        if (!expected[i]) {
+            TEST_REQUIRE(fixture_is_canary(&part.gradient, i), "%d was not selected", i);
+            continue;
+        }
+        for (int c = 0; c < width; c++)
+            TEST_REQUIRE(fixture_get(&part.gradient, i, c) == fixture_get(&full->gradient, i, c),
+                         "item %d", i);
+    }
+}
+
+static void subsets_have_the_bits_of_the_full_run(const test_case *test)
+{
+    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_VECTOR, 6)};
+    stage_result full = stage_apply(&on, &field, NULL);
+    int n = on.points.count;
+    uint8_t *mask = test_memory((size_t)n), *range = test_memory((size_t)n);
+    uint8_t *listed = test_memory((size_t)n);
+    int32_t *indices = test_memory((size_t)n * sizeof *indices), count = 0;
+    random_state random = random_seeded(53);
+    for (int i = 0; i < n; i++) {
+        mask[i] = (uint8_t)(random_index(&random, 3) == 0);
+        range[i] = i >= 5 && i < n - 9;
+        listed[i] = i % 3 == 1;
+    }
+    for (int i = n - 1; i >= 0; i--)
+        if (listed[i])
+            indices[count++] = i;
+    sphg_subset by_mask = {0, n, NULL, mask}, by_range = {5, n - 9, NULL, NULL};
+    sphg_subset by_list = {0, count, indices, NULL};
+    require_subset(&on, &field, &full, &by_mask, mask);
+    require_subset(&on, &field, &full, &by_range, range);
+    require_subset(&on, &field, &full, &by_list, listed);
+}
+
+static void threads_do_not_change_a_bit(const test_case *test)
+{
+    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_VECTOR, 6)};
+    stage_result two = stage_apply(&on, &field, NULL);
+    static const int threads[] = {1, 3, 5};
+    for (int t = 0; t < 3; t++) {
+        stage other = on;
+        other.context = fixture_context_of(threads[t]);
+        other.neighbors = fixture_neighbors(other.context, test, &other.scheme, &other.points);
+        stage_result found = stage_apply(&other, &field, NULL);
+        TEST_REQUIRE(stage_results_have_same_bits(&two, &found), "%d threads", threads[t]);
+    }
+}
+
+/* ---- Within the error bound
+ * ------------------------------------------------------------------------- */
+
+/* Items of `found` taken from particle[i], component[c]; compared on a few particles. */
+static void require_near(const stage *on, const stage_field *field, const stage_result *exact,
+                         const stage_result *found, const int *particle, const int *component,
+                         const char *what)
+{
+    int d = on->points.dimension;
+    oracle_field asked = {field->shape, field->form, field->numbers, NULL};
+    for (int i = 0; i < on->points.count; i += 9) {
+        quad moved[3], bound = oracle_apply(on->reference, &asked, i).bound;
+        for (int c = 0; c < d; c++)
+            moved[c] = fixture_get(&found->gradient, particle ? particle[i] : i,
+                                   component ? component[c] : c);
+        TEST_WITHIN(equal_within_bound, stage_ratio(&exact->gradient, i, moved, bound),
+                    test_text("%s, %s", what, test_method_name(on->test->method)));
+    }
+}
+
+static double *gathered(const double *numbers, const int *from, int count, int width)
+{
+    double *result = test_memory((size_t)(count * width) * sizeof *result);
+    for (int k = 0; k < count * width; k++)
+        result[k] = numbers[from[k / width] * width + k % width];
+    return result;
+}
+
+static void order_of_particles_matters_within_the_bound(const test_case *test)
+{
+    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    int n = on.points.count, d = test->dimension;
+    int *from = test_memory((size_t)n * sizeof *from), *to = test_memory((size_t)n * sizeof *to);
+    random_state random = random_seeded(54);
+    for (int i = 0; i < n; i++) {
+        int j = random_index(&random, i + 1);
+        from[i] = from[j];
+        from[j] = i;
+    }
+    for (int i = 0; i < n; i++)
+        to[from[i]] = i;
+    cloud shuffled = on.points;
+    shuffled.x = gathered(on.points.x, from, n, d);
+    stage other = stage_of(test, "shuffled", shuffled, 2.25);
+    other = stage_with_volumes(&other, gathered(on.scene.volume, from, n, 1));
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 7)};
+    stage_field moved = field;
+    moved.numbers = gathered(field.numbers, from, n, 1);
+    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &moved, NULL);
+    require_near(&on, &field, &one, &two, to, NULL, "shuffled");
+}
+
+static void axes_may_be_swapped_within_the_bound(const test_case *test)
+{
+    int d = test->dimension, next[] = {1, d == 2 ? 0 : 2, 0};
+    stage on = stage_of(test, "block", unit_block(d), 2.25);
+    cloud turned = copy_of(&on.points);
+    for (int k = 0; k < turned.count * d; k++)
+        turned.x[k / d * d + next[k % d]] = on.points.x[k];
+    stage other = stage_of(test, "axes swapped", turned, 2.25);
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 7)};
+    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &field, NULL);
+    require_near(&on, &field, &one, &two, NULL, next, "axes swapped");
+}
+
+/* Turned by 3-4-5 in the first two axes: exact where coordinates are multiples of 5 / 2^k. */
+static void rotations_turn_gradients_within_the_bound(const test_case *test)
+{
+    int d = test->dimension;
+    cloud points = unit_block(d);
+    for (int k = 0; k < points.count * d; k++)
+        points.x[k] *= 5;
+    stage on = stage_of(test, "block", points, 11.25);
+    cloud turned = copy_of(&points);
+    for (int i = 0; i < points.count; i++) {
+        const double *x = points.x + i * d;
+        turned.x[i * d] = (3 * x[0] - 4 * x[1]) / 5;
+        turned.x[i * d + 1] = (4 * x[0] + 3 * x[1]) / 5;
+    }
+    stage other = stage_of(test, "turned", turned, 11.25);
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 8)};
+    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &field, NULL);
+    double *back = fixture_doubles(&two.gradient);
+    for (int i = 0; i < points.count; i++) {
+        double gx = back[i * d], gy = back[i * d + 1];
+        back[i * d] = (3 * gx + 4 * gy) / 5;
+        back[i * d + 1] = (-4 * gx + 3 * gy) / 5;
+    }
+    two.gradient = fixture_numbers(SPHG_F64, points.count, d, back);
+    require_near(&on, &field, &one, &two, NULL, NULL, "turned");
+}
+
+static void far_translation_stays_within_the_bound(const test_case *test)
+{
+    static const double vector[] = {-37, 91, 13.5};
+    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    cloud moved = copy_of(&on.points);
+    cloud_shift(&moved, vector);
+    stage other = stage_of(test, "moved", moved, 2.25);
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 9)};
+    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &field, NULL);
+    require_near(&on, &field, &one, &two, NULL, NULL, "other cells");
+}
+
+static void mls_is_rkpm_at_unit_volume(const test_case *test)
+{
+    test_case cases[] = {*test, *test};
+    cases[1].method = SPHG_RKPM;
+    stage stages[2];
+    stage_result found[2];
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, NULL};
+    for (int s = 0; s < 2; s++) {
+        stage made = stage_of(&cases[s], "unit volumes", unit_block(test->dimension), 2.25);
+        double *volume = test_memory((size_t)made.points.count * sizeof *volume);
+        for (int i = 0; i < made.points.count; i++)
+            volume[i] = 1;
+        stages[s] = stage_with_volumes(&made, volume);
+        field.numbers = stage_random_field(&stages[s], SPHG_SCALAR, 10);
+        found[s] = stage_apply(&stages[s], &field, NULL);
+    }
+    require_near(&stages[0], &field, &found[0], &found[1], NULL, NULL, "MLS against RKPM");
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(powers_of_two_scale_to_the_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, TEST_ALL_KERNELS),
+    TEST_ENTRY(powers_of_two_keep_ranks_and_scale_corrections, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, TEST_ALL_KERNELS),
+    TEST_ENTRY(exact_translation_keeps_every_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, TEST_ALL_KERNELS),
+    TEST_ENTRY(exact_constants_added_keep_every_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, TEST_ALL_KERNELS),
+    TEST_ENTRY(mirror_images_have_mirrored_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, TEST_ALL_KERNELS),
+    TEST_ENTRY(subsets_have_the_bits_of_the_full_run, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(threads_do_not_change_a_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(order_of_particles_matters_within_the_bound, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(axes_may_be_swapped_within_the_bound, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(rotations_turn_gradients_within_the_bound, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(far_translation_stays_within_the_bound, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(mls_is_rkpm_at_unit_volume, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_MLS), 0),
+};
+TEST_MAIN(entries)

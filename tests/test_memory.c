@@ -1,0 +1,376 @@
+/* The host's allocator: every allocation may fail and leaves nothing behind, every release names
+ * the size that was asked for, and warm calls ask for nothing. */
+#include "support/fixture.h"
+#include "support/hooks.h"
+#include "support/pairs.h"
+#include <math.h>
+#include <string.h>
+
+enum { COUNT = 400, OUTPUTS = COUNT * 16, ITEMS = 3000 };
+
+/* A host with one context, its arrays, and neighbours that may or may not be built. */
+typedef struct world {
+    hooks *host;
+    sphg_context *context;
+    sphg_neighbors *neighbors;
+    sphg_scheme scheme;
+    scene particles;
+    sphg_geometry geometry;
+    sphg_lists lists;
+    rows pairs;
+    fixture_array field, volume, matrices;
+    fixture_array first, second, third; /* outputs */
+} world;
+
+static void close_world(void *object)
+{
+    world *own = object;
+    sphg_neighbors_destroy(own->neighbors);
+    sphg_context_destroy(own->context);
+    own->neighbors = NULL;
+    own->context = NULL;
+}
+
+static void close_hooks(void *host)
+{
+    hooks_close(host);
+}
+
+/* Arrays of the tests' own; the library is not called yet. */
+static world *world_create(const test_case *test)
+{
+    world *own = test_memory(sizeof *own);
+    random_state random = random_seeded(107);
+    const int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 20 : 7, 0.25, 0.2, &random);
+    double *matrices = test_memory(ITEMS * 9 * sizeof *matrices);
+    own->host = test_memory(sizeof *own->host);
+    hooks_open(own->host);
+    test_at_end(close_hooks, own->host);
+    test_at_end(close_world, own);
+    own->particles = scene_of_cloud(test, &points);
+    own->scheme = fixture_scheme(test, 0.5);
+    own->geometry = scene_geometry(&own->particles);
+    own->pairs = rows_by_brute_force(&own->particles, 0.5);
+    own->lists.offsets = own->pairs.offsets;
+    own->lists.indices = own->pairs.indices;
+    for (int k = 0; k < ITEMS * 9; k++)
+        matrices[k] = k % 9 == 0 || k % 9 == 3 || k % 9 == 5 ? 1 : 0.1 / (1 + k % 7);
+    const sphg_type type = test_field_type(test);
+    own->matrices = fixture_numbers(type, ITEMS, 9, matrices);
+    own->field = fixture_numbers(type, points.count, 1, cloud_numbers(&points, -1, 1, &random));
+    own->volume = fixture_numbers(type, points.count, 1, cloud_volumes(&points, 0.1, &random));
+    return own;
+}
+
+/* Zeroed, so that runs can be compared to the bit. */
+static void clear_outputs(world *own)
+{
+    fixture_array *const outputs[] = {&own->first, &own->second, &own->third};
+    for (int k = 0; k < 3; k++) {
+        *outputs[k] = fixture_output(own->field.type, ITEMS, 16);
+        memset(outputs[k]->data, 0, (size_t)ITEMS * 16 * 4);
+    }
+}
+
+static sphg_view items_of(const fixture_array *array, int width)
+{
+    sphg_view view = fixture_view(array);
+    view.stride = view.stride / array->width * width;
+    return view;
+}
+
+typedef enum call {
+    CREATE_CONTEXT,
+    CREATE_NEIGHBORS,
+    SEARCH,
+    SEARCH_WITH_SKIN,
+    SEARCH_LIST_FREE,
+    USE_LISTS,
+    EVALUATE,
+    EVALUATE_LIST_FREE,
+    EVALUATE_LISTS,
+    PAIRS,
+    INVERT,
+    EIGEN,
+    SVD,
+    CALLS
+} call;
+
+static const char *const call_names[CALLS] = {"context_create",
+                                              "neighbors_create",
+                                              "search",
+                                              "search, skin",
+                                              "search, list-free",
+                                              "use_lists",
+                                              "evaluate",
+                                              "evaluate, free",
+                                              "evaluate, CSR",
+                                              "pair_gradients",
+                                              "invert_moments",
+                                              "eigen",
+                                              "svd"};
+
+static sphg_result create_context(world *own)
+{
+    const sphg_config config = hooks_config(own->host, 2);
+    return sphg_context_create(SPHG_VERSION, &config, &own->context);
+}
+
+static sphg_result build(world *own, int list_free, double skin)
+{
+    own->geometry.list_free = list_free;
+    own->geometry.skin = skin;
+    return sphg_neighbors_search(own->context, own->neighbors, &own->scheme, &own->geometry);
+}
+
+static sphg_result bring_lists(world *own)
+{
+    own->geometry.list_free = 0;
+    own->geometry.skin = 0;
+    return sphg_neighbors_use_lists(own->context, own->neighbors, &own->scheme, &own->geometry,
+                                    &own->lists);
+}
+
+/* Correction, rank and a gradient, so that the eigensolver's path is part of it. */
+static sphg_result evaluate(world *own)
+{
+    const int32_t width = sphg_correction_width(&own->scheme);
+    const sphg_view field = fixture_view(&own->field);
+    sphg_sources sources = {0};
+    sphg_field wanted = {0};
+    sphg_request request = {0};
+    sources.neighbors = own->neighbors;
+    sources.volume = fixture_view(&own->volume);
+    wanted.shape = SPHG_SCALAR;
+    wanted.at_sources = &field;
+    wanted.gradient = items_of(&own->first, own->particles.dimension);
+    request.sources = &sources;
+    request.set_count = 1;
+    request.fields = &wanted;
+    request.field_count = 1;
+    if (width > 0)
+        request.correction = items_of(&own->second, width);
+    return sphg_evaluate(own->context, &own->scheme, &request);
+}
+
+static sphg_result pair_gradients(world *own)
+{
+    sphg_sources sources = {0};
+    sphg_pairs pairs = {0};
+    const sphg_subset subset = {0, 100, NULL, NULL};
+    sources.neighbors = own->neighbors;
+    sources.volume = fixture_view(&own->volume);
+    pairs.gradient = items_of(&own->first, own->particles.dimension);
+    pairs.capacity = ITEMS;
+    return sphg_pair_gradients(own->context, &own->scheme, &sources, &subset, sphg_absent(),
+                               &pairs);
+}
+
+static sphg_result invert(world *own)
+{
+    sphg_inversion wanted = {0};
+    sphg_scheme scheme = own->scheme;
+    scheme.method = SPHG_KGC;
+    wanted.correction = items_of(&own->first, 6);
+    return sphg_invert_moments(own->context, &scheme, ITEMS, fixture_view(&own->matrices),
+                               sphg_absent(), &wanted);
+}
+
+static sphg_result perform(world *own, call which)
+{
+    switch (which) {
+    case CREATE_CONTEXT:
+        return create_context(own);
+    case CREATE_NEIGHBORS:
+        return sphg_neighbors_create(own->context, &own->neighbors);
+    case SEARCH:
+        return build(own, 0, 0);
+    case SEARCH_WITH_SKIN:
+        return build(own, 0, 0.125);
+    case SEARCH_LIST_FREE:
+        return build(own, 1, 0);
+    case USE_LISTS:
+        return bring_lists(own);
+    case EVALUATE:
+    case EVALUATE_LIST_FREE:
+    case EVALUATE_LISTS:
+        return evaluate(own);
+    case PAIRS:
+        return pair_gradients(own);
+    case INVERT:
+        return invert(own);
+    case EIGEN:
+        return sphg_eigen(own->context, own->particles.dimension, ITEMS,
+                          fixture_view(&own->matrices), items_of(&own->first, 3),
+                          items_of(&own->second, 9));
+    default:
+        return sphg_svd(own->context, ITEMS, fixture_view(&own->matrices), items_of(&own->first, 9),
+                        items_of(&own->second, 3), items_of(&own->third, 9));
+    }
+}
+
+/* What must have been done before: each call then meets a context that is as cold as it can be. */
+static void prepare(world *own, call which)
+{
+    own->context = NULL;
+    own->neighbors = NULL;
+    clear_outputs(own);
+    if (which != CREATE_CONTEXT)
+        assert_int_equal(create_context(own), SPHG_OK);
+    if (which != CREATE_CONTEXT && which != CREATE_NEIGHBORS)
+        assert_int_equal(sphg_neighbors_create(own->context, &own->neighbors), SPHG_OK);
+    if (which == EVALUATE || which == PAIRS)
+        assert_int_equal(build(own, 0, 0), SPHG_OK);
+    if (which == EVALUATE_LIST_FREE)
+        assert_int_equal(build(own, 1, 0), SPHG_OK);
+    if (which == EVALUATE_LISTS)
+        assert_int_equal(bring_lists(own), SPHG_OK);
+}
+
+/* Everything that depends on the call, as bits: its outputs, or the gradient after a build. */
+static void keep_result(world *own, call which, fixture_array *kept)
+{
+    const fixture_array *const outputs[] = {&own->first, &own->second, &own->third};
+    const size_t bytes = (size_t)ITEMS * 16 * 4;
+    if (which >= SEARCH && which <= USE_LISTS)
+        FIXTURE_OK(own->context, evaluate(own));
+    *kept = fixture_output(SPHG_F32, 3 * ITEMS, 16);
+    for (int k = 0; k < 3; k++)
+        memcpy((char *)kept->data + (size_t)k * bytes, outputs[k]->data, bytes);
+}
+
+static void require_clean(world *own, const char *where)
+{
+    close_world(own);
+    TEST_REQUIRE(own->host->live_blocks == 0 && own->host->live_bytes == 0,
+                 "%s: %lld blocks leaked", where, (long long)own->host->live_blocks);
+    TEST_REQUIRE(own->host->faults == 0, "%s: a release named another size", where);
+}
+
+/* One run in which allocations [k, until) of the call fail; returns whether any of them did. */
+static int run_with_failures(world *own, call which, int64_t k, int64_t until,
+                             const fixture_array *expected)
+{
+    const char *where = test_text("%s, allocation %lld", call_names[which], (long long)k);
+    fixture_array again;
+    prepare(own, which);
+    hooks_fail(own->host, k, until);
+    const sphg_result result = perform(own, which);
+    const int failed = own->host->allocations >= k;
+    hooks_fail(own->host, 0, 0);
+    TEST_REQUIRE(result == (failed ? SPHG_ERROR_MEMORY : SPHG_OK), "%s: %s", where,
+                 sphg_result_string(result));
+    if (which == CREATE_CONTEXT && failed)
+        assert_null(own->context);
+    if (failed)
+        TEST_REQUIRE(perform(own, which) == SPHG_OK, "%s: no recovery", where);
+    keep_result(own, which, &again);
+    TEST_REQUIRE(which == CREATE_CONTEXT || fixture_same_bits(&again, expected),
+                 "%s: another result afterwards", where);
+    require_clean(own, where);
+    return failed;
+}
+
+/* The k-th allocation fails, once or from then on, for every k. */
+static void any_allocation_may_fail(const test_case *test)
+{
+    world *own = world_create(test);
+    for (int which = 0; which < CALLS; which++) {
+        fixture_array expected;
+        if (which == SVD && test->dimension == 2)
+            continue;
+        prepare(own, (call)which);
+        assert_int_equal(perform(own, (call)which), SPHG_OK);
+        keep_result(own, (call)which, &expected);
+        require_clean(own, call_names[which]);
+        int64_t k = 1, persistent = 1;
+        while (run_with_failures(own, (call)which, k, k + 1, &expected))
+            k++;
+        while (run_with_failures(own, (call)which, persistent, INT64_MAX, &expected))
+            persistent++;
+        TEST_REQUIRE(k > 1 || which > EVALUATE, "%s allocates nothing", call_names[which]);
+    }
+}
+
+/* After a build that failed for want of memory, operators refuse until the next good one. */
+static void failed_build_must_be_repeated(const test_case *test)
+{
+    world *own = world_create(test);
+    prepare(own, EVALUATE);
+    own->scheme.support_radius = 1.5; /* many more pairs than the last build had */
+    hooks_fail(own->host, 1, INT64_MAX);
+    assert_int_equal(build(own, 0, 0), SPHG_ERROR_MEMORY);
+    hooks_fail(own->host, 0, 0);
+    assert_int_equal(evaluate(own), SPHG_ERROR_STATE);
+    assert_int_equal(build(own, 0, 0), SPHG_OK);
+    assert_int_equal(evaluate(own), SPHG_OK);
+    require_clean(own, "failed build");
+}
+
+/* ---- Steady state ------------------------------------------------------------------------- */
+
+/* Moves the particles about and apart: pairs change and become fewer. */
+static void stir(world *own, const double *rest, int step, random_state *random)
+{
+    const int d = own->particles.dimension;
+    const double stretch = step ? 1.1 + 0.001 * (step % 5) : 1;
+    for (int k = 0; k < own->particles.source_count * d; k++) {
+        const double x = stretch * rest[k] + random_between(random, 0, 0.002 * step);
+        own->particles.sources[k] = own->particles.is_double ? x : (double)(float)x;
+    }
+    own->geometry = scene_geometry(&own->particles);
+    own->geometry.source_count -= step % 3;
+    own->geometry.target_count = own->geometry.source_count - (d == 3 ? 7 : 0); /* ghosts */
+}
+
+/* Everything that a step of a simulation may call. */
+static void work(world *own)
+{
+    int32_t order[COUNT];
+    FIXTURE_OK(own->context, sphg_neighbors_get_order(own->context, own->neighbors, order));
+    FIXTURE_OK(own->context, evaluate(own));
+    FIXTURE_OK(own->context, pair_gradients(own));
+    FIXTURE_OK(own->context, invert(own));
+    FIXTURE_OK(own->context, perform(own, EIGEN));
+    if (own->particles.dimension == 3)
+        FIXTURE_OK(own->context, perform(own, SVD));
+}
+
+static void warm_calls_allocate_nothing(const test_case *test)
+{
+    world *own = world_create(test);
+    random_state random = random_seeded(109);
+    const size_t bytes = (size_t)(own->particles.source_count * test->dimension) * sizeof(double);
+    double *rest = memcpy(test_memory(bytes), own->particles.sources, bytes);
+    const call kinds[] = {SEARCH, SEARCH_WITH_SKIN, SEARCH_LIST_FREE, USE_LISTS};
+    for (int kind = 0; kind < 4; kind++) {
+        prepare(own, kinds[kind]);
+        stir(own, rest, 0, &random);
+        if (kinds[kind] == USE_LISTS)
+            own->geometry = scene_geometry(&own->particles);
+        FIXTURE_OK(own->context, perform(own, kinds[kind]));
+        work(own);
+        hooks_fail(own->host, 0, 0);
+        for (int step = 1; step < 12; step++) {
+            stir(own, rest, step, &random);
+            if (kinds[kind] == USE_LISTS) /* which name all particles */
+                own->geometry = scene_geometry(&own->particles);
+            FIXTURE_OK(own->context, perform(own, kinds[kind]));
+            work(own);
+            TEST_REQUIRE(own->host->allocations == 0, "%s, step %d: %lld allocations",
+                         call_names[kinds[kind]], step, (long long)own->host->allocations);
+        }
+        require_clean(own, "steady state");
+    }
+}
+
+#define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)
+
+static const test_entry entries[] = {
+    TEST_ENTRY(any_allocation_may_fail, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
+    EACH(failed_build_must_be_repeated),
+    TEST_ENTRY(warm_calls_allocate_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+};
+TEST_MAIN(entries)

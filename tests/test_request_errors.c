@@ -1,0 +1,395 @@
+/* Requests that cannot be served: refused with the right code and the argument's name, outputs
+ * untouched, and the next call works. */
+#include "support/subject.h"
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#define REFUSES(call, expected, words, change) SUBJECT_REFUSES(own, call, expected, words, change)
+
+static sphg_result evaluate(subject *own)
+{
+    return sphg_evaluate(own->context, own->scheme_given, own->request_given);
+}
+
+static sphg_type other_type(const subject *own)
+{
+    return own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+}
+
+static ptrdiff_t number_size(const subject *own)
+{
+    return own->positions.type == SPHG_F32 ? 4 : 8;
+}
+
+static const void *moved(sphg_view view, ptrdiff_t bytes)
+{
+    return (const void *)((uintptr_t)view.x + (uintptr_t)bytes);
+}
+
+/* ---- sphg_evaluate ------------------------------------------------------------------------ */
+
+static void evaluate_refuses_bad_schemes(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const int enums[] = {-1, 7, INT_MAX, INT_MIN};
+    for (int k = 0; k < 4; k++) {
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "method",
+                own->scheme.method = (sphg_method)enums[k]);
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "kernel",
+                own->scheme.kernel = (sphg_kernel)enums[k]);
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "policy",
+                own->scheme.policy = (sphg_policy)enums[k]);
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = enums[k]);
+    }
+    const double radii[] = {0, -1, NAN, INFINITY}, thresholds[] = {-1e-3, 1, NAN, INFINITY};
+    for (int k = 0; k < 4; k++) {
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "support_radius",
+                own->scheme.support_radius = radii[k]);
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "threshold", own->scheme.threshold = thresholds[k]);
+    }
+    REFUSES(evaluate, SPHG_ERROR_SIZE, "sources[0].neighbors",
+            own->scheme.dimension = 5 - test->dimension);
+    REFUSES(evaluate, SPHG_ERROR_SIZE, "support_radius",
+            own->scheme.support_radius = nextafter(1, 2));
+    REFUSES(evaluate, SPHG_ERROR_SIZE, "support_radius", own->sources[0].neighbors = own->narrow);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "request", own->request_given = NULL);
+    assert_int_equal(sphg_evaluate(NULL, &own->scheme, &own->request), SPHG_ERROR_ARGUMENT);
+}
+
+static void evaluate_refuses_bad_sources(const test_case *test)
+{
+    subject *own = subject_create(test);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "sources", own->request.sources = NULL);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = 0);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = -1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "neighbors", own->sources[0].neighbors = NULL);
+    REFUSES(evaluate, SPHG_ERROR_STATE, "", own->sources[0].neighbors = own->blank);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "volume", own->sources[0].volume = sphg_absent());
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "volume", own->sources[0].volume.type = other_type(own));
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "volume", own->sources[0].volume.type = SPHG_U8);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "volume", own->sources[0].volume.stride += 1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "volume",
+            own->sources[0].volume.x = moved(own->volumes, 1));
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "correction", own->request.correction = sphg_absent();
+            own->request.rank = sphg_absent(); own->sources[0].correction = own->table;
+            own->sources[0].correction.type = other_type(own));
+}
+
+static void evaluate_refuses_bad_fields(const test_case *test)
+{
+    subject *own = subject_create(test);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields", own->request.fields = NULL);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = -1);
+    const int shapes[] = {0, 5, -1, INT_MAX}, forms[] = {-1, 4, INT_MIN, INT_MAX};
+    for (int k = 0; k < 4; k++) {
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "shape", own->field.shape = (sphg_shape)shapes[k]);
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "form", own->field.form = (sphg_form)forms[k]);
+    }
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "at_sources", own->field.at_sources = NULL);
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "at_sources", own->at_sources[0].type = other_type(own));
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "at_sources", own->at_sources[0].stride += 1);
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "at_targets", own->field.at_targets = own->scalars;
+            own->field.at_targets.type = other_type(own));
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "gradient", own->field.gradient.type = other_type(own));
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "gradient", own->field.gradient.type = SPHG_U8);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient", own->field.gradient.stride = 0);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient", own->field.gradient.stride += 1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient",
+            own->field.gradient.x = moved(own->vectors_out, 2));
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "at_targets",
+            own->sources[0].neighbors = own->lone); /* nobody to look them up from */
+}
+
+/* Which results a shape and a form have. */
+static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *test)
+{
+    subject *own = subject_create(test);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "gradient", own->field.shape = SPHG_SYM_TENSOR;
+            own->at_sources[0] = own->tensors);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "gradient", own->field.shape = SPHG_TENSOR;
+            own->at_sources[0] = own->tensors);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "curl", own->field.gradient = sphg_absent();
+            own->field.curl = own->vectors_out);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "curl", own->field.gradient = sphg_absent();
+            own->field.shape = SPHG_TENSOR; own->at_sources[0] = own->tensors;
+            own->field.curl = own->vectors_out);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "divergence", own->field.gradient = sphg_absent();
+            own->field.divergence = own->vectors_out);
+    REFUSES(evaluate, SUBJECT_REFUSED, "value", own->field.value = own->scalars_out);
+}
+
+/* ADJOINT and SYMMETRIC read both ends of a pair. */
+static void two_sided_forms_need_tables_and_densities(const test_case *test)
+{
+    subject *own = subject_create(test);
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+#define TWO_SIDED                                                                                  \
+    own->field.form = (sphg_form)form;                                                             \
+    own->request.correction = own->request.rank = sphg_absent();                                   \
+    own->sources[0].density = own->volumes
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "correction", TWO_SIDED);
+#undef TWO_SIDED
+    }
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "density", own->field.form = SPHG_SYMMETRIC;
+            own->request.correction = own->request.rank = sphg_absent();
+            own->sources[0].correction = own->table);
+}
+
+static void evaluate_refuses_bad_outputs_of_corrections(const test_case *test)
+{
+    subject *own = subject_create(test);
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "rank", own->request.rank.type = own->positions.type);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "rank", own->request.rank.stride = 0);
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "lambda_min", own->request.lambda_min = own->scalars_out;
+            own->request.lambda_min.type = SPHG_U8);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "correction", own->request.correction.stride = 0);
+    REFUSES(evaluate, SPHG_ERROR_TYPE, "correction",
+            own->request.correction.type = other_type(own));
+    REFUSES(evaluate, SUBJECT_REFUSED, "correction", own->sources[0].correction = own->table);
+    REFUSES(evaluate, SUBJECT_REFUSED, "correction", own->request.target_correction = own->table);
+}
+
+/* An output that overlaps an input or another output, by one byte, from either side. */
+static void overlapping_outputs_are_refused(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const ptrdiff_t size = number_size(own), items = (SUBJECT_COUNT - 1) * own->vectors_out.stride;
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient",
+            own->request.correction.x = own->vectors_out.x);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "",
+            own->request.correction.x = moved(own->vectors_out, items + size));
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "rank",
+            own->request.rank = sphg_view_u8(moved(own->vectors_out, items + 1), 1));
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient", own->at_sources[0].x = own->vectors_out.x);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient",
+            own->sources[0].volume.x = moved(own->vectors_out, items));
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "gradient", own->field.at_targets = own->scalars;
+            own->field.at_targets.x = moved(own->vectors_out, size);
+            own->field.at_targets.stride = 0);
+}
+
+/* Interleaved members of one record touch each other's span, but not each other. */
+static void members_of_one_record_do_not_overlap(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const ptrdiff_t size = number_size(own), record = 12 * size;
+    const int d = test->dimension;
+    char *memory = test_memory(SUBJECT_COUNT * 12 * sizeof(double));
+    own->field.gradient.x = memory;
+    own->request.correction.x = memory + d * size;
+    own->request.rank = sphg_view_u8((uint8_t *)memory + 10 * size, record);
+    own->field.gradient.stride = own->request.correction.stride = record;
+    FIXTURE_OK(own->context, evaluate(own));
+}
+
+static void evaluate_refuses_bad_subsets(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const int32_t picked[] = {3, 5, SUBJECT_COUNT}, negative[] = {0, -1, 2};
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset is [-1", own->subset.begin = -1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset", own->subset.end = SUBJECT_COUNT + 1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset", own->subset.begin = 10; own->subset.end = 9);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "indices", own->subset.end = 3;
+            own->subset.indices = picked);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "indices", own->subset.end = 3;
+            own->subset.indices = negative);
+}
+
+static void several_sets_must_agree(const test_case *test)
+{
+    subject *own = subject_create(test);
+    sphg_neighbors *fewer = NULL;
+    assert_int_equal(sphg_neighbors_create(own->context, &fewer), SPHG_OK);
+    own->geometry.target_count = SUBJECT_COUNT - 1;
+    FIXTURE_OK(own->context,
+               sphg_neighbors_search(own->context, fewer, &own->scheme, &own->geometry));
+#define TWO_SETS                                                                                   \
+    own->request.set_count = 2;                                                                    \
+    own->sources[1] = own->sources[0]
+    REFUSES(evaluate, SPHG_ERROR_SIZE, "59 targets", TWO_SETS; own->sources[1].neighbors = fewer);
+#undef TWO_SETS
+    sphg_neighbors_destroy(fewer);
+}
+
+/* ---- What shows only on the way ----------------------------------------------------------- */
+
+static void bad_volumes_are_found_and_named(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const double bad[] = {-1, NAN, INFINITY, -1e-30};
+    for (int k = 0; k < 4; k++) {
+        double numbers[SUBJECT_COUNT];
+        for (int i = 0; i < SUBJECT_COUNT; i++)
+            numbers[i] = i == 41 ? bad[k] : 0.125;
+        const fixture_array volumes =
+            fixture_numbers(test_field_type(test), SUBJECT_COUNT, 1, numbers);
+        REFUSES(evaluate, SPHG_ERROR_VOLUME, "41", own->sources[0].volume = fixture_view(&volumes));
+    }
+    const float negative = -1;
+    const double negative_full = -1;
+    REFUSES(evaluate, SPHG_ERROR_VOLUME, "volume", own->scheme.method = SPHG_MLS;
+            own->request.target_volume = own->volumes; own->request.target_volume.stride = 0;
+            own->request.target_volume.x = test->precision == TEST_F64
+                                               ? (const void *)&negative_full
+                                               : (const void *)&negative);
+}
+
+static void bad_indices_are_found_where_operators_read_them(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const int32_t bad[] = {-1, SUBJECT_COUNT, INT32_MAX, INT32_MIN};
+    for (int k = 0; k < 4; k++) {
+        const int place = 17 * SUBJECT_COUNT + 5;
+        FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->built, &own->scheme,
+                                                          &own->geometry, &own->lists));
+        own->indices[place] = bad[k];
+        assert_int_equal(evaluate(own), SPHG_ERROR_INDEX);
+        assert_non_null(strstr(sphg_last_message(own->context), test_text("%d", bad[k])));
+        own->indices[place] = 5;
+        FIXTURE_OK(own->context, evaluate(own));
+        subject_reset(own);
+    }
+}
+
+typedef struct reentry {
+    subject *own;
+    const int32_t *row;
+    sphg_result inner;
+} reentry;
+
+static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t **indices,
+                                   void *user)
+{
+    reentry *call = user;
+    subject *own = call->own;
+    (void)worker;
+    if (target == 0)
+        call->inner = sphg_eigen(own->context, own->dimension, own->count, own->table,
+                                 own->vectors_out, own->tensors_out);
+    *indices = call->row;
+    return SUBJECT_COUNT;
+}
+
+static void context_in_use_is_busy(const test_case *test)
+{
+    subject *own = subject_create(test);
+    reentry call = {own, own->indices, SPHG_OK};
+    memset(&own->lists, 0, sizeof own->lists);
+    own->lists.row = row_that_calls_back;
+    own->lists.user = &call;
+    FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
+                                                      &own->geometry, &own->lists));
+    own->sources[0].neighbors = own->lone;
+    FIXTURE_OK(own->context, evaluate(own));
+    assert_int_equal(call.inner, SPHG_ERROR_BUSY);
+    FIXTURE_OK(own->context, evaluate(own));
+}
+
+/* ---- Pairs and short ways ----------------------------------------------------------------- */
+
+/* Of four targets, so that the arrays suffice. */
+static sphg_result pair_gradients(subject *own)
+{
+    if (own->subset.end == SUBJECT_COUNT)
+        own->subset.end = 4;
+    return sphg_pair_gradients(own->context, own->scheme_given, own->sources_given, &own->subset,
+                               sphg_absent(), own->pairs_given);
+}
+
+static void pairs_refuse_bad_arguments(const test_case *test)
+{
+    subject *own = subject_create(test);
+    REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "pairs", own->pairs_given = NULL);
+    REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "sources", own->sources_given = NULL);
+    REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
+    REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "capacity", own->pairs.capacity = -1);
+    REFUSES(pair_gradients, SPHG_ERROR_TYPE, "gradient",
+            own->pairs.gradient.type = other_type(own));
+    REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "gradient", own->pairs.gradient.stride = 0);
+    REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "volume", own->sources[0].volume = sphg_absent());
+    REFUSES(pair_gradients, SPHG_ERROR_STATE, "", own->sources[0].neighbors = own->blank);
+}
+
+static void pairs_report_the_capacity_they_need(const test_case *test)
+{
+    subject *own = subject_create(test);
+    FIXTURE_OK(own->context, pair_gradients(own));
+    const int64_t needed = own->pairs.count;
+    assert_true(needed > 4);
+    for (int64_t capacity = 0; capacity < needed; capacity += needed - 1) {
+        int64_t offsets[5] = {-7, -7, -7, -7, -7};
+        subject_reset(own);
+        own->pairs.capacity = capacity;
+        own->pairs.offsets = offsets;
+        subject_require(own, pair_gradients(own), SPHG_ERROR_CAPACITY, "capacity", "capacity");
+        assert_int_equal(own->pairs.count, needed);
+        for (int k = 0; k < 5; k++)
+            assert_int_equal(offsets[k], -7);
+    }
+    subject_reset(own);
+    own->pairs.capacity = needed;
+    FIXTURE_OK(own->context, pair_gradients(own));
+}
+
+static sphg_result correction(subject *own)
+{
+    return sphg_correction(own->context, own->scheme_given, own->sources_given, NULL,
+                           own->table_out, own->ranks_out);
+}
+
+static sphg_result gradient(subject *own)
+{
+    return sphg_gradient(own->context, own->scheme_given, own->sources_given, NULL, own->scalars,
+                         own->vectors_out);
+}
+
+static sphg_result force(subject *own)
+{
+    if (!own->sources[1].neighbors)
+        own->sources[0].correction = own->table;
+    return sphg_force(own->context, own->scheme_given, own->sources_given, NULL, SPHG_SCALAR,
+                      own->scalars, own->vectors_out);
+}
+
+static void short_ways_refuse_bad_arguments(const test_case *test)
+{
+    subject *own = subject_create(test);
+    sphg_result (*const calls[])(subject *) = {correction, gradient, force};
+    for (int k = 0; k < 3; k++) {
+        REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
+        REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "sources", own->sources_given = NULL);
+        REFUSES(calls[k], SPHG_ERROR_STATE, "", own->sources[0].neighbors = own->blank);
+        if (calls[k] != correction) /* A_i is looked up in the set that the targets are part of */
+            REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "at_targets",
+                    own->sources[0].neighbors = own->lone);
+        REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "volume", own->sources[0].volume = sphg_absent());
+    }
+    REFUSES(correction, SUBJECT_REFUSED, "", own->scheme.method = SPHG_PLAIN);
+    REFUSES(gradient, SPHG_ERROR_ARGUMENT, "", own->scalars = sphg_absent());
+    REFUSES(gradient, SPHG_ERROR_ARGUMENT, "gradient", own->vectors_out = sphg_absent());
+    REFUSES(force, SPHG_ERROR_ARGUMENT, "correction", own->sources[1] = own->sources[0]);
+}
+
+#define EACH(property) TEST_ENTRY(property, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0)
+
+static const test_entry entries[] = {
+    EACH(evaluate_refuses_bad_schemes),
+    EACH(evaluate_refuses_bad_sources),
+    EACH(evaluate_refuses_bad_fields),
+    EACH(evaluate_refuses_operators_that_a_shape_has_not),
+    EACH(two_sided_forms_need_tables_and_densities),
+    EACH(evaluate_refuses_bad_outputs_of_corrections),
+    EACH(overlapping_outputs_are_refused),
+    EACH(members_of_one_record_do_not_overlap),
+    EACH(evaluate_refuses_bad_subsets),
+    EACH(several_sets_must_agree),
+    EACH(bad_volumes_are_found_and_named),
+    EACH(bad_indices_are_found_where_operators_read_them),
+    EACH(context_in_use_is_busy),
+    EACH(pairs_refuse_bad_arguments),
+    EACH(pairs_report_the_capacity_they_need),
+    EACH(short_ways_refuse_bad_arguments),
+};
+TEST_MAIN(entries)

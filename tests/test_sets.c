@@ -1,0 +1,318 @@
+/* Fluid and wall as two source sets give what their union gives; targets may lie anywhere; fields
+ * and calls add up. */
+#include "support/stage.h"
+#include <string.h>
+
+/* A block whose lower layers are wall: the first `fluid` points are fluid. */
+typedef struct two_sets {
+    stage whole; /* one set of all points, with the oracle */
+    int fluid;
+    cloud part[2];
+    fixture_array volume[2], density[2], positions[2];
+    sphg_neighbors *from[2][2]; /* [target set][source set] */
+} two_sets;
+
+static const double *part_of(const two_sets *sets, const double *numbers, int set, int width)
+{
+    return numbers + (set ? sets->fluid * width : 0);
+}
+
+static int by_height(const cloud *points, cloud *sorted)
+{
+    int d = points->dimension, used = 0, fluid = 0;
+    double border = .2;
+    *sorted = *points;
+    sorted->x = test_memory((size_t)(points->count * d) * sizeof *sorted->x);
+    for (int wall = 0; wall < 2; wall++)
+        for (int i = 0; i < points->count; i++) {
+            const double *x = points->x + i * d;
+            if ((x[d - 1] < border) != wall)
+                continue;
+            memcpy(sorted->x + used++ * d, x, (size_t)d * sizeof *x);
+            fluid += !wall;
+        }
+    return fluid;
+}
+
+static sphg_neighbors *neighbors_between(const two_sets *sets, int targets, int sources)
+{
+    const test_case *test = sets->whole.test;
+    sphg_geometry geometry =
+        fixture_geometry(test, &sets->part[sources], &sets->positions[sources]);
+    if (targets != sources) {
+        geometry.targets = fixture_view(&sets->positions[targets]);
+        geometry.target_count = sets->part[targets].count;
+    }
+    return fixture_search(sets->whole.context, &sets->whole.scheme, &geometry);
+}
+
+static two_sets split_block(const test_case *test)
+{
+    random_state random = random_seeded(81);
+    int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 7 : 4, .125, .25, &random), sorted;
+    two_sets sets = {.fluid = by_height(&points, &sorted)};
+    sets.whole = stage_of(test, "fluid and wall", sorted, 2.5 * .125);
+    sphg_type type = test_field_type(test);
+    for (int s = 0; s < 2; s++) {
+        sets.part[s] = sets.whole.points;
+        sets.part[s].x += s ? sets.fluid * d : 0;
+        sets.part[s].count = s ? sorted.count - sets.fluid : sets.fluid;
+        int n = sets.part[s].count;
+        sets.positions[s] = fixture_positions(test, &sets.part[s]);
+        sets.volume[s] = fixture_numbers(type, n, 1, part_of(&sets, sets.whole.scene.volume, s, 1));
+        sets.density[s] =
+            fixture_numbers(type, n, 1, part_of(&sets, sets.whole.scene.density, s, 1));
+    }
+    for (int t = 0; t < 2; t++)
+        for (int s = 0; s < 2; s++)
+            sets.from[t][s] = neighbors_between(&sets, t, s);
+    return sets;
+}
+
+/* Both sets as targets of set t see them. */
+static void sources_of(const two_sets *sets, int t, sphg_sources *sources)
+{
+    for (int s = 0; s < 2; s++) {
+        sources[s] = (sphg_sources){.neighbors = sets->from[t][s]};
+        sources[s].volume = fixture_view(&sets->volume[s]);
+        sources[s].density = fixture_view(&sets->density[s]);
+    }
+}
+
+/* C of one set's particles, moments summed over both sets. */
+static fixture_array table_of(const two_sets *sets, int t)
+{
+    const stage *on = &sets->whole;
+    int width = sphg_correction_width(&on->scheme);
+    fixture_array table = fixture_output(test_field_type(on->test), sets->part[t].count, width);
+    sphg_sources sources[2];
+    sources_of(sets, t, sources);
+    sphg_request request = {.sources = sources, .set_count = 2};
+    request.correction = fixture_view(&table);
+    if (width > 0)
+        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return table;
+}
+
+static stage_result evaluate_fluid(const two_sets *sets, const stage_field *field,
+                                   const fixture_array *tables)
+{
+    const stage *on = &sets->whole;
+    sphg_type type = test_field_type(on->test);
+    int d = on->points.dimension, n = sets->fluid;
+    int width = fixture_width(field->shape, d);
+    stage_result found = {fixture_output(type, n, d * width), fixture_output(type, n, 0),
+                          fixture_output(type, n, 0),
+                          fixture_output(type, n, field->form == SPHG_DIRECT ? width : 0)};
+    sphg_sources sources[2];
+    sphg_view at_sources[2];
+    sources_of(sets, 0, sources);
+    for (int s = 0; s < 2; s++) {
+        fixture_array numbers = fixture_numbers(type, sets->part[s].count, width,
+                                                part_of(sets, field->numbers, s, width));
+        at_sources[s] = fixture_view(&numbers);
+        if (tables)
+            sources[s].correction = stage_table_view(on, &tables[s]);
+    }
+    sphg_field asked = {.shape = field->shape, .form = field->form, .at_sources = at_sources};
+    asked.gradient = fixture_view(&found.gradient);
+    if (field->form == SPHG_DIRECT)
+        asked.value = fixture_view(&found.value);
+    sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
+    request.field_count = 1;
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static void two_source_sets_equal_their_union(const test_case *test)
+{
+    two_sets sets = split_block(test);
+    fixture_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
+    TEST_REQUIRE(sets.fluid > 10 && sets.part[1].count > 10, "not two sets");
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
+        stage_field field = {SPHG_SCALAR, (sphg_form)form,
+                             stage_random_field(&sets.whole, SPHG_SCALAR, 21)};
+        stage_result found = evaluate_fluid(&sets, &field, form >= SPHG_SYMMETRIC ? tables : NULL);
+        for (int i = 0; i < sets.fluid; i += 7)
+            stage_compare(&sets.whole, &field, &found, i);
+    }
+}
+
+static void an_absent_field_is_zero(const test_case *test)
+{
+    two_sets sets = split_block(test);
+    int n = sets.fluid;
+    sphg_type type = test_field_type(test);
+    double *zeros = test_memory((size_t)sets.part[1].count * sizeof *zeros);
+    double *numbers = stage_random_field(&sets.whole, SPHG_SCALAR, 22);
+    fixture_array here = fixture_numbers(type, n, 1, numbers);
+    fixture_array none = fixture_numbers(type, sets.part[1].count, 1, zeros);
+    fixture_array found[2];
+    for (int way = 0; way < 2; way++) {
+        sphg_view at_sources[] = {fixture_view(&here), way ? sphg_absent() : fixture_view(&none)};
+        sphg_sources sources[2];
+        sources_of(&sets, 0, sources);
+        found[way] = fixture_output(type, n, test->dimension);
+        sphg_field asked = {.shape = SPHG_SCALAR, .at_sources = at_sources};
+        asked.gradient = fixture_view(&found[way]);
+        sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
+        request.field_count = 1;
+        FIXTURE_OK(sets.whole.context,
+                   sphg_evaluate(sets.whole.context, &sets.whole.scheme, &request));
+    }
+    assert_true(fixture_same_bits(&found[0], &found[1]));
+}
+
+/* ---- Targets unlike sources ---------------------------------------------------------------------
+ */
+
+typedef struct probe {
+    stage on;
+    cloud targets;
+    sphg_neighbors *neighbors;
+    double *target_volume, *at_targets;
+} probe;
+
+static probe make_probe(const test_case *test, int with_volume)
+{
+    random_state random = random_seeded(82);
+    int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 7 : 4, .125, .25, &random);
+    probe made = {.on = stage_of(test, "probes", points, 2.5 * .125)};
+    made.targets = cloud_random(d, 12, .5, &random);
+    fixture_array positions = fixture_positions(test, &made.on.points);
+    fixture_array places = fixture_positions(test, &made.targets);
+    sphg_geometry geometry = fixture_geometry(test, &made.on.points, &positions);
+    geometry.targets = fixture_view(&places);
+    geometry.target_count = made.targets.count;
+    made.neighbors = fixture_search(made.on.context, &made.on.scheme, &geometry);
+    made.at_targets = cloud_numbers(&made.targets, -1, 1, &random);
+    if (with_volume)
+        made.target_volume = cloud_volumes(&points, .2, &random);
+    oracle_scene *scene = &made.on.scene;
+    scene->targets = made.targets.x;
+    scene->target_count = made.targets.count;
+    scene->target_volume = made.target_volume;
+    made.on.reference = oracle_of(scene);
+    return made;
+}
+
+static void compare_probe(const probe *made, sphg_form form)
+{
+    const stage *on = &made->on;
+    sphg_type type = test_field_type(on->test);
+    int n = made->targets.count, d = on->points.dimension;
+    double *numbers = stage_random_field(on, SPHG_SCALAR, 23);
+    fixture_array field = fixture_numbers(type, on->points.count, 1, numbers);
+    fixture_array at_targets = fixture_numbers(type, n, 1, made->at_targets);
+    fixture_array gradient = fixture_output(type, n, d), volume;
+    sphg_view at_sources = fixture_view(&field);
+    sphg_sources sources = stage_sources(on);
+    sources.neighbors = made->neighbors;
+    sphg_field asked = {.shape = SPHG_SCALAR, .form = form, .at_sources = &at_sources};
+    asked.at_targets = fixture_view(&at_targets);
+    asked.gradient = fixture_view(&gradient);
+    sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
+    request.field_count = 1;
+    if (made->target_volume) {
+        volume = fixture_numbers(type, n, 1, made->target_volume);
+        request.target_volume = fixture_view(&volume);
+    }
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    oracle_field exact_field = {SPHG_SCALAR, form, numbers, made->at_targets};
+    for (int i = 0; i < n; i++) {
+        oracle_result exact = oracle_apply(on->reference, &exact_field, i);
+        double ratio = stage_ratio(&gradient, i, exact.gradient, exact.bound);
+        if (exact.touched)
+            TEST_WITHIN(oracle_ratio_touched, ratio, "probe");
+        else
+            TEST_WITHIN(oracle_ratio_full, ratio, "probe");
+    }
+}
+
+static void targets_unlike_sources_match_the_oracle(const test_case *test)
+{
+    for (int with_volume = 0; with_volume < 2; with_volume++) {
+        probe made = make_probe(test, with_volume);
+        compare_probe(&made, SPHG_DIFFERENCE);
+        compare_probe(&made, SPHG_DIRECT);
+    }
+}
+
+/* ---- Several fields, accumulation
+ * --------------------------------------------------------------------- */
+
+static void fields_of_one_call_equal_calls_of_one_field(const test_case *test)
+{
+    random_state random = random_seeded(83);
+    int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 6 : 4, .125, .25, &random);
+    stage on = stage_of(test, "block", points, 2.5 * .125);
+    static const sphg_shape shapes[] = {SPHG_SCALAR, SPHG_VECTOR, SPHG_SCALAR};
+    static const sphg_form forms[] = {SPHG_DIFFERENCE, SPHG_DIFFERENCE, SPHG_DIRECT};
+    sphg_view at_sources[3];
+    sphg_field fields[3] = {{0}};
+    fixture_array numbers[3], together[3];
+    stage_result alone[3];
+    for (int f = 0; f < 3; f++) {
+        int width = fixture_width(shapes[f], d);
+        stage_field field = {shapes[f], forms[f],
+                             stage_random_field(&on, shapes[f], (uint64_t)(90 + f))};
+        alone[f] = stage_apply(&on, &field, NULL);
+        numbers[f] = fixture_numbers(test_field_type(test), points.count, width, field.numbers);
+        together[f] = fixture_output(test_field_type(test), points.count, d * width);
+        at_sources[f] = fixture_view(&numbers[f]);
+        fields[f].shape = shapes[f];
+        fields[f].form = forms[f];
+        fields[f].at_sources = &at_sources[f];
+        fields[f].gradient = fixture_view(&together[f]);
+    }
+    sphg_sources sources = stage_sources(&on);
+    sphg_request request = {.sources = &sources, .fields = fields, .set_count = 1};
+    request.field_count = 3;
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    for (int f = 0; f < 3; f++)
+        TEST_REQUIRE(fixture_same_bits(&together[f], &alone[f].gradient), "field %d", f);
+}
+
+static void accumulate_adds_to_what_is_there(const test_case *test)
+{
+    two_sets sets = split_block(test);
+    const stage *on = &sets.whole;
+    sphg_type type = test_field_type(test);
+    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(on, SPHG_SCALAR, 24)};
+    stage_result once = stage_apply(on, &field, NULL);
+    fixture_array numbers = fixture_numbers(type, on->points.count, 1, field.numbers);
+    double *start = test_memory((size_t)(on->points.count * test->dimension) * sizeof *start);
+    for (int k = 0; k < on->points.count * test->dimension; k++)
+        start[k] = k % 5;
+    fixture_array sum = fixture_numbers(type, on->points.count, test->dimension, start);
+    sphg_view at_sources = fixture_view(&numbers);
+    sphg_sources sources = stage_sources(on);
+    sphg_field asked = {.shape = SPHG_SCALAR, .accumulate = 1, .at_sources = &at_sources};
+    asked.gradient = fixture_view(&sum);
+    sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
+    request.field_count = 1;
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    for (int k = 0; k < sum.count * sum.width; k++) {
+        int i = k / sum.width, c = k % sum.width;
+        double g = fixture_get(&once.gradient, i, c), expected = start[k] + g;
+        double error = fabs(fixture_get(&sum, i, c) - expected);
+        TEST_WITHIN(one_addition, error / on->scene.unit / (fabs(expected) + fabs(g)), "sum");
+    }
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(two_source_sets_equal_their_union, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(an_absent_field_is_zero, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS,
+               0),
+    TEST_ENTRY(targets_unlike_sources_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, TEST_ALL_KERNELS),
+    TEST_ENTRY(fields_of_one_call_equal_calls_of_one_field, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(accumulate_adds_to_what_is_there, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+};
+TEST_MAIN(entries)

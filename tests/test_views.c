@@ -1,0 +1,348 @@
+/* Views: the same numbers in any layout give the same bits, land where the view says, and leave
+ * every other byte alone. */
+#include "support/fixture.h"
+#include "support/pairs.h"
+#include <math.h>
+#include <string.h>
+
+enum { COUNT = 150, CANARY = 0xA5 };
+
+/* ---- Layouts ------------------------------------------------------------------------------ */
+
+typedef enum layout {
+    PACKED,         /* items one after another */
+    RECORD,         /* inside larger items */
+    REVERSED,       /* the last item first */
+    SEPARATE,       /* components, or rows of a tensor, in arrays of their own */
+    SEPARATE_BACK,  /* these, back to front */
+    THREE_BY_THREE, /* rows three numbers apart: 2 x 2 results in 3 x 3 storage */
+    LAYOUTS
+} layout;
+
+static const char *const layout_names[LAYOUTS] = {"packed",   "record",         "reversed",
+                                                  "separate", "separate, back", "3 x 3"};
+
+/* Memory of count items of height x columns numbers, and the view that finds them. */
+typedef struct placed {
+    sphg_view view;
+    int height, columns;
+    unsigned char *memory;
+    size_t bytes, size;
+} placed;
+
+static int has_rows(layout kind, int height)
+{
+    return kind >= SEPARATE && height > 1;
+}
+
+/* Where the first item's row starts, in numbers, and how far apart items are. */
+static ptrdiff_t row_start(layout kind, int row, int columns)
+{
+    return kind == THREE_BY_THREE ? 3 * row : (ptrdiff_t)row * COUNT * columns;
+}
+
+static ptrdiff_t item_step(layout kind, int height, int columns)
+{
+    if (has_rows(kind, height))
+        return kind == THREE_BY_THREE ? 11 : columns;
+    return kind == PACKED ? (ptrdiff_t)height * columns : (ptrdiff_t)height * columns + 3;
+}
+
+static placed place(sphg_type type, int height, int columns, layout kind)
+{
+    placed own = {.height = height, .columns = columns};
+    own.size = type == SPHG_F64 ? 8 : type == SPHG_F32 ? 4 : 1;
+    own.bytes = (size_t)COUNT * 20 * own.size;
+    own.memory = memset(test_memory(own.bytes), CANARY, own.bytes);
+    const int backwards = kind == REVERSED || kind == SEPARATE_BACK;
+    const ptrdiff_t size = (ptrdiff_t)own.size, step = item_step(kind, height, columns) * size;
+    unsigned char *first = own.memory + size + (backwards ? (COUNT - 1) * step : 0);
+    own.view = (sphg_view){first, NULL, NULL, backwards ? -step : step, type};
+    if (has_rows(kind, height)) {
+        own.view.y = first + row_start(kind, 1, columns) * size;
+        own.view.z = height > 2 ? first + row_start(kind, 2, columns) * size : NULL;
+    }
+    return own;
+}
+
+static unsigned char *address(const placed *own, int item, int component)
+{
+    const void *const starts[3] = {own->view.x, own->view.y, own->view.z};
+    const int row = own->view.y ? component / own->columns : 0;
+    const int column = component - row * own->columns;
+    return (unsigned char *)(uintptr_t)starts[row] + item * own->view.stride +
+           (ptrdiff_t)own->size * column;
+}
+
+/* A copy of packed numbers in another layout. */
+static sphg_view laid_out(const fixture_array *array, int height, layout kind)
+{
+    const placed own = place(array->type, height, array->width / height, kind);
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < array->width; k++)
+            memcpy(address(&own, i, k),
+                   (const char *)array->data + (size_t)(i * array->width + k) * own.size, own.size);
+    return own.view;
+}
+
+/* Equal to the packed results where the view points, canaries elsewhere. */
+static void require_placed(const placed *found, const placed *packed, const char *where)
+{
+    const int width = found->height * found->columns;
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < width; k++) {
+            TEST_REQUIRE(memcmp(address(found, i, k), address(packed, i, k), found->size) == 0,
+                         "%s: item %d, number %d", where, i, k);
+            memset(address(found, i, k), CANARY, found->size);
+        }
+    for (size_t k = 0; k < found->bytes; k++)
+        TEST_REQUIRE(found->memory[k] == CANARY, "%s: byte %zu is not part of the view", where, k);
+}
+
+/* ---- One evaluation in two layouts -------------------------------------------------------- */
+
+typedef struct stage {
+    sphg_context *context;
+    int dimension;
+    sphg_scheme scheme;
+    scene particles;
+    fixture_array positions, scalar, vector, tensor, volume;
+} stage;
+
+static fixture_array numbers_of(const test_case *test, int width, double low, random_state *random)
+{
+    double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
+    for (int k = 0; k < COUNT * width; k++)
+        numbers[k] = random_between(random, low, 1);
+    return fixture_numbers(test_field_type(test), COUNT, width, numbers);
+}
+
+static stage stage_of(const test_case *test)
+{
+    const int d = test->dimension;
+    random_state random = random_seeded(127);
+    stage own = {.context = fixture_context(), .dimension = d};
+    cloud points = cloud_random(d, COUNT, d == 2 ? 12 : 5, &random);
+    own.particles = scene_of_cloud(test, &points);
+    own.scheme = fixture_scheme(test, 2);
+    own.positions = fixture_numbers(test_position_type(test), COUNT, d, points.x);
+    own.scalar = numbers_of(test, 1, -1, &random);
+    own.vector = numbers_of(test, d, -1, &random);
+    own.tensor = numbers_of(test, d * d, -1, &random);
+    own.volume = numbers_of(test, 1, 0.5, &random);
+    return own;
+}
+
+enum { GRADIENT, JACOBIAN, DIVERGENCE, CURL, TENSOR_DIVERGENCE, CORRECTION, LAMBDA, RANK, OUTPUTS };
+
+typedef struct outputs {
+    placed of[OUTPUTS];
+} outputs;
+
+static outputs place_outputs(const stage *own, layout kind)
+{
+    const int d = own->dimension, curl = d == 2 ? 1 : 3;
+    const int width = sphg_correction_width(&own->scheme);
+    const sphg_type type = own->scalar.type;
+    return (outputs){{place(type, d, 1, kind), place(type, d, d, kind), place(type, 1, 1, kind),
+                      place(type, curl, 1, kind), place(type, d, 1, kind),
+                      place(type, 1, width, kind == PACKED ? PACKED : RECORD),
+                      place(type, 1, 1, kind), place(SPHG_U8, 1, 1, kind)}};
+}
+
+/* Inputs, positions included, in one layout and outputs in another. */
+static outputs evaluate(const stage *own, layout in, layout out)
+{
+    const int d = own->dimension;
+    outputs found = place_outputs(own, out);
+    const sphg_view scalar = laid_out(&own->scalar, 1, in), vector = laid_out(&own->vector, d, in);
+    const sphg_view tensor = laid_out(&own->tensor, d, in);
+    sphg_geometry geometry = scene_geometry(&own->particles);
+    geometry.sources = laid_out(&own->positions, d, in);
+    sphg_sources sources = {0};
+    sources.neighbors = fixture_search(own->context, &own->scheme, &geometry);
+    sources.volume = laid_out(&own->volume, 1, in);
+    const sphg_field fields[3] = {
+        {.shape = SPHG_SCALAR, .at_sources = &scalar, .gradient = found.of[GRADIENT].view},
+        {.shape = SPHG_VECTOR,
+         .at_sources = &vector,
+         .gradient = found.of[JACOBIAN].view,
+         .divergence = found.of[DIVERGENCE].view,
+         .curl = found.of[CURL].view},
+        {.shape = SPHG_TENSOR,
+         .at_sources = &tensor,
+         .divergence = found.of[TENSOR_DIVERGENCE].view}};
+    const sphg_request request = {.sources = &sources,
+                                  .set_count = 1,
+                                  .fields = fields,
+                                  .field_count = 3,
+                                  .correction = found.of[CORRECTION].view,
+                                  .rank = found.of[RANK].view,
+                                  .lambda_min = found.of[LAMBDA].view};
+    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    return found;
+}
+
+static void layouts_hold_the_same_bits(const test_case *test)
+{
+    const stage own = stage_of(test);
+    const outputs packed = evaluate(&own, PACKED, PACKED);
+    for (int in = 0; in < LAYOUTS; in++)
+        for (int out = 0; out < LAYOUTS; out++) {
+            const outputs found = evaluate(&own, (layout)in, (layout)out);
+            for (int k = 0; k < OUTPUTS; k++)
+                require_placed(
+                    &found.of[k], &packed.of[k],
+                    test_text("%s to %s, output %d", layout_names[in], layout_names[out], k));
+        }
+}
+
+/* ---- Stride 0 ----------------------------------------------------------------------------- */
+
+static fixture_array repeated(const fixture_array *first)
+{
+    double numbers[COUNT * 9];
+    for (int k = 0; k < COUNT * first->width; k++)
+        numbers[k] = fixture_get(first, 0, k % first->width);
+    return fixture_numbers(first->type, COUNT, first->width, numbers);
+}
+
+static sphg_view single(const fixture_array *array)
+{
+    sphg_view view = fixture_view(array);
+    view.stride = 0;
+    return view;
+}
+
+/* A wall: volume, density, table and stress given once for all. */
+static fixture_array force_of(const stage *own, const sphg_neighbors *neighbors, sphg_view volume,
+                              sphg_view density, sphg_view table, sphg_view stress)
+{
+    fixture_array force = fixture_output(own->scalar.type, COUNT, own->dimension);
+    const sphg_sources sources = {neighbors, volume, density, table};
+    const sphg_field field = {.shape = SPHG_TENSOR,
+                              .form = SPHG_SYMMETRIC,
+                              .at_sources = &stress,
+                              .divergence = fixture_view(&force)};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
+    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    return force;
+}
+
+static void stride_zero_is_one_item_for_all(const test_case *test)
+{
+    const stage own = stage_of(test);
+    random_state random = random_seeded(131);
+    const sphg_geometry geometry = scene_geometry(&own.particles);
+    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    const fixture_array table = numbers_of(test, sphg_correction_width(&own.scheme), 0.5, &random);
+    const fixture_array volumes = repeated(&own.volume), stresses = repeated(&own.tensor);
+    fixture_array tables = fixture_output(table.type, COUNT, table.width);
+    for (int i = 0; i < COUNT; i++)
+        memcpy((char *)tables.data + (size_t)i * (size_t)fixture_view(&table).stride, table.data,
+               (size_t)fixture_view(&table).stride);
+    const fixture_array once = force_of(&own, neighbors, single(&volumes), single(&volumes),
+                                        single(&table), single(&stresses));
+    const fixture_array each =
+        force_of(&own, neighbors, fixture_view(&volumes), fixture_view(&volumes),
+                 fixture_view(&tables), fixture_view(&stresses));
+    assert_true(fixture_same_bits(&once, &each));
+}
+
+/* ---- Accumulation ------------------------------------------------------------------------- */
+
+static void jacobian_into(const stage *own, const sphg_neighbors *neighbors,
+                          const sphg_subset *subset, int accumulate, const fixture_array *result)
+{
+    const sphg_view vector = fixture_view(&own->vector);
+    sphg_sources sources = {0};
+    sources.neighbors = neighbors;
+    sources.volume = fixture_view(&own->volume);
+    const sphg_field field = {.shape = SPHG_VECTOR,
+                              .accumulate = accumulate,
+                              .at_sources = &vector,
+                              .gradient = fixture_view(result)};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1, .subset = subset};
+    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+}
+
+/* One addition: out = fl(before + result), to a rounding of the result. */
+static void accumulation_adds_to_what_is_there(const test_case *test)
+{
+    const stage own = stage_of(test);
+    const int width = test->dimension * test->dimension;
+    const sphg_geometry geometry = scene_geometry(&own.particles);
+    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    const double unit = test_unit_roundoff(test);
+    fixture_array plain = fixture_output(own.scalar.type, COUNT, width);
+    const fixture_array sum =
+        fixture_numbers(own.scalar.type, COUNT, width, fixture_doubles(&own.tensor));
+    jacobian_into(&own, neighbors, NULL, 0, &plain);
+    jacobian_into(&own, neighbors, NULL, 1, &sum);
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < width; k++) {
+            const double before = fixture_get(&own.tensor, i, k), added = fixture_get(&plain, i, k);
+            const double error = fabs(fixture_get(&sum, i, k) - (before + added));
+            TEST_WITHIN(one_addition, error / (unit * (fabs(before) + fabs(added))),
+                        "one addition");
+        }
+}
+
+static void accumulation_leaves_unselected_targets_alone(const test_case *test)
+{
+    const stage own = stage_of(test);
+    const int width = test->dimension * test->dimension;
+    const sphg_geometry geometry = scene_geometry(&own.particles);
+    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    const sphg_subset first = {0, 61, NULL, NULL}, rest = {61, COUNT, NULL, NULL};
+    fixture_array parts = fixture_output(own.scalar.type, COUNT, width), whole = parts;
+    whole.data = fixture_output(own.scalar.type, COUNT, width).data;
+    memset(whole.data, 0, (size_t)fixture_view(&whole).stride * COUNT);
+    memset(parts.data, 0, (size_t)fixture_view(&parts).stride * 61);
+    jacobian_into(&own, neighbors, &first, 1, &parts);
+    for (int i = 61; i < COUNT; i++)
+        assert_true(fixture_is_canary(&parts, i));
+    memset(parts.data, 0, (size_t)fixture_view(&parts).stride * COUNT);
+    jacobian_into(&own, neighbors, &first, 1, &parts);
+    jacobian_into(&own, neighbors, &rest, 1, &parts);
+    jacobian_into(&own, neighbors, NULL, 1, &whole);
+    assert_true(fixture_same_bits(&parts, &whole));
+}
+
+/* ---- f64 positions beside f32 fields ------------------------------------------------------ */
+
+/* Where f32 positions would have collapsed to a few points, differences still have all bits. */
+static void wide_positions_keep_their_differences(const test_case *test)
+{
+    stage own = stage_of(test);
+    const double step = 0x1p-20, far[3] = {0x1p31, -0x1p30, 0x1p29};
+    cloud points = {test->dimension, COUNT, 1, own.particles.sources};
+    cloud_snap(&points, step);
+    own.positions = fixture_numbers(SPHG_F64, COUNT, test->dimension, points.x);
+    const outputs near = evaluate(&own, PACKED, PACKED);
+    cloud_shift(&points, far);
+    own.positions = fixture_numbers(SPHG_F64, COUNT, test->dimension, points.x);
+    const outputs shifted = evaluate(&own, PACKED, PACKED);
+    const float *a = near.of[JACOBIAN].view.x, *b = shifted.of[JACOBIAN].view.x;
+    double largest = 0;
+    for (int k = 0; k < COUNT * test->dimension * test->dimension; k++)
+        largest = fmax(largest, fabs((double)a[k]));
+    for (int k = 0; k < COUNT * test->dimension * test->dimension; k++)
+        TEST_WITHIN(order_of_summation, fabs((double)a[k] - (double)b[k]) / (largest * 0x1p-24),
+                    test_method_name(test->method));
+}
+
+#define EACH(property, methods)                                                                    \
+    TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, methods, 0)
+
+static const test_entry entries[] = {
+    EACH(layouts_hold_the_same_bits, TEST_CORRECTED),
+    EACH(stride_zero_is_one_item_for_all, TEST_LINEARISED),
+    EACH(accumulation_adds_to_what_is_there, TEST_ALL_METHODS),
+    EACH(accumulation_leaves_unselected_targets_alone, TEST_ALL_METHODS),
+    TEST_ENTRY(wide_positions_keep_their_differences, TEST_BIT(TEST_MIXED), TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
+};
+TEST_MAIN(entries)
