@@ -7,7 +7,7 @@
  * up to a power of two so that scratch does not grow with each particle that joins a cell. */
 int32_t sphgi_finder_room(const sphg_neighbors *neighbors)
 {
-    const int64_t cells = neighbors->dimension == 3 ? 6 * 4 * 4 : 10 * 6;
+    const int64_t cells = neighbors->dimension == 3 ? 6 * 6 * 4 : 10 * 6;
     int64_t fullest = 16;
     while (fullest < neighbors->sources.fullest)
         fullest *= 2;

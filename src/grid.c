@@ -53,7 +53,7 @@ static int64_t cell_of(const struct sphgi_axis *axis, double x)
 struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
                                       const double *largest, sphg_type type)
 {
-    static const int32_t shift[2][3] = {{3, 2, 0}, {2, 1, 1}};
+    static const int32_t shift[2][3] = {{3, 2, 0}, {2, 2, 1}};
     struct sphgi_lattice lattice = {.dimension = dimension};
     const double unit = type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
     const double wide = reach * (1 + 0x1p-9);

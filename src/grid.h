@@ -6,9 +6,9 @@
 #include "context.h"
 
 enum {
-    SPHGI_BLOCK_CELLS_MOST = 32,   /* 4 x 2 x 2 in 3D, 8 x 4 in 2D */
-    SPHGI_STAGED_CELLS_MOST = 128, /* a block and the cells around it */
-    SPHGI_STAGED_ROWS_MOST = 16,
+    SPHGI_BLOCK_CELLS_MOST = 32,   /* 4 x 4 x 2 in 3D, 8 x 4 in 2D */
+    SPHGI_STAGED_CELLS_MOST = 144, /* a block and the cells around it: 6 x 6 x 4, 10 x 6 */
+    SPHGI_STAGED_ROWS_MOST = 24,
     SPHGI_STAGED_WIDTH_MOST = 10
 };
 
