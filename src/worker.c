@@ -1,5 +1,6 @@
 #include "worker.h"
 #include "finish.h"
+#include "sums.h"
 #include "kernel.h"
 #include "view.h"
 #include <string.h>
@@ -95,177 +96,6 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     w->piece.arrays = w->arrays;
     w->piece.wide = false;
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
-}
-
-/* ---- Pairs into sums ------------------------------------------------------------------------ */
-
-static char *partial_at(const struct sphgi_worker *w, int32_t sum)
-{
-    const size_t lanes = (size_t)w->passes->lanes;
-    return w->partial + (size_t)sum * lanes * lanes * sphgi_size_of_type(w->sweep->plan->type);
-}
-
-static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *field,
-                     enum sphgi_array gradient, const char *at_target)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    for (int32_t k = 0; k < field->streams; ++k) {
-        const int32_t first = k * SPHGI_ROW;
-        const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
-        w->passes->sum_field(&w->piece, plan->dimension, gradient, w->rows[field->stream + k],
-                             count, sphgi_lane(w, (char *)(uintptr_t)at_target, first),
-                             partial_at(w, field->sum + first * plan->dimension));
-    }
-}
-
-/* The target's own value is subtracted in the difference form; elsewhere 0 is. */
-static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
-{
-    const char *own = sphgi_lane(w, w->at_target, field->at_target);
-    sum_rows(w, field, SPHGI_GX, field->form == SPHG_DIFFERENCE ? own : w->zeros);
-}
-
-/* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
-static void sum_transposed(struct sphgi_worker *w, bool symmetric)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const bool own_volume = plan->scheme.method == SPHG_MLS || plan->classic;
-    const enum sphgi_weight weight =
-        symmetric ? (own_volume ? SPHGI_WEIGHT_V_PER_DENSITY : SPHGI_WEIGHT_PER_DENSITY)
-                  : (own_volume ? SPHGI_WEIGHT_V : SPHGI_WEIGHT_ONE);
-    const void *density = plan->density_stream < 0 ? NULL : w->rows[plan->density_stream];
-    const void *table[4] = {NULL, NULL, NULL, NULL};
-    const int32_t streams = plan->correction_stream < 0 ? 0
-                            : plan->classic             ? plan->dimension + 1
-                                                        : plan->dimension - 1;
-    for (int32_t k = 0; k < streams; ++k)
-        table[k] = w->rows[plan->correction_stream + k];
-    if (plan->classic) {
-        const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
-        w->passes->transposed_classic(&w->piece, plan->dimension, table, &units,
-                                      plan->weighted ? w->volume : NULL, density, weight);
-    } else
-        w->passes->transposed(&w->piece, plan->dimension, table, density, weight);
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        if (field->differentiates && field->form == (symmetric ? SPHG_SYMMETRIC : SPHG_ADJOINT))
-            sum_rows(w, field, SPHGI_TX, w->zeros);
-    }
-    w->passes->sum_vectors(&w->piece, plan->dimension, symmetric ? density : NULL,
-                           partial_at(w, plan->vector_sum[symmetric]));
-}
-
-/* Late: their cache lines were asked for when the group was filled. */
-static void load_targets(struct sphgi_worker *w)
-{
-    if (w->targets_loaded)
-        return;
-    w->targets_loaded = true;
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
-    const struct sphgi_passes *p = w->passes;
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        char *to = sphgi_lane(w, w->at_target, field->at_target);
-        if (field->target.count)
-            p->load_lanes(&field->target, g->target, to);
-        else
-            memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
-    }
-    if (plan->transposes[0] || plan->transposes[1]) {
-        if (plan->target_volume.count)
-            sphgi_load_volume(w, &plan->target_volume, w->volume);
-        if (plan->target_density.count)
-            p->load_lanes(&plan->target_density, g->target, w->density);
-    }
-}
-
-static void sum_fields(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    load_targets(w);
-    if (plan->classic && plan->corrects)
-        w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted, w->coefficients);
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        if (field->differentiates && field->form <= SPHG_DIRECT)
-            sum_forward(w, field);
-        for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
-            w->passes->sum_value(&w->piece, w->rows[field->stream + s],
-                                 sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
-                                 partial_at(w, field->value_sum + s * SPHGI_ROW));
-    }
-    for (int symmetric = 0; symmetric < 2; ++symmetric)
-        if (plan->transposes[symmetric])
-            sum_transposed(w, symmetric);
-}
-
-static uint32_t id_at(const struct sphgi_piece *piece, int32_t part, int32_t k)
-{
-    return piece->wide ? ((const uint32_t *)piece->ids[part])[k]
-                       : ((const uint16_t *)piece->ids[part])[k];
-}
-
-static void put_pair(const struct sphgi_worker *w, int64_t place, int32_t source, int32_t at)
-{
-    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const size_t size = sphgi_size_of_type(w->sweep->plan->type);
-    pairs->indices[place] = source;
-    for (int32_t a = 0; a < pairs->gradient.count; ++a)
-        memcpy((char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
-               w->arrays + ((size_t)(SPHGI_GX + a) * SPHGI_PIECE + (size_t)at) * size, size);
-}
-
-/* Hands on the pairs inside the cutoff; counts them in any case. */
-static void write_pairs(struct sphgi_worker *w)
-{
-    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const struct sphgi_piece *piece = &w->piece;
-    if (pairs->gradient.count)
-        w->passes->pair_gradients(
-            piece, w->sweep->plan->dimension,
-            w->sweep->plan->classic || !w->sweep->plan->corrects ? NULL : w->coefficients,
-            w->gather.inverse_h);
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = piece->lane[p];
-        const int32_t row = pairs->row_of_target[w->group.target[lane]];
-        for (int32_t k = 0; k < piece->count[p]; ++k) {
-            const uint32_t id = id_at(piece, p, k);
-            if (w->gather.superset && id == w->gather.dummy)
-                continue;
-            if (pairs->offsets)
-                put_pair(w, pairs->offsets[row] + w->written[lane],
-                         w->items ? w->items[id] : (int32_t)id, piece->begin[p] + k);
-            ++w->written[lane];
-        }
-    }
-}
-
-static void evaluate_piece(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_passes *p = w->passes;
-    struct sphgi_piece *piece = &w->piece;
-    const int32_t count = piece->begin[piece->parts];
-    if (plan->classic || plan->wants_value || plan->mean_volume)
-        p->shape_weights(&w->shape, piece->arrays, count);
-    if (!plan->classic && (plan->wants_value || plan->mean_volume))
-        p->shape_values(piece->arrays, count);
-    if (!plan->classic && (plan->differentiates || plan->computes))
-        p->shape_vectors(&w->shape, piece->arrays, count);
-    if (w->summing & SPHGI_SUM_MOMENTS) {
-        if (plan->classic)
-            p->sum_classic(piece, plan->dimension, plan->weighted, partial_at(w, plan->moment_sum));
-        else
-            p->sum_moments(piece, plan->dimension, partial_at(w, plan->moment_sum));
-        if (plan->mean_volume)
-            p->sum_volume(piece, partial_at(w, plan->volume_sum));
-    }
-    if (w->summing & SPHGI_SUM_FIELDS)
-        sum_fields(w);
-    if ((w->summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)
-        write_pairs(w);
-    ++w->pieces;
 }
 
 static void empty_piece(struct sphgi_worker *w)
@@ -397,7 +227,7 @@ static int32_t room_of(struct sphgi_worker *w, int64_t wanted)
     const int32_t room = SPHGI_PIECE - piece->begin[piece->parts];
     const bool fits = piece->parts < SPHGI_LANES_MOST && wanted <= room;
     if (!fits && piece->parts) {
-        evaluate_piece(w);
+        sphgi_evaluate_piece(w);
         empty_piece(w);
         return SPHGI_PIECE;
     }
@@ -451,8 +281,8 @@ static void reduce(struct sphgi_worker *w, int32_t first, int32_t count)
 {
     for (int32_t l = 0; l < w->passes->lanes; ++l)
         if (!w->touched[l])
-            w->passes->clear_partial(partial_at(w, first), count, l);
-    w->passes->reduce(partial_at(w, first), count, sphgi_lane(w, w->reduced, first));
+            w->passes->clear_partial(sphgi_partial(w, first), count, l);
+    w->passes->reduce(sphgi_partial(w, first), count, sphgi_lane(w, w->reduced, first));
 }
 
 /* After all pairs were added: is another round needed? Classic, corrections and fields in one
@@ -462,7 +292,7 @@ bool sphgi_group_again(struct sphgi_worker *w)
 {
     const bool rest = w->piece.parts > 0;
     if (rest)
-        evaluate_piece(w);
+        sphgi_evaluate_piece(w);
     const bool first_round = needs_coefficients_first(w) && (w->sweep->steps & SPHGI_SUM_MOMENTS) &&
                              w->summing == SPHGI_SUM_MOMENTS;
     if (!first_round)
@@ -472,7 +302,7 @@ bool sphgi_group_again(struct sphgi_worker *w)
     w->summing = SPHGI_SUM_FIELDS;
     if (w->pieces == 0 || (w->pieces == 1 && rest)) {
         if (rest)
-            evaluate_piece(w);
+            sphgi_evaluate_piece(w);
         empty_piece(w);
         return false;
     }
@@ -536,7 +366,7 @@ static void finish(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     const unsigned steps = w->sweep->steps;
     const bool done = needs_coefficients_first(w); /* corrections, before the fields */
-    load_targets(w);
+    sphgi_load_targets(w);
     if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);
     else if (!done && plan->corrects)
@@ -595,7 +425,7 @@ void sphgi_group_finish_from_arena(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     pad_group(&w->group, w->passes->lanes);
     w->targets_loaded = false;
-    load_targets(w);
+    sphgi_load_targets(w);
     each_arena_part(w, true);
     if ((w->sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);

@@ -1,0 +1,267 @@
+#include "traverse.h"
+#include "stage.h"
+
+/* ---- Groups --------------------------------------------------------------------------------- */
+
+/* Where the pairs of a lane stand. */
+struct supply {
+    const void *ids[SPHGI_LANES_MOST];
+    int64_t count[SPHGI_LANES_MOST];
+    bool wide;
+};
+
+static void run_listed(struct sphgi_worker *w, const struct supply *supply)
+{
+    sphgi_group_begin(w);
+    do {
+        for (int32_t l = 0; l < w->group.lanes; ++l)
+            sphgi_group_add(w, l, supply->ids[l], supply->count[l], supply->wide);
+    } while (sphgi_group_again(w));
+    sphgi_group_end(w);
+    w->group.lanes = 0;
+}
+
+static void add_target(struct sphgi_worker *w, struct supply *supply, int32_t target,
+                       const void *row, const void *ids, int64_t count)
+{
+    const int32_t lane = w->group.lanes++;
+    w->group.target[lane] = target;
+    w->group.x[lane] = row;
+    supply->ids[lane] = ids;
+    supply->count[lane] = count;
+    if (w->group.lanes == w->passes->lanes)
+        run_listed(w, supply);
+}
+
+static void run_rest(struct sphgi_worker *w, const struct supply *supply)
+{
+    if (w->group.lanes)
+        run_listed(w, supply);
+}
+
+/* ---- Blocks of a searched object ------------------------------------------------------------ */
+
+static int32_t target_at(const sphg_neighbors *n, int32_t place)
+{
+    return ((const int32_t *)sphgi_target_grid(n)->order.data)[place];
+}
+
+static bool is_active(const struct sphgi_task *task, int32_t place)
+{
+    return !task->selection->active || task->selection->active[place];
+}
+
+/* The next groups' data are asked for while this one is summed. */
+static void prefetch_ahead(const struct sphgi_worker *w, int32_t place)
+{
+    enum { AHEAD = 2 * SPHGI_LANES_MOST };
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    if (place + AHEAD < n->target_count)
+        sphgi_group_prefetch(w->sweep->plan, target_at(n, place + AHEAD));
+}
+
+static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t first = block * grid->cells;
+    const int32_t *start = (const int32_t *)grid->cell_start.data + first;
+    const int64_t *cell_list = (const int64_t *)n->found.cell_list.data + first;
+    const uint16_t *lengths = n->found.lengths.data;
+    struct supply supply = {.wide = false};
+    for (int32_t c = 0; c < grid->cells; ++c) {
+        const uint16_t *ids = (const uint16_t *)n->found.ids.data + cell_list[c];
+        for (int32_t t = start[c]; t < start[c + 1]; ++t) {
+            prefetch_ahead(w, t);
+            if (is_active(task, t))
+                add_target(w, &supply, target_at(n, t), sphgi_target_row(n, t), ids, lengths[t]);
+            ids += sphgi_round_up(lengths[t], SPHGI_PAD);
+        }
+    }
+    run_rest(w, &supply);
+}
+
+/* Nothing is kept: pairs are found cell by cell and used at once. */
+static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+                              const struct sphgi_finder *finder,
+                              const struct sphgi_surroundings *around)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    struct supply supply = {.wide = false};
+    sphgi_stage_coordinates(finder, n, around);
+    for (int32_t c = 0; c < grid->cells; ++c)
+        for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
+            const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
+            bool any = false;
+            for (int32_t k = t; k < end; ++k)
+                any |= is_active(task, k);
+            if (!any)
+                continue;
+            const uint16_t *ids = finder->ids;
+            sphgi_find_targets(finder, n, around, c, t, end, finder->ids, finder->lengths);
+            for (int32_t k = t; k < end; ++k) {
+                const uint16_t length = finder->lengths[k - t];
+                if (is_active(task, k))
+                    add_target(w, &supply, target_at(n, k), sphgi_target_row(n, k), ids, length);
+                ids += sphgi_round_up(length, SPHGI_PAD);
+            }
+            run_rest(w, &supply); /* the next search overwrites the ids */
+        }
+}
+
+static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
+                                  int32_t block)
+{
+    enum { HEADER = 8 };
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t first = block * grid->cells;
+    const int32_t *start = (const int32_t *)grid->cell_start.data + first;
+    const int64_t *cell_list = (const int64_t *)n->found.cell_list.data + first;
+    struct supply supply = {.wide = true};
+    for (int32_t c = 0; c < grid->cells; ++c) {
+        const uint32_t *row =
+            (const uint32_t *)(const void *)((const uint16_t *)n->found.ids.data + cell_list[c]);
+        for (int32_t t = start[c]; t < start[c + 1]; ++t) {
+            const size_t count = row[0];
+            if (is_active(task, t))
+                add_target(w, &supply, target_at(n, t), sphgi_target_row(n, t), row + HEADER,
+                           (int64_t)count);
+            row += HEADER + sphgi_round_up(count, SPHGI_PAD);
+        }
+    }
+    run_rest(w, &supply);
+}
+
+static void take_wide(void *data, const uint32_t *rows, int32_t count)
+{
+    sphgi_group_add(data, 0, rows, count, true);
+}
+
+static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
+                                   int32_t block, const struct sphgi_finder *finder,
+                                   const struct sphgi_surroundings *around)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    for (int32_t c = 0; c < grid->cells; ++c)
+        for (int32_t t = start[c]; t < start[c + 1]; ++t) {
+            if (!is_active(task, t))
+                continue;
+            w->group.lanes = 1;
+            w->group.target[0] = target_at(n, t);
+            w->group.x[0] = sphgi_target_row(n, t);
+            sphgi_group_begin(w);
+            do
+                sphgi_find_wide(finder, n, around, c, t, take_wide, w);
+            while (sphgi_group_again(w));
+            sphgi_group_end(w);
+            w->group.lanes = 0;
+        }
+}
+
+static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+                        const struct sphgi_finder *finder)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const struct sphgi_block *at = (const struct sphgi_block *)grid->blocks.data + block;
+    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    struct sphgi_surroundings around;
+    sphgi_surroundings_of(&n->sources, at->at, &around);
+    const bool wide = n->list_free ? sphgi_is_wide(n, &around, start, grid->cells)
+                                   : ((const uint8_t *)n->found.wide.data)[block];
+    if (wide)
+        sphgi_use_local_rows(w);
+    else
+        sphgi_stage_block(w, &around);
+    if (n->list_free && wide)
+        sweep_found_wide_block(task, w, block, finder, &around);
+    else if (n->list_free)
+        sweep_found_block(task, w, block, finder, &around);
+    else if (wide)
+        sweep_kept_wide_block(task, w, block);
+    else
+        sweep_kept_block(task, w, block);
+}
+
+void sphgi_block_task(void *data, int32_t begin, int32_t end, int32_t number)
+{
+    const struct sphgi_task *task = data;
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    struct sphgi_worker w;
+    sphgi_worker_open(&w, &task->sweep, number);
+    const struct sphgi_finder finder =
+        sphgi_finder_at(task->sweep.context, n, sphgi_finder_room(n), w.finder_memory);
+    for (int32_t k = begin; k < end; ++k)
+        sweep_block(task, &w, task->selection->blocks ? task->selection->blocks[k] : k, &finder);
+}
+
+/* ---- The host's lists ----------------------------------------------------------------------- */
+
+static int64_t host_row(const sphg_lists *lists, int32_t target, int32_t worker,
+                        const int32_t **ids)
+{
+    if (lists->offsets) {
+        *ids = lists->indices + lists->offsets[target];
+        return lists->offsets[target + 1] - lists->offsets[target];
+    }
+    if (lists->rows) {
+        *ids = lists->rows[target];
+        return lists->lengths[target];
+    }
+    *ids = NULL;
+    return lists->row(target, worker, ids, lists->user);
+}
+
+void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
+{
+    const struct sphgi_task *task = data;
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    struct supply supply = {.wide = true};
+    struct sphgi_worker w;
+    sphgi_worker_open(&w, &task->sweep, number);
+    if (task->sweep.packed)
+        sphgi_use_packed_rows(&w);
+    else
+        sphgi_use_local_rows(&w);
+    for (int32_t k = begin; k < end; ++k) {
+        const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
+        if (target < 0)
+            continue;
+        const int32_t *ids;
+        const int64_t count = host_row(&n->lists, target, number, &ids);
+        if (count < 0 || (count > 0 && !ids)) {
+            if (w.tally->bad_target < 0 || target < w.tally->bad_target) {
+                w.tally->bad_target = target;
+                w.tally->bad_index = SPHGI_BAD_LENGTH;
+            }
+            continue;
+        }
+        add_target(&w, &supply, target, sphgi_target_row(n, target), ids, count);
+        if (n->lists.row)
+            run_rest(&w, &supply); /* the function may reuse its array */
+    }
+    run_rest(&w, &supply);
+}
+
+/* ---- Finishing the sums of several sets ----------------------------------------------------- */
+
+void sphgi_finish_task(void *data, int32_t begin, int32_t end, int32_t number)
+{
+    const struct sphgi_task *task = data;
+    struct sphgi_worker w;
+    sphgi_worker_open(&w, &task->sweep, number);
+    for (int32_t k = begin; k < end; ++k) {
+        const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
+        if (target >= 0)
+            w.group.target[w.group.lanes++] = target;
+        if (w.group.lanes == w.passes->lanes || (k + 1 == end && w.group.lanes)) {
+            sphgi_group_finish_from_arena(&w);
+            w.group.lanes = 0;
+        }
+    }
+}

@@ -1,0 +1,18 @@
+/* The tasks of a sweep: they walk over targets and hand groups of them to a worker. */
+#ifndef SPHGI_TRAVERSE_H
+#define SPHGI_TRAVERSE_H
+#include "selection.h"
+#include "worker.h"
+
+struct sphgi_task {
+    struct sphgi_sweep sweep;
+    const struct sphgi_selection *selection;
+};
+
+/* sphg_task functions; data: struct sphgi_task. */
+void sphgi_block_task(void *data, int32_t begin, int32_t end, int32_t worker); /* blocks */
+void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t worker);  /* selected items */
+void sphgi_finish_task(void *data, int32_t begin, int32_t end,
+                       int32_t worker); /* ... of the arena */
+
+#endif
