@@ -1,12 +1,14 @@
-#define _GNU_SOURCE /* sched_getaffinity, CPU_COUNT */
+#define _DEFAULT_SOURCE /* gethostname, tm_gmtoff, sysconf */
 #include "machine.h"
 
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 /* The text after "key   : " on the first line of /proc/cpuinfo that starts with key. */
 static int find_cpu_line(FILE *file, const char *key, char *text, size_t size)
@@ -75,17 +77,25 @@ const char *machine_build(void)
 #endif
 }
 
+#ifdef _OPENMP
+/* Not the affinity of this thread: with OMP_PROC_BIND that is one processor. */
 int32_t machine_cpus(void)
 {
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) == 0)
-        return (int32_t)CPU_COUNT(&set);
+    return omp_get_num_procs();
+}
+
+int32_t machine_threads(void)
+{
+    return omp_get_max_threads();
+}
+#else
+int32_t machine_cpus(void)
+{
     return (int32_t)sysconf(_SC_NPROCESSORS_ONLN);
 }
 
 int32_t machine_threads(void)
 {
-    const char *text = getenv("OMP_NUM_THREADS");
-    const int wanted = text ? atoi(text) : 0;
-    return wanted > 0 ? wanted : machine_cpus();
+    return 1;
 }
+#endif

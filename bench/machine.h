@@ -9,5 +9,5 @@ const char *machine_date(void); /* ISO 8601, local time with offset */
 const char *machine_compiler(void);
 const char *machine_build(void); /* "release" or "debug" */
 int32_t machine_cpus(void);      /* this process may run on */
-int32_t machine_threads(void);   /* OMP_NUM_THREADS if it is set, else machine_cpus() */
+int32_t machine_threads(void);   /* that the library uses if nothing is said */
 #endif

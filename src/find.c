@@ -58,27 +58,6 @@ struct sphgi_finder sphgi_finder_at(const sphg_context *context, const sphg_neig
 
 /* ---- 16-bit ids ----------------------------------------------------------------------------- */
 
-bool sphgi_is_wide(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around,
-                   const int32_t *cell_start, int32_t cells)
-{
-    if (around->staged > SPHGI_STAGED_MOST)
-        return true;
-    for (int32_t c = 0; c < cells; ++c) {
-        int32_t begin[9], length[9];
-        const int64_t targets = cell_start[c + 1] - cell_start[c];
-        if (!targets)
-            continue;
-        int64_t candidates = SPHGI_PAD;
-        const int32_t runs =
-            sphgi_candidate_runs(&neighbors->sources.lattice, around, c, begin, length);
-        for (int32_t k = 0; k < runs; ++k)
-            candidates += length[k];
-        if (targets * candidates > SPHGI_UNITS_MOST)
-            return true;
-    }
-    return false;
-}
-
 static void stage_rows(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
                        int32_t begin, int32_t count, int32_t at)
 {

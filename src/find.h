@@ -4,8 +4,8 @@
 #include "neighbors.h"
 
 enum {
-    SPHGI_STAGED_MOST = 65000, /* numbers that 16-bit ids can take */
-    SPHGI_UNITS_MOST = 1 << 18 /* ids of one cell that are collected before they are stored */
+    SPHGI_STAGED_MOST = 65000, /* numbers that 16-bit ids can take; more take the wide way */
+    SPHGI_UNITS_MOST = 1 << 18 /* ids of a block that are collected before they are stored */
 };
 
 /* Scratch of one worker. */
@@ -24,10 +24,6 @@ size_t sphgi_finder_size(const sphg_neighbors *neighbors, int32_t room);
 struct sphgi_finder sphgi_finder_at(const sphg_context *context, const sphg_neighbors *neighbors,
                                     int32_t room, void *memory);
 int32_t sphgi_finder_room(const sphg_neighbors *neighbors);
-
-/* Too dense for 16-bit ids or for the scratch: takes the other way below. */
-bool sphgi_is_wide(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around,
-                   const int32_t *cell_start, int32_t cells);
 
 /* Coordinates of the surroundings into x, y, z. */
 void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,

@@ -69,8 +69,13 @@ struct sphgi_surroundings {
     int32_t offset[SPHGI_STAGED_ROWS_MOST][SPHGI_STAGED_WIDTH_MOST + 1];
 };
 
+/* The up to 3 x 3 x 3 blocks of sources that the staged cells of a block lie in, -1 where nobody
+ * is: looked up once per search. */
+enum { SPHGI_AROUND = 27 };
+void sphgi_find_around(const struct sphgi_grid *sources, const int64_t *block, int32_t *blocks);
+
 void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
-                           struct sphgi_surroundings *around);
+                           const int32_t *blocks, struct sphgi_surroundings *around);
 
 /* Staged runs that hold the candidates of cell `cell` of the block; at most 9. */
 int32_t sphgi_candidate_runs(const struct sphgi_lattice *lattice,

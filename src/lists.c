@@ -19,32 +19,11 @@ struct build {
     atomic_int_least64_t units, pairs;
 };
 
-/* Ids of cells that wait to be stored together. */
-struct batch {
-    int32_t first_cell, cells; /* absolute numbers in cell_list */
-    int64_t used;
-};
-
 /* A place for that many units, or -1; counts them in any case. */
 static int64_t claim(struct build *build, int64_t units)
 {
     const int64_t place = atomic_fetch_add(&build->units, units);
     return place + units <= build->capacity ? place : -1;
-}
-
-static void store_batch(struct build *build, const struct sphgi_finder *finder, struct batch *batch)
-{
-    struct sphgi_found *found = &build->neighbors->found;
-    const int64_t place = claim(build, batch->used);
-    if (place >= 0) {
-        memcpy((uint16_t *)found->ids.data + place, finder->ids,
-               (size_t)batch->used * sizeof(uint16_t));
-        for (int32_t c = 0; c < batch->cells; ++c)
-            ((int64_t *)found->cell_list.data)[batch->first_cell + c] += place;
-    }
-    batch->first_cell += batch->cells;
-    batch->cells = 0;
-    batch->used = 0;
 }
 
 /* An upper bound of what a cell's pairs take. */
@@ -59,34 +38,41 @@ static int64_t bound_of_cell(const struct sphgi_lattice *lattice,
     return targets * candidates;
 }
 
-static void build_block(struct build *build, const struct sphgi_finder *finder,
+static uint32_t *cell_offsets(const struct build *build, int32_t block)
+{
+    const sphg_neighbors *n = build->neighbors;
+    return (uint32_t *)n->found.cell_offset.data + (ptrdiff_t)block * sphgi_target_grid(n)->cells;
+}
+
+/* False: the pairs may be more than the scratch holds; nothing was claimed then. */
+static bool build_block(struct build *build, const struct sphgi_finder *finder,
                         const struct sphgi_surroundings *around, int32_t block)
 {
     sphg_neighbors *n = build->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t first = block * grid->cells;
-    const int32_t *start = (const int32_t *)grid->cell_start.data + first;
+    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
     uint16_t *lengths = n->found.lengths.data;
-    struct batch batch = {.first_cell = first};
-    int64_t pairs = 0;
+    int64_t used = 0, pairs = 0;
     sphgi_stage_coordinates(finder, n, around);
     for (int32_t c = 0; c < grid->cells; ++c) {
         const int32_t targets = start[c + 1] - start[c];
-        if (targets &&
-            batch.used + bound_of_cell(&grid->lattice, around, c, targets) > SPHGI_UNITS_MOST)
-            store_batch(build, finder, &batch);
-        ((int64_t *)n->found.cell_list.data)[first + c] = batch.used;
-        ++batch.cells;
+        if (targets && used + bound_of_cell(&grid->lattice, around, c, targets) > SPHGI_UNITS_MOST)
+            return false;
+        cell_offsets(build, block)[c] = (uint32_t)(used / SPHGI_PAD);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
-            batch.used += sphgi_find_targets(finder, n, around, c, t, end, finder->ids + batch.used,
-                                             lengths + t);
+            used +=
+                sphgi_find_targets(finder, n, around, c, t, end, finder->ids + used, lengths + t);
             for (int32_t k = t; k < end; ++k)
                 pairs += lengths[k];
         }
     }
-    store_batch(build, finder, &batch);
+    const int64_t place = claim(build, used);
+    ((int64_t *)n->found.block_list.data)[block] = place;
+    if (place >= 0)
+        memcpy((uint16_t *)n->found.ids.data + place, finder->ids, (size_t)used * sizeof(uint16_t));
     atomic_fetch_add(&build->pairs, pairs);
+    return true;
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
@@ -130,28 +116,40 @@ static void write_wide_cell(const struct build *build, const struct sphgi_finder
     }
 }
 
-/* Twice through: a cell's place must be known before it can be filled. */
+/* Units that the pairs of one cell take, and how many pairs they are. */
+static int64_t measure_wide_cell(const struct build *build, const struct sphgi_finder *finder,
+                                 const struct sphgi_surroundings *around, const int32_t *start,
+                                 int32_t cell, int64_t *pairs)
+{
+    int64_t units = 0;
+    for (int32_t t = start[0]; t < start[1]; ++t) {
+        int64_t count = 0;
+        sphgi_find_wide(finder, build->neighbors, around, cell, t, count_rows, &count);
+        *pairs += count;
+        units += 2 * (WIDE_HEADER + (int64_t)sphgi_round_up((size_t)count, SPHGI_PAD));
+    }
+    return units;
+}
+
+/* Twice through: a block's place must be known before it can be filled. */
 static void build_wide_block(struct build *build, const struct sphgi_finder *finder,
                              const struct sphgi_surroundings *around, int32_t block)
 {
     sphg_neighbors *n = build->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    uint32_t *offsets = cell_offsets(build, block);
+    int64_t units = 0, pairs = 0;
     for (int32_t c = 0; c < grid->cells; ++c) {
-        const int32_t *start =
-            (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells + c;
-        int64_t units = 0, pairs = 0;
-        for (int32_t t = start[0]; t < start[1]; ++t) {
-            int64_t count = 0;
-            sphgi_find_wide(finder, n, around, c, t, count_rows, &count);
-            pairs += count;
-            units += 2 * (WIDE_HEADER + (int64_t)sphgi_round_up((size_t)count, SPHGI_PAD));
-        }
-        const int64_t place = claim(build, units);
-        ((int64_t *)n->found.cell_list.data)[(ptrdiff_t)block * grid->cells + c] = place;
-        if (place >= 0)
-            write_wide_cell(build, finder, around, block, c, place);
-        atomic_fetch_add(&build->pairs, pairs);
+        offsets[c] = (uint32_t)(units / SPHGI_PAD);
+        units += measure_wide_cell(build, finder, around, start + c, c, &pairs);
     }
+    const bool too_many = units / SPHGI_PAD > UINT32_MAX;
+    const int64_t place = claim(build, too_many ? (int64_t)1 << 52 : units);
+    ((int64_t *)n->found.block_list.data)[block] = place;
+    for (int32_t c = 0; c < grid->cells && place >= 0; ++c)
+        write_wide_cell(build, finder, around, block, c, place + (int64_t)offsets[c] * SPHGI_PAD);
+    atomic_fetch_add(&build->pairs, pairs);
 }
 
 /* ---- All blocks ----------------------------------------------------------------------------- */
@@ -160,20 +158,16 @@ static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     struct build *build = data;
     sphg_neighbors *n = build->neighbors;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
     const struct sphgi_finder finder = sphgi_finder_at(
         build->context, n, build->room, build->memory + (size_t)worker * build->memory_each);
     struct sphgi_surroundings around;
     for (int32_t b = begin; b < end; ++b) {
-        const struct sphgi_block *block = (const struct sphgi_block *)grid->blocks.data + b;
-        sphgi_surroundings_of(&n->sources, block->at, &around);
-        const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)b * grid->cells;
-        const bool wide = sphgi_is_wide(n, &around, start, grid->cells);
-        ((uint8_t *)n->found.wide.data)[b] = wide;
-        if (wide)
+        sphgi_block_surroundings(n, b, &around);
+        const bool narrow =
+            around.staged <= SPHGI_STAGED_MOST && build_block(build, &finder, &around, b);
+        ((uint8_t *)n->found.wide.data)[b] = !narrow;
+        if (!narrow)
             build_wide_block(build, &finder, &around, b);
-        else
-            build_block(build, &finder, &around, b);
     }
 }
 
@@ -205,7 +199,8 @@ sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
                        build.memory_each) ||
         !sphgi_reserve(&n->allocator, &found->lengths, targets, sizeof(uint16_t)) ||
         !sphgi_reserve(&n->allocator, &found->wide, blocks_of_grid, 1) ||
-        !sphgi_reserve(&n->allocator, &found->cell_list, cells_of_grid, sizeof(int64_t)))
+        !sphgi_reserve(&n->allocator, &found->block_list, blocks_of_grid, sizeof(int64_t)) ||
+        !sphgi_reserve(&n->allocator, &found->cell_offset, cells_of_grid, sizeof(uint32_t)))
         return SPHG_ERROR_MEMORY;
     if (!found->ids.size &&
         !sphgi_reserve(&n->allocator, &found->ids, targets * FIRST_GUESS + 1, sizeof(uint16_t)))

@@ -33,14 +33,14 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
 }
 
 struct buffers {
-    struct sphgi_buffer *list[8];
+    struct sphgi_buffer *list[10];
 };
 
 static struct buffers own_buffers(sphg_neighbors *n)
 {
-    return (struct buffers){{&n->source_place, &n->target_place, &n->found.cell_list,
-                             &n->found.lengths, &n->found.wide, &n->found.ids, &n->sources_then,
-                             &n->targets_then}};
+    return (struct buffers){{&n->source_place, &n->target_place, &n->found.block_list,
+                             &n->found.cell_offset, &n->found.lengths, &n->found.wide,
+                             &n->found.ids, &n->sources_then, &n->targets_then, &n->around}};
 }
 
 void sphg_neighbors_destroy(sphg_neighbors *neighbors)
@@ -304,6 +304,26 @@ static void adopt(sphg_neighbors *n, const struct geometry *g, const sphg_geomet
     memset(&n->lists, 0, sizeof n->lists);
 }
 
+static void look_around_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    sphg_neighbors *n = data;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    (void)worker;
+    for (int32_t b = begin; b < end; ++b)
+        sphgi_find_around(&n->sources, ((const struct sphgi_block *)grid->blocks.data)[b].at,
+                          (int32_t *)n->around.data + (ptrdiff_t)b * SPHGI_AROUND);
+}
+
+static bool look_around(sphg_context *context, sphg_neighbors *n)
+{
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const size_t room = grid->blocks.size / sizeof(struct sphgi_block);
+    if (!sphgi_reserve(&n->allocator, &n->around, room, SPHGI_AROUND * sizeof(int32_t)))
+        return false;
+    sphgi_parallel_for(context, look_around_task, n, grid->block_count, 16);
+    return true;
+}
+
 static sphg_result build_grids(sphg_context *context, sphg_neighbors *n, const struct geometry *g)
 {
     double largest[SPHGI_ROW] = {0};
@@ -319,7 +339,8 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n, const s
     if (!result && !n->same && n->part_of &&
         !invert_order(context, n, &n->sources, &n->source_place))
         result = SPHG_ERROR_MEMORY;
-    if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
+    if (!result && (!invert_order(context, n, sphgi_target_grid(n), &n->target_place) ||
+                    !look_around(context, n)))
         result = SPHG_ERROR_MEMORY;
     return result;
 }
@@ -439,8 +460,9 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
     if (!result) {
         const sphg_neighbors *n = neighbors;
         const struct sphgi_buffer *own[] = {
-            &n->source_place, &n->target_place, &n->found.cell_list, &n->found.lengths,
-            &n->found.wide,   &n->found.ids,    &n->sources_then,    &n->targets_then};
+            &n->source_place,  &n->target_place, &n->found.block_list, &n->found.cell_offset,
+            &n->found.lengths, &n->found.wide,   &n->found.ids,        &n->sources_then,
+            &n->targets_then,  &n->around};
         *info = (sphg_neighbors_info){.pairs = n->kind ? n->found.pairs : 0,
                                       .target_count = n->kind ? n->target_count : 0,
                                       .source_count = n->kind ? n->source_count : 0,

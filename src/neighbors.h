@@ -8,10 +8,11 @@
  * dense for that ("wide" block) they are 32-bit numbers of rows, and behind each target's length.
  */
 struct sphgi_found {
-    struct sphgi_buffer cell_list; /* int64_t per cell of the targets' grid: place in ids */
-    struct sphgi_buffer lengths;   /* uint16_t per target; unused in wide blocks */
-    struct sphgi_buffer wide;      /* uint8_t per block */
-    struct sphgi_buffer ids;       /* uint16_t units */
+    struct sphgi_buffer block_list;  /* int64_t per block of the targets: place in ids, in units */
+    struct sphgi_buffer cell_offset; /* uint32_t per cell: from there on, in SPHGI_PAD units */
+    struct sphgi_buffer lengths;     /* uint16_t per target; unused in wide blocks */
+    struct sphgi_buffer wide;        /* uint8_t per block */
+    struct sphgi_buffer ids;         /* uint16_t units */
     int64_t pairs, units;
 };
 
@@ -33,6 +34,7 @@ struct sphg_neighbors {
     struct sphgi_grid sources, targets; /* targets: unused if same */
     struct sphgi_buffer source_place;   /* int32_t: row of each source; where needed */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
+    struct sphgi_buffer around;         /* int32_t, SPHGI_AROUND per block of the targets' grid */
     struct sphgi_found found;
     struct sphgi_buffer sources_then, targets_then; /* rows at the last search, with a skin */
     bool rebuilt;
@@ -45,6 +47,16 @@ struct sphg_neighbors {
 static inline const struct sphgi_grid *sphgi_target_grid(const sphg_neighbors *neighbors)
 {
     return neighbors->same ? &neighbors->sources : &neighbors->targets;
+}
+
+/* What is staged for one block of the targets. */
+static inline void sphgi_block_surroundings(const sphg_neighbors *neighbors, int32_t block,
+                                            struct sphgi_surroundings *around)
+{
+    const struct sphgi_grid *grid = sphgi_target_grid(neighbors);
+    sphgi_surroundings_of(
+        &neighbors->sources, ((const struct sphgi_block *)grid->blocks.data)[block].at,
+        (const int32_t *)neighbors->around.data + (ptrdiff_t)block * SPHGI_AROUND, around);
 }
 
 /* Row (x y z .) of a target; place: in grid order, with the host's lists the target itself. */

@@ -1,11 +1,13 @@
 /* What lies around a block of the grid. */
 #include "grid.h"
-#include <string.h>
 
-/* The staged cells along one axis: one before the block, the block, one behind it. */
+/* The staged cells along one axis: one before the block, the block, one behind it. They lie in at
+ * most three runs of cells of one block each: the one before, its own, the one behind, or what a
+ * period makes of them. */
 struct line {
     int64_t block[SPHGI_STAGED_WIDTH_MOST];
     int32_t local[SPHGI_STAGED_WIDTH_MOST];
+    int32_t run[SPHGI_STAGED_WIDTH_MOST];
     int32_t count;
 };
 
@@ -22,36 +24,53 @@ static struct line line_of(const struct sphgi_axis *axis, int64_t block, bool us
             cell = (cell % axis->cells + axis->cells) % axis->cells;
         line.block[k] = cell >> axis->shift;
         line.local[k] = (int32_t)(cell & (length - 1));
+        if (k)
+            line.run[k] = line.run[k - 1] + (line.block[k] != line.block[k - 1]);
     }
     return line;
 }
 
-/* The blocks along one line of cells in x; each is looked up once. */
-static void find_blocks(const struct sphgi_grid *grid, const struct line *line, int64_t y,
-                        int64_t z, int32_t *found)
+static int32_t place_around(int32_t x, int32_t y, int32_t z)
 {
-    for (int32_t x = 0; x < line->count; ++x)
-        found[x] = x && line->block[x] == line->block[x - 1]
-                       ? found[x - 1]
-                       : sphgi_find_block(grid, (const int64_t[3]){line->block[x], y, z});
+    return (z * 3 + y) * 3 + x;
 }
 
 static bool goes_on(const struct line *line, int32_t k)
 {
-    return k && line->block[k] == line->block[k - 1];
+    return k && line->run[k] == line->run[k - 1];
 }
 
-/* Ranges and offsets of one row of staged cells. local: the cell's number without its x. */
+void sphgi_find_around(const struct sphgi_grid *sources, const int64_t *block, int32_t *blocks)
+{
+    const struct sphgi_lattice *lattice = &sources->lattice;
+    struct line line[3];
+    for (int32_t a = 0; a < 3; ++a)
+        line[a] = line_of(&lattice->axis[a], block[a], a < lattice->dimension);
+    for (int32_t k = 0; k < SPHGI_AROUND; ++k)
+        blocks[k] = -1;
+    for (int32_t z = 0; z < line[2].count; ++z)
+        for (int32_t y = 0; y < line[1].count && !goes_on(&line[2], z); ++y)
+            for (int32_t x = 0; x < line[0].count && !goes_on(&line[1], y); ++x)
+                if (!goes_on(&line[0], x))
+                    blocks[place_around(line[0].run[x], line[1].run[y], line[2].run[z])] =
+                        sphgi_find_block(sources,
+                                         (const int64_t[3]){line[0].block[x], line[1].block[y],
+                                                            line[2].block[z]});
+}
+
+/* Ranges and offsets of one row of staged cells. local: the cell's number without its x; found: the
+ * blocks of the row. */
 static void stage_row(const struct sphgi_grid *sources, const struct line *x_line, int32_t local,
                       const int32_t *found, struct sphgi_surroundings *around, int32_t *offset)
 {
     int32_t behind = -1; /* where the last range ends, if it may go on */
     for (int32_t x = 0; x < x_line->count; ++x) {
         offset[x] = around->staged;
-        if (found[x] < 0)
+        const int32_t block = found[x_line->run[x]];
+        if (block < 0)
             continue;
         const int32_t *at = (const int32_t *)sources->cell_start.data +
-                            (ptrdiff_t)found[x] * sources->cells + local + x_line->local[x];
+                            (ptrdiff_t)block * sources->cells + local + x_line->local[x];
         const int32_t count = at[1] - at[0];
         if (!count)
             continue;
@@ -68,11 +87,10 @@ static void stage_row(const struct sphgi_grid *sources, const struct line *x_lin
 }
 
 void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
-                           struct sphgi_surroundings *around)
+                           const int32_t *blocks, struct sphgi_surroundings *around)
 {
     const struct sphgi_lattice *lattice = &sources->lattice;
     struct line line[3];
-    int32_t found[SPHGI_STAGED_ROWS_MOST][SPHGI_STAGED_WIDTH_MOST]; /* of the last rows, by y */
     for (int32_t a = 0; a < 3; ++a)
         line[a] = line_of(&lattice->axis[a], block[a], a < lattice->dimension);
     const int32_t shift_x = lattice->axis[0].shift;
@@ -82,14 +100,10 @@ void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *bloc
     int32_t row = 0;
     for (int32_t z = 0; z < line[2].count; ++z)
         for (int32_t y = 0; y < line[1].count; ++y, ++row) {
-            if (!goes_on(&line[2], z)) {
-                if (goes_on(&line[1], y))
-                    memcpy(found[y], found[y - 1], sizeof found[y]);
-                else
-                    find_blocks(sources, &line[0], line[1].block[y], line[2].block[z], found[y]);
-            }
             const int32_t local = line[2].local[z] << shift_xy | line[1].local[y] << shift_x;
-            stage_row(sources, &line[0], local, found[y], around, around->offset[row]);
+            stage_row(sources, &line[0], local,
+                      blocks + place_around(0, line[1].run[y], line[2].run[z]), around,
+                      around->offset[row]);
         }
 }
 

@@ -13,10 +13,9 @@ struct supply {
 static void run_listed(struct sphgi_worker *w, const struct supply *supply)
 {
     sphgi_group_begin(w);
-    do {
-        for (int32_t l = 0; l < w->group.lanes; ++l)
-            sphgi_group_add(w, l, supply->ids[l], supply->count[l], supply->wide);
-    } while (sphgi_group_again(w));
+    do
+        sphgi_group_add_all(w, supply->ids, supply->count, supply->wide);
+    while (sphgi_group_again(w));
     sphgi_group_end(w);
     w->group.lanes = 0;
 }
@@ -66,11 +65,13 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const int32_t first = block * grid->cells;
     const int32_t *start = (const int32_t *)grid->cell_start.data + first;
-    const int64_t *cell_list = (const int64_t *)n->found.cell_list.data + first;
+    const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
+    const uint16_t *list =
+        (const uint16_t *)n->found.ids.data + ((const int64_t *)n->found.block_list.data)[block];
     const uint16_t *lengths = n->found.lengths.data;
     struct supply supply = {.wide = false};
     for (int32_t c = 0; c < grid->cells; ++c) {
-        const uint16_t *ids = (const uint16_t *)n->found.ids.data + cell_list[c];
+        const uint16_t *ids = list + (size_t)offset[c] * SPHGI_PAD;
         for (int32_t t = start[c]; t < start[c + 1]; ++t) {
             prefetch_ahead(w, t);
             if (is_active(task, t))
@@ -119,11 +120,13 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const int32_t first = block * grid->cells;
     const int32_t *start = (const int32_t *)grid->cell_start.data + first;
-    const int64_t *cell_list = (const int64_t *)n->found.cell_list.data + first;
+    const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
+    const uint16_t *list =
+        (const uint16_t *)n->found.ids.data + ((const int64_t *)n->found.block_list.data)[block];
     struct supply supply = {.wide = true};
     for (int32_t c = 0; c < grid->cells; ++c) {
         const uint32_t *row =
-            (const uint32_t *)(const void *)((const uint16_t *)n->found.ids.data + cell_list[c]);
+            (const uint32_t *)(const void *)(list + (size_t)offset[c] * SPHGI_PAD);
         for (int32_t t = start[c]; t < start[c + 1]; ++t) {
             const size_t count = row[0];
             if (is_active(task, t))
@@ -167,12 +170,9 @@ static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, i
                         const struct sphgi_finder *finder)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const struct sphgi_block *at = (const struct sphgi_block *)grid->blocks.data + block;
-    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
     struct sphgi_surroundings around;
-    sphgi_surroundings_of(&n->sources, at->at, &around);
-    const bool wide = n->list_free ? sphgi_is_wide(n, &around, start, grid->cells)
+    sphgi_block_surroundings(n, block, &around);
+    const bool wide = n->list_free ? around.staged > SPHGI_STAGED_MOST
                                    : ((const uint8_t *)n->found.wide.data)[block];
     if (wide)
         sphgi_use_local_rows(w);

@@ -285,6 +285,30 @@ static void reduce(struct sphgi_worker *w, int32_t first, int32_t count)
     w->passes->reduce(sphgi_partial(w, first), count, sphgi_lane(w, w->reduced, first));
 }
 
+/* All lanes fit into one piece, as they nearly always do. */
+static bool fit_a_piece(const struct sphgi_worker *w, const int64_t *counts)
+{
+    int64_t total = 0;
+    for (int32_t l = 0; l < w->group.lanes; ++l)
+        total += (int64_t)sphgi_round_up((size_t)counts[l], SPHGI_PAD);
+    return total <= SPHGI_PIECE && !w->piece.parts;
+}
+
+void sphgi_group_add_all(struct sphgi_worker *w, const void *const *ids, const int64_t *counts,
+                         bool wide)
+{
+    struct sphgi_piece *piece = &w->piece;
+    if (wide || w->gather.superset || !fit_a_piece(w, counts)) {
+        for (int32_t l = 0; l < w->group.lanes; ++l)
+            sphgi_group_add(w, l, ids[l], counts[l], wide);
+        return;
+    }
+    w->sweep->position_passes->gather_all[w->sweep->plan->type == SPHG_F64](
+        &w->gather, w->group.lanes, w->group.x, ids, counts, piece);
+    for (int32_t p = 0; p < piece->parts; ++p)
+        w->touched[piece->lane[p]] = true;
+}
+
 /* After all pairs were added: is another round needed? Classic, corrections and fields in one
  * sweep: the first round gives the coefficients. If one piece held everything, the second round
  * reads it again by itself. */

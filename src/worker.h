@@ -82,6 +82,8 @@ void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sw
 void sphgi_group_begin(struct sphgi_worker *worker);
 void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids, int64_t count,
                      bool wide);
+void sphgi_group_add_all(struct sphgi_worker *worker, const void *const *ids, const int64_t *counts,
+                         bool wide);
 bool sphgi_group_again(struct sphgi_worker *worker);
 void sphgi_group_end(struct sphgi_worker *worker);
 

@@ -19,10 +19,14 @@
  *           header you compiled against. Functions without a context read 1.0's members only.
  * Memory    views are borrowed for the call, lists until the next build (sphg_neighbors_use_lists);
  *           the library owns contexts and neighbours only. Inputs are never written. An output
- *           must not overlap an input or another output. Once warm, no call allocates.
+ *           must not overlap an input or another output (ERROR_ARGUMENT). Once warm, no call
+ *           allocates while counts, pairs included, stay within the largest seen; the grid
+ *           has room for twice the blocks of cells that it met.
  * Threads   one call at a time per context, any number of contexts at once; what a call takes
  *           as const may be shared by concurrent calls. Same input, same bits: for any number
  *           of threads, any executor, any split into subsets.
+ * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
+ *           normal numbers; f64 far beyond. A table of corrections must be representable, too.
  * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
  *           error, never NaN; each target's `rank` tells how much could be corrected. */
 #ifndef SPHGRAD_SPHGRAD_H
@@ -243,12 +247,13 @@ typedef struct sphg_geometry {
     int32_t source_count; /* ghosts included */
     int32_t target_count;
     sphg_type precision;  /* of all fields and results; 0: as the positions. F32 beside F64
-                             positions: differences are taken before narrowing */
+                             positions: differences are taken before narrowing. Never wider */
     int32_t list_free;    /* search only; 1: keep no pairs, each operator finds them: for one or
-                             two uses */
+                             two uses. Without a skin */
     double skin;          /* [L], search only: find pairs up to H + skin and keep them until a
                              particle has moved skin / 2; results are exact throughout */
-    double period[3];     /* [L] per axis; 0: open; else >= 2 (H + skin), positions anywhere */
+    double period[3];     /* [L] per axis; 0: open; else >= 2 (H + skin), positions anywhere: of
+                             fl(fl(x_i - x_j) + k period) the smallest counts */
 } sphg_geometry;
 
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
@@ -367,7 +372,7 @@ typedef struct sphg_request {
     sphg_view target_density;    /* rho_i; read in SYMMETRIC only */
     sphg_view target_correction; /* C_i; none on either side: computed in the same sweep */
 
-    /* Wanted of the corrections, where they are computed. */
+    /* Wanted of the corrections, where they are computed: not beside a table. */
     sphg_view correction; /* C_i, sphg_correction_width() numbers an item */
     sphg_view rank;       /* U8: fully corrected directions, 0..d */
     sphg_view lambda_min; /* smallest normalised moment: exact where decomposed, elsewhere a
@@ -391,7 +396,8 @@ SPHG_API sphg_result sphg_correction(sphg_context *context, const sphg_scheme *s
                                      const sphg_sources *sources, const sphg_subset *subset,
                                      sphg_view correction, sphg_view rank);
 
-/* DIFFERENCE form. sources->correction absent: C_i computed on the way.
+/* DIFFERENCE form. sources->correction absent: C_i computed on the way. Field and result must be
+ * there.
  *   gradient    scalar field [a] -> vector [a/L]
  *   jacobian    vector field     -> tensor J[a][b] = d v_a / d x_b
  *   divergence  vector field     -> scalar
@@ -417,7 +423,8 @@ SPHG_API sphg_result sphg_force(sphg_context *context, const sphg_scheme *scheme
 
 /* ---- Pairs, for loops of your own -------------------------------------------------------- */
 
-typedef struct sphg_pairs { /* your arrays; what is NULL or absent is not wanted */
+/* Your arrays; what is NULL or absent is not wanted. */
+typedef struct sphg_pairs {
     int64_t *offsets;       /* selected targets + 1 items, from 0 */
     int32_t *indices;       /* j, ascending within a row */
     sphg_view gradient;     /* G_ij [1/L], a vector per pair */
@@ -428,7 +435,8 @@ typedef struct sphg_pairs { /* your arrays; what is NULL or absent is not wanted
 /* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: of everything (first
  * offsets alone for the count, then the rest), or of blocks of targets that stay in the cache.
  * C_i: target_correction, else sources->correction if the targets are part of that set, else
- * computed; volume and C are read for `gradient` only.
+ * computed; volume and C are read for `gradient` only. Classic methods: a target that is part of
+ * the sources stands among its own pairs, since G_ii is not 0.
  * Errors: as sphg_evaluate; CAPACITY: nothing written but count. */
 SPHG_API sphg_result sphg_pair_gradients(sphg_context *context, const sphg_scheme *scheme,
                                          const sphg_sources *sources, const sphg_subset *subset,

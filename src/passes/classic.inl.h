@@ -143,11 +143,13 @@ static void transposed_classic(const struct sphgi_piece *piece, int32_t dimensio
                     polynomial[m] += c.w * x[2];
             }
             /* Units meet the coefficients first: both may be far from 1, their quotient is not. */
-            const vec slope = weight * from(piece, SPHGI_D, k) * (volume * (polynomial[0] / y_unit));
+            const vec slope =
+                weight * from(piece, SPHGI_D, k) * (volume * (polynomial[0] / y_unit));
             const vec s = weight * from(piece, SPHGI_S, k);
             real *t = array_of(piece->arrays, SPHGI_TX) + k;
             for (int32_t a = 0; a < d; ++a)
-                store(t + a * SPHGI_PIECE, slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
+                store(t + a * SPHGI_PIECE,
+                      slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
         }
     }
 }

@@ -93,3 +93,36 @@ static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *x_i, cons
     else
         OUT_NAME(gather_ids)(g, x_i, ids, count, arrays, at, ids_out, false);
 }
+
+SPHGI_TEMPLATE void OUT_NAME(gather_all_as)(const struct sphgi_gather *g, int32_t lanes,
+                                            const void *const *x, const void *const *ids,
+                                            const int64_t *counts, struct sphgi_piece *piece,
+                                            bool periodic)
+{
+    int32_t at = 0, p = 0;
+    piece->wide = false;
+    for (int32_t l = 0; l < lanes; ++l) {
+        const int32_t count = (int32_t)counts[l];
+        if (!count)
+            continue;
+        OUT_NAME(gather_as)
+        (g, x[l], ids[l], count, piece->arrays, at, NULL, false, periodic, false);
+        piece->lane[p] = l;
+        piece->ids[p] = ids[l];
+        piece->count[p] = count;
+        piece->fresh[p] = true;
+        at += (int32_t)sphgi_round_up((size_t)count, SPHGI_PAD);
+        piece->begin[++p] = at;
+    }
+    piece->parts = p;
+}
+
+static void OUT_NAME(gather_all)(const struct sphgi_gather *g, int32_t lanes, const void *const *x,
+                                 const void *const *ids, const int64_t *counts,
+                                 struct sphgi_piece *piece)
+{
+    if (g->periodic)
+        OUT_NAME(gather_all_as)(g, lanes, x, ids, counts, piece, true);
+    else
+        OUT_NAME(gather_all_as)(g, lanes, x, ids, counts, piece, false);
+}

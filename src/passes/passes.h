@@ -145,6 +145,10 @@ struct sphgi_passes {
     void (*gather[2])(const struct sphgi_gather *gather, const void *x_i, const void *ids,
                       bool wide, int32_t count, void *arrays, int32_t at, void *ids_out);
 
+    /* The same for all lanes into an empty piece that holds them: 16-bit ids, no superset. */
+    void (*gather_all[2])(const struct sphgi_gather *gather, int32_t lanes, const void *const *x,
+                          const void *const *ids, const int64_t *counts, struct sphgi_piece *piece);
+
     /* Weights. */
     void (*shape_vectors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
@@ -189,8 +193,8 @@ struct sphgi_passes {
                   double scale, void *jacobian);
     void (*scale)(int32_t count, const void *in, double factor, const void *per_lane, void *out);
     void (*divide)(int32_t count, const void *in, double divisor, void *out);
-    bool (*valid_volumes)(const void *volumes); /* >= 0 and finite in every lane */
-    void (*fill)(double value, void *out);      /* in every lane */
+    bool (*valid_volumes)(const void *volumes);                /* >= 0 and finite in every lane */
+    void (*fill)(double value, void *out);                     /* in every lane */
     void (*quotient)(const void *a, const void *b, void *out); /* a NULL: 1; 0 where b is 0 */
     void (*add_outer)(int32_t dimension, int32_t count, const void *a, const void *b,
                       const void *per_lane, void *jacobian);

@@ -1,7 +1,7 @@
 /* Search: which staged sources are neighbours of a few targets that lie close together. Candidates
  * within reach of the targets' enclosing ball are packed once; each target then tests the packed
  * ones with the exact predicate. Testing first and packing in a second loop over the stored bits is
- * a fifth faster than both in one loop (docs/performance.md). */
+ * a fifth faster than both in one loop (docs/design.md). */
 
 /* Moves the numbers (ids) of the set bits to the front; writes a whole vector. order: the positions
  * of the set bits of each byte, a byte each. */
