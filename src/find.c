@@ -116,8 +116,9 @@ static int32_t first_row_staged(const struct sphgi_surroundings *around, int32_t
 }
 
 int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
-                           const struct sphgi_surroundings *around, int32_t cell, int32_t begin,
-                           int32_t end, uint16_t *ids, uint16_t *lengths)
+                           const struct sphgi_surroundings *around, const struct sphgi_runs *runs,
+                           int32_t cell, int32_t begin, int32_t end, uint16_t *ids,
+                           uint16_t *lengths)
 {
     const struct sphgi_lattice *lattice = &neighbors->sources.lattice;
     struct sphgi_find find = find_of(finder, neighbors, begin, end);
@@ -129,7 +130,9 @@ int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbo
         self[k - begin] = own < 0 ? -1 : staged + own - first;
     }
     find.self = self;
-    find.runs = sphgi_candidate_runs(lattice, around, cell, find.run_begin, find.run_length);
+    find.runs = runs->count;
+    memcpy(find.run_begin, runs->begin, sizeof find.run_begin);
+    memcpy(find.run_length, runs->length, sizeof find.run_length);
     return finder->passes->find(&find, ids, lengths);
 }
 
@@ -159,15 +162,14 @@ void sphgi_find_wide(const struct sphgi_finder *finder, const sphg_neighbors *ne
                      sphgi_take *take, void *data)
 {
     struct sphgi_find find = find_of(finder, neighbors, target, target + 1);
-    int32_t begin[9], length[9];
     const int32_t own = own_row(neighbors, target);
-    const int32_t runs =
-        sphgi_candidate_runs(&neighbors->sources.lattice, around, cell, begin, length);
-    for (int32_t run = 0; run < runs; ++run) {
+    const struct sphgi_runs runs = sphgi_candidate_runs(&neighbors->sources.lattice, around, cell);
+    for (int32_t run = 0; run < runs.count; ++run) {
         int32_t at = 1;
         for (int32_t r = 0; r < around->ranges; at += around->count[r++]) {
-            int32_t from = sphgi_max32(at, begin[run]);
-            const int32_t end = sphgi_min32(at + around->count[r], begin[run] + length[run]);
+            int32_t from = sphgi_max32(at, runs.begin[run]);
+            const int32_t end =
+                sphgi_min32(at + around->count[r], runs.begin[run] + runs.length[run]);
             while (from < end) {
                 const int32_t count = sphgi_min32(end - from, finder->room - 1);
                 const int32_t row = around->begin[r] + from - at;

@@ -32,8 +32,9 @@ void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neigh
 /* Pairs of targets [begin, end) in grid order, all of cell `cell` of the staged block, at most
  * SPHGI_FIND_MOST. Returns the ids written, padding included. */
 int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
-                           const struct sphgi_surroundings *around, int32_t cell, int32_t begin,
-                           int32_t end, uint16_t *ids, uint16_t *lengths);
+                           const struct sphgi_surroundings *around, const struct sphgi_runs *runs,
+                           int32_t cell, int32_t begin, int32_t end, uint16_t *ids,
+                           uint16_t *lengths);
 
 /* Wide: the same for one target, slice by slice of its surroundings. take() gets the rows of the
  * neighbours, 32-bit and not padded, at most SPHGI_STAGED_MOST at a time. */

@@ -77,10 +77,13 @@ void sphgi_find_around(const struct sphgi_grid *sources, const int64_t *block, i
 void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
                            const int32_t *blocks, struct sphgi_surroundings *around);
 
-/* Staged runs that hold the candidates of cell `cell` of the block; at most 9. */
-int32_t sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                             const struct sphgi_surroundings *around, int32_t cell, int32_t *begin,
-                             int32_t *length);
+/* Staged runs that hold the candidates of a cell. */
+struct sphgi_runs {
+    int32_t count, candidates;
+    int32_t begin[9], length[9];
+};
+struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,
+                                       const struct sphgi_surroundings *around, int32_t cell);
 
 /* Staged number of the first source of that cell itself. */
 int32_t sphgi_staged_cell(const struct sphgi_lattice *lattice,

@@ -26,18 +26,6 @@ static int64_t claim(struct build *build, int64_t units)
     return place + units <= build->capacity ? place : -1;
 }
 
-/* An upper bound of what a cell's pairs take. */
-static int64_t bound_of_cell(const struct sphgi_lattice *lattice,
-                             const struct sphgi_surroundings *around, int32_t cell, int32_t targets)
-{
-    int32_t begin[9], length[9];
-    int64_t candidates = SPHGI_PAD;
-    const int32_t runs = sphgi_candidate_runs(lattice, around, cell, begin, length);
-    for (int32_t k = 0; k < runs; ++k)
-        candidates += length[k];
-    return targets * candidates;
-}
-
 static uint32_t *cell_offsets(const struct build *build, int32_t block)
 {
     const sphg_neighbors *n = build->neighbors;
@@ -56,13 +44,14 @@ static bool build_block(struct build *build, const struct sphgi_finder *finder,
     sphgi_stage_coordinates(finder, n, around);
     for (int32_t c = 0; c < grid->cells; ++c) {
         const int32_t targets = start[c + 1] - start[c];
-        if (targets && used + bound_of_cell(&grid->lattice, around, c, targets) > SPHGI_UNITS_MOST)
+        const struct sphgi_runs runs = sphgi_candidate_runs(&grid->lattice, around, c);
+        if (used + (int64_t)targets * (runs.candidates + SPHGI_PAD) > SPHGI_UNITS_MOST)
             return false;
         cell_offsets(build, block)[c] = (uint32_t)(used / SPHGI_PAD);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
-            used +=
-                sphgi_find_targets(finder, n, around, c, t, end, finder->ids + used, lengths + t);
+            used += sphgi_find_targets(finder, n, around, &runs, c, t, end, finder->ids + used,
+                                       lengths + t);
             for (int32_t k = t; k < end; ++k)
                 pairs += lengths[k];
         }

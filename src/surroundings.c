@@ -122,19 +122,23 @@ static int32_t staged_row(const struct sphgi_lattice *lattice, int32_t y, int32_
     return z * ((1 << lattice->axis[1].shift) + 2) + y;
 }
 
-int32_t sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                             const struct sphgi_surroundings *around, int32_t cell, int32_t *begin,
-                             int32_t *length)
+struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,
+                                       const struct sphgi_surroundings *around, int32_t cell)
 {
-    int32_t at[3], runs = 0;
+    int32_t at[3];
+    struct sphgi_runs runs;
     const struct sphgi_axis *axis = lattice->axis;
+    runs.count = runs.candidates = 0;
     staged_position(lattice, cell, at);
     for (int32_t z = at[2] + axis[2].low; z <= at[2] + axis[2].high; ++z)
         for (int32_t y = at[1] + axis[1].low; y <= at[1] + axis[1].high; ++y) {
             const int32_t *offset = around->offset[staged_row(lattice, y, z)];
-            begin[runs] = offset[at[0] + axis[0].low];
-            length[runs] = offset[at[0] + axis[0].high + 1] - begin[runs];
-            runs += length[runs] > 0;
+            const int32_t begin = offset[at[0] + axis[0].low];
+            const int32_t length = offset[at[0] + axis[0].high + 1] - begin;
+            runs.begin[runs.count] = begin;
+            runs.length[runs.count] = length;
+            runs.count += length > 0;
+            runs.candidates += length;
         }
     return runs;
 }

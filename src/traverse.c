@@ -92,7 +92,8 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
     const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
     struct supply supply = {.wide = false};
     sphgi_stage_coordinates(finder, n, around);
-    for (int32_t c = 0; c < grid->cells; ++c)
+    for (int32_t c = 0; c < grid->cells; ++c) {
+        const struct sphgi_runs runs = sphgi_candidate_runs(&grid->lattice, around, c);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
             bool any = false;
@@ -101,7 +102,7 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
             if (!any)
                 continue;
             const uint16_t *ids = finder->ids;
-            sphgi_find_targets(finder, n, around, c, t, end, finder->ids, finder->lengths);
+            sphgi_find_targets(finder, n, around, &runs, c, t, end, finder->ids, finder->lengths);
             for (int32_t k = t; k < end; ++k) {
                 const uint16_t length = finder->lengths[k - t];
                 if (is_active(task, k))
@@ -110,6 +111,7 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
             }
             run_rest(w, &supply); /* the next search overwrites the ids */
         }
+    }
 }
 
 static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,

@@ -106,7 +106,9 @@ static double largest_move(const void *then, const void *now, int64_t begin, int
 static void load_lanes(const struct sphgi_columns *columns, const int32_t *items, void *out)
 {
     real *to = out;
-    for (int32_t l = 0; l < LANES; ++l) {
+    for (int32_t c = 0; columns->stride == 0 && c < columns->count; ++c)
+        store(to + c * LANES, splat(number_at(columns->at[c])));
+    for (int32_t l = 0; columns->stride != 0 && l < LANES; ++l) {
         const ptrdiff_t offset = items[l] * columns->stride;
         for (int32_t c = 0; c < columns->count; ++c)
             to[c * LANES + l] = number_at(columns->at[c] + offset);
