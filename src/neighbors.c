@@ -268,6 +268,16 @@ static sphg_result remember_positions(sphg_neighbors *n, const struct geometry *
     return SPHG_OK;
 }
 
+static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbors *neighbors,
+                               const sphg_scheme *scheme, const sphg_geometry *geometry,
+                               bool searched, struct sphgi_scheme *checked)
+{
+    sphg_result result = sphgi_check_pointer(checker, neighbors, "neighbors");
+    if (!result)
+        result = sphgi_check_scheme(checker, scheme, checked);
+    return result ? result : sphgi_check_geometry(checker, geometry, checked, searched);
+}
+
 /* ---- Search --------------------------------------------------------------------------------- */
 
 static void largest_coordinates(const struct geometry *g, double *largest)
@@ -378,11 +388,7 @@ sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbo
     sphg_result result = sphgi_enter(context);
     if (result)
         return result;
-    result = sphgi_check_pointer(checker, neighbors, "neighbors");
-    if (!result)
-        result = sphgi_check_scheme(checker, scheme, &checked);
-    if (!result)
-        result = sphgi_check_geometry(checker, geometry, &checked, true);
+    result = check_build(checker, neighbors, scheme, geometry, true, &checked);
     if (!result)
         result = search(checker, neighbors, &checked, geometry);
     return sphgi_leave(context, result);
@@ -427,11 +433,7 @@ sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neig
     sphg_result result = sphgi_enter(context);
     if (result)
         return result;
-    result = sphgi_check_pointer(checker, neighbors, "neighbors");
-    if (!result)
-        result = sphgi_check_scheme(checker, scheme, &checked);
-    if (!result)
-        result = sphgi_check_geometry(checker, geometry, &checked, false);
+    result = check_build(checker, neighbors, scheme, geometry, false, &checked);
     if (!result)
         result = sphgi_check_lists(checker, lists, geometry->target_count);
     if (!result)
