@@ -446,8 +446,9 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     int32_t *cursor = carve(&carver, n, sizeof *cursor);
     for (int32_t c = 0; c < chunk_count; ++c) {
         struct chunk *chunk = &sort.chunks[c];
-        *chunk = (struct chunk){.begin = sphgi_min32(c * per_chunk, count)};
-        chunk->end = sphgi_min32(chunk->begin + per_chunk, count);
+        const int64_t begin = (int64_t)c * per_chunk, end = begin + per_chunk;
+        *chunk = (struct chunk){.begin = begin < count ? (int32_t)begin : count,
+                                .end = end < count ? (int32_t)end : count};
         chunk->blocks = carve(&carver, (size_t)per_chunk, sizeof *chunk->blocks);
         chunk->hash = carve(&carver, chunk_hash_slots(per_chunk), sizeof *chunk->hash);
         chunk->counts = carve(&carver, (size_t)per_chunk, sizeof *chunk->counts);

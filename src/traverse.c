@@ -63,7 +63,7 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t first = block * grid->cells;
+    const ptrdiff_t first = (ptrdiff_t)block * grid->cells;
     const int32_t *start = (const int32_t *)grid->cell_start.data + first;
     const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
     const uint16_t *list =
@@ -120,7 +120,7 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     enum { HEADER = 8 };
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t first = block * grid->cells;
+    const ptrdiff_t first = (ptrdiff_t)block * grid->cells;
     const int32_t *start = (const int32_t *)grid->cell_start.data + first;
     const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
     const uint16_t *list =
