@@ -3,6 +3,7 @@
 #include "kernel.h"
 #include "lists.h"
 #include "parallel.h"
+#include "skin.h"
 #include "view.h"
 #include <math.h>
 #include <string.h>
@@ -100,21 +101,12 @@ static sphg_result read_positions(struct sphgi_checker checker, const sphg_view 
                       checker.function, name, (long long)bad);
 }
 
-/* What a build is about; becomes the object's only when it succeeds. */
-struct geometry {
-    int32_t source_count, target_count, dimension;
-    sphg_type position_type, type;
-    bool part_of;
-    size_t row_size;
-    char *source_rows, *target_rows; /* in the order of the host, in context->input */
-};
-
-static struct geometry geometry_of(const sphg_geometry *given, int32_t dimension)
+static struct sphgi_geometry geometry_of(const sphg_geometry *given, int32_t dimension)
 {
-    struct geometry g = {.source_count = given->source_count,
-                         .target_count = given->target_count,
-                         .dimension = dimension,
-                         .part_of = !given->targets.x};
+    struct sphgi_geometry g = {.source_count = given->source_count,
+                               .target_count = given->target_count,
+                               .dimension = dimension,
+                               .part_of = !given->targets.x};
     const sphg_view *some = given->sources.x ? &given->sources : &given->targets;
     g.position_type = some->x ? some->type : SPHG_F32;
     g.type = given->precision ? given->precision : g.position_type;
@@ -123,7 +115,7 @@ static struct geometry geometry_of(const sphg_geometry *given, int32_t dimension
 }
 
 static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
-                                 struct geometry *g)
+                                 struct sphgi_geometry *g)
 {
     sphg_context *context = checker.context;
     const size_t own_targets = g->part_of ? 0 : (size_t)g->target_count;
@@ -167,107 +159,6 @@ static bool invert_order(sphg_context *context, const sphg_neighbors *n,
     return true;
 }
 
-/* ---- Skin ----------------------------------------------------------------------------------- */
-
-static bool same_question(const sphg_neighbors *n, const struct geometry *g,
-                          const sphg_geometry *given, double radius)
-{
-    return n->kind == SPHGI_SEARCHED && n->skin > 0 && n->skin == given->skin &&
-           n->radius == radius && n->dimension == g->dimension && n->part_of == g->part_of &&
-           n->position_type == g->position_type && n->source_count == g->source_count &&
-           n->target_count == g->target_count &&
-           memcmp(n->period, given->period, sizeof n->period) == 0;
-}
-
-struct moves {
-    const struct sphgi_passes *passes;
-    const void *then, *now;
-    double *largest; /* a slot per task range start: see moved_task */
-    int32_t chunk;
-};
-
-static void moved_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    const struct moves *moves = data;
-    (void)worker;
-    for (int32_t c = begin; c < end; ++c)
-        moves->largest[c] = moves->passes->largest_move(
-            moves->then, moves->now, (int64_t)c * moves->chunk, (int64_t)(c + 1) * moves->chunk);
-}
-
-static double largest_move(sphg_context *context, sphg_type type, const void *then, const void *now,
-                           int32_t count)
-{
-    enum { CHUNKS = 64 };
-    double largest[CHUNKS + 1] = {0};
-    struct moves moves = {sphgi_passes_of(context, type), then, now, largest, count / CHUNKS};
-    if (moves.chunk)
-        sphgi_parallel_for(context, moved_task, &moves, CHUNKS, 1);
-    largest[CHUNKS] = moves.passes->largest_move(then, now, (int64_t)moves.chunk * CHUNKS, count);
-    for (int32_t c = 0; c < CHUNKS; ++c)
-        largest[CHUNKS] = largest[c] > largest[CHUNKS] ? largest[c] : largest[CHUNKS];
-    return largest[CHUNKS];
-}
-
-struct refresh {
-    const int32_t *order;
-    const char *from;
-    char *to;
-    size_t row_size;
-};
-
-static void refresh_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    const struct refresh *r = data;
-    (void)worker;
-    for (int32_t k = begin; k < end; ++k)
-        memcpy(r->to + (size_t)k * r->row_size, r->from + (size_t)r->order[k] * r->row_size,
-               r->row_size);
-}
-
-static void refresh_rows(sphg_context *context, struct sphgi_grid *grid, const char *rows,
-                         size_t row_size)
-{
-    struct refresh refresh = {grid->order.data, rows, grid->rows.data, row_size};
-    sphgi_parallel_for(context, refresh_task, &refresh, grid->count, GRAIN);
-}
-
-/* True: the pairs still cover everything, and the rows hold the new positions. */
-static bool skin_holds(sphg_context *context, sphg_neighbors *n, const struct geometry *g)
-{
-    double moved = largest_move(context, g->position_type, n->sources_then.data, g->source_rows,
-                                g->source_count);
-    if (!g->part_of) {
-        const double targets = largest_move(context, g->position_type, n->targets_then.data,
-                                            g->target_rows, g->target_count);
-        moved = targets > moved ? targets : moved;
-    }
-    /* Differences of positions are rounded: leave that much of the skin alone. */
-    const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
-    const double left = n->skin * (1 - unit) / 2 - moved - n->radius * unit;
-    if (!(left >= 0))
-        return false;
-    refresh_rows(context, &n->sources, g->source_rows, g->row_size);
-    if (!n->same)
-        refresh_rows(context, &n->targets, g->target_rows, g->row_size);
-    n->rebuilt = false;
-    n->skin_left = left;
-    return true;
-}
-
-static sphg_result remember_positions(sphg_neighbors *n, const struct geometry *g)
-{
-    const size_t sources = (size_t)g->source_count, targets = (size_t)g->target_count;
-    if (!sphgi_reserve(&n->allocator, &n->sources_then, sources, g->row_size) ||
-        (!g->part_of && !sphgi_reserve(&n->allocator, &n->targets_then, targets, g->row_size)))
-        return SPHG_ERROR_MEMORY;
-    if (sources)
-        memcpy(n->sources_then.data, g->source_rows, sources * g->row_size);
-    if (!g->part_of && targets)
-        memcpy(n->targets_then.data, g->target_rows, targets * g->row_size);
-    return SPHG_OK;
-}
-
 static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbors *neighbors,
                                const sphg_scheme *scheme, const sphg_geometry *geometry,
                                bool searched, struct sphgi_scheme *checked)
@@ -280,7 +171,7 @@ static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbor
 
 /* ---- Search --------------------------------------------------------------------------------- */
 
-static void largest_coordinates(const struct geometry *g, double *largest)
+static void largest_coordinates(const struct sphgi_geometry *g, double *largest)
 {
     const int64_t rows = (int64_t)g->source_count + (g->part_of ? 0 : g->target_count);
     for (int64_t k = 0; k < rows * SPHGI_ROW; ++k) {
@@ -292,7 +183,7 @@ static void largest_coordinates(const struct geometry *g, double *largest)
     }
 }
 
-static void adopt(sphg_neighbors *n, const struct geometry *g, const sphg_geometry *given,
+static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_geometry *given,
                   double radius)
 {
     n->dimension = g->dimension;
@@ -334,7 +225,8 @@ static bool look_around(sphg_context *context, sphg_neighbors *n)
     return true;
 }
 
-static sphg_result build_grids(sphg_context *context, sphg_neighbors *n, const struct geometry *g)
+static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
+                               const struct sphgi_geometry *g)
 {
     double largest[SPHGI_ROW] = {0};
     if (n->periodic)
@@ -358,12 +250,12 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n, const s
 static sphg_result search(struct sphgi_checker checker, sphg_neighbors *n,
                           const struct sphgi_scheme *scheme, const sphg_geometry *given)
 {
-    struct geometry g = geometry_of(given, scheme->dimension);
+    struct sphgi_geometry g = geometry_of(given, scheme->dimension);
     sphg_result result = read_geometry(checker, given, &g);
     if (result)
         return result;
-    if (same_question(n, &g, given, scheme->radius) && n->type == g.type &&
-        skin_holds(checker.context, n, &g))
+    if (sphgi_skin_asks_the_same(n, &g, given, scheme->radius) && n->type == g.type &&
+        sphgi_skin_holds(checker.context, n, &g))
         return SPHG_OK;
     n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
@@ -371,7 +263,7 @@ static sphg_result search(struct sphgi_checker checker, sphg_neighbors *n,
     if (!result && !n->list_free)
         result = sphgi_lists_build(checker.context, n);
     if (!result && n->skin > 0)
-        result = remember_positions(n, &g);
+        result = sphgi_skin_remember(n, &g) ? SPHG_OK : SPHG_ERROR_MEMORY;
     if (result)
         return sphgi_fail_memory(checker.context, checker.function);
     n->kind = SPHGI_SEARCHED;
@@ -400,7 +292,7 @@ static sphg_result use_lists(struct sphgi_checker checker, sphg_neighbors *n,
                              const struct sphgi_scheme *scheme, const sphg_geometry *given,
                              const sphg_lists *lists)
 {
-    struct geometry g = geometry_of(given, scheme->dimension);
+    struct sphgi_geometry g = geometry_of(given, scheme->dimension);
     sphg_result result = read_geometry(checker, given, &g);
     if (result)
         return result;

@@ -64,6 +64,9 @@ enum sphgi_purpose {
     SPHGI_FOR_PAIR_GRADIENTS /* ... and their G_ij */
 };
 
+/* From the fields and views of a plan to all that its second half holds. */
+void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose);
+
 /* Everything in request that is wrong is refused here. The plan lives in context->plan. */
 sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *scheme,
                             const sphg_request *request, enum sphgi_purpose purpose,

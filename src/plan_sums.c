@@ -1,0 +1,49 @@
+/* Which sums and streams a plan needs, and their numbers. */
+#include "plan.h"
+
+static void decide_sums(struct sphgi_plan *plan)
+{
+    const int32_t d = plan->dimension;
+    if (plan->computes)
+        plan->sums += plan->classic ? (d == 3 ? 29 : 15) : d * (d + 1) / 2;
+    plan->volume_sum = plan->sums;
+    plan->sums += plan->mean_volume ? 2 : 0;
+    plan->moment_sums = plan->sums;
+    for (int32_t k = 0; k < 2; ++k) {
+        plan->vector_sum[k] = plan->sums;
+        plan->sums += plan->transposes[k] ? d : 0;
+    }
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        struct sphgi_field_plan *field = &plan->fields[k];
+        field->sum = plan->sums;
+        plan->sums += field->differentiates ? field->components * d : 0;
+        field->value_sum = field->value.count ? plan->sums : -1;
+        plan->sums += field->value.count ? field->components : 0;
+    }
+}
+
+void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
+{
+    const sphg_method method = plan->scheme.method;
+    bool needs_correction = purpose == SPHGI_FOR_PAIR_GRADIENTS;
+    plan->differentiates = needs_correction;
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        plan->differentiates |= field->differentiates;
+        plan->wants_value |= field->value.count > 0;
+        plan->transposes[0] |= field->differentiates && field->form == SPHG_ADJOINT;
+        plan->transposes[1] |= field->differentiates && field->form == SPHG_SYMMETRIC;
+        needs_correction |= field->differentiates || (plan->classic && field->value.count);
+    }
+    plan->corrects = method != SPHG_PLAIN && needs_correction;
+    plan->computes |= plan->corrects && !plan->target_correction.count;
+    plan->mean_volume = plan->computes && method == SPHG_MLS && !plan->target_volume.count;
+    plan->correction_stream = plan->density_stream = -1;
+    if ((plan->transposes[0] || plan->transposes[1]) && method != SPHG_PLAIN) {
+        plan->correction_stream = plan->stream_count;
+        plan->stream_count += plan->classic ? plan->dimension + 1 : plan->dimension - 1;
+    }
+    if (plan->transposes[1])
+        plan->density_stream = plan->stream_count++;
+    decide_sums(plan);
+}
