@@ -37,7 +37,7 @@
 #define SPHG_VERSION_MAJOR 0 /* CMakeLists.txt reads the version from these three lines */
 #define SPHG_VERSION_MINOR 1
 #define SPHG_VERSION_PATCH 0
-#define SPHG_VERSION (SPHG_VERSION_MAJOR * 10000 + SPHG_VERSION_MINOR * 100 + SPHG_VERSION_PATCH)
+#define SPHG_VERSION       (SPHG_VERSION_MAJOR * 10000 + SPHG_VERSION_MINOR * 100 + SPHG_VERSION_PATCH)
 
 #ifndef SPHG_API /* predefine to embed the library in another shared object */
 #if defined(_WIN32) && defined(SPHG_SHARED_BUILD)
@@ -59,19 +59,19 @@ extern "C" {
 
 /* Positive: refused, nothing was written. Negative: begun, the outputs of this call are
  * undefined. Context and neighbours can be used again after both. */
-#define SPHG_RESULT_LIST(X)                                                                 \
-    X(OK, 0, "success")                                                                     \
-    X(ERROR_ARGUMENT, 1, "null pointer, negative count, or a value out of range")           \
-    X(ERROR_VERSION, 2, "compiled against a header this library cannot serve")              \
-    X(ERROR_TYPE, 3, "a view does not have the precision of the neighbours")                \
-    X(ERROR_SIZE, 4, "counts, dimensions or radii of neighbours and request disagree")      \
-    X(ERROR_STATE, 5, "the neighbours were never built, or their last build failed")        \
-    X(ERROR_UNSUPPORTED, 6, "not on this machine, or no such operator for this shape")      \
-    X(ERROR_CAPACITY, 7, "an output array is too small; the size needed was reported")      \
-    X(ERROR_NOT_FINITE, 8, "a position is NaN or infinite")                                 \
-    X(ERROR_BUSY, 9, "the context is in use by another call")                               \
-    X(ERROR_MEMORY, -1, "the allocator returned NULL")                                      \
-    X(ERROR_INDEX, -2, "a neighbour index is out of range")                                 \
+#define SPHG_RESULT_LIST(X)                                                                        \
+    X(OK, 0, "success")                                                                            \
+    X(ERROR_ARGUMENT, 1, "null pointer, negative count, or a value out of range")                  \
+    X(ERROR_VERSION, 2, "compiled against a header this library cannot serve")                     \
+    X(ERROR_TYPE, 3, "a view does not have the precision of the neighbours")                       \
+    X(ERROR_SIZE, 4, "counts, dimensions or radii of neighbours and request disagree")             \
+    X(ERROR_STATE, 5, "the neighbours were never built, or their last build failed")               \
+    X(ERROR_UNSUPPORTED, 6, "not on this machine, or no such operator for this shape")             \
+    X(ERROR_CAPACITY, 7, "an output array is too small; the size needed was reported")             \
+    X(ERROR_NOT_FINITE, 8, "a position is NaN or infinite")                                        \
+    X(ERROR_BUSY, 9, "the context is in use by another call")                                      \
+    X(ERROR_MEMORY, -1, "the allocator returned NULL")                                             \
+    X(ERROR_INDEX, -2, "a neighbour index is out of range")                                        \
     X(ERROR_VOLUME, -3, "a volume is negative or not finite")
 #define SPHG_X(name, value, text) SPHG_##name = value,
 typedef enum sphg_result { SPHG_RESULT_LIST(SPHG_X) } sphg_result;
@@ -98,7 +98,7 @@ typedef enum sphg_shape {
  * stride 0, inputs only: one item for all (uniform volume, constant field). x NULL: absent. */
 typedef struct sphg_view {
     const void *x, *y, *z; /* an output is written through them all the same */
-    ptrdiff_t stride; /* [byte], multiple of the number's size; may be negative */
+    ptrdiff_t stride;      /* [byte], multiple of the number's size; may be negative */
     sphg_type type;
 } sphg_view;
 
@@ -225,8 +225,7 @@ SPHG_API int32_t sphg_correction_width(const sphg_scheme *scheme);
 /* W(r) [L^-d] and W'(r)/r [L^-(d + 2)], finite for r >= 0 (spiky: W'/r is unbounded towards 0 and
  * given as 0 at r = 0), 0 for r >= H. Either may be NULL. Reads dimension, kernel and
  * support_radius; a scheme that is not valid gives NaN. */
-SPHG_API void sphg_kernel_value(const sphg_scheme *scheme, double r, double *w,
-                                double *dw_over_r);
+SPHG_API void sphg_kernel_value(const sphg_scheme *scheme, double r, double *w, double *dw_over_r);
 
 /* W(r) = sigma w(r/H) / H^d with w as tabulated in docs/theory.md: sigma, and the second moment
  * mu2 = (1/H^2) int W x_k^2 dV. Either may be NULL. A scheme that is not valid gives NaN. */
@@ -246,14 +245,14 @@ typedef struct sphg_geometry {
                              first target_count particles, "part of" this source set */
     int32_t source_count; /* ghosts included */
     int32_t target_count;
-    sphg_type precision;  /* of all fields and results; 0: as the positions. F32 beside F64
-                             positions: differences are taken before narrowing. Never wider */
-    int32_t list_free;    /* search only; 1: keep no pairs, each operator finds them: for one or
-                             two uses. Without a skin */
-    double skin;          /* [L], search only: find pairs up to H + skin and keep them until a
-                             particle has moved skin / 2; results are exact throughout */
-    double period[3];     /* [L] per axis; 0: open; else >= 2 (H + skin), positions anywhere: of
-                             fl(fl(x_i - x_j) + k period) the smallest counts */
+    sphg_type precision; /* of all fields and results; 0: as the positions. F32 beside F64
+                            positions: differences are taken before narrowing. Never wider */
+    int32_t list_free;   /* search only; 1: keep no pairs, each operator finds them: for one or
+                            two uses. Without a skin */
+    double skin;         /* [L], search only: find pairs up to H + skin and keep them until a
+                            particle has moved skin / 2; results are exact throughout */
+    double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin), positions anywhere: of
+                            fl(fl(x_i - x_j) + k period) the smallest counts */
 } sphg_geometry;
 
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
@@ -265,8 +264,8 @@ typedef struct sphg_lists {
     const int32_t *lengths;     /* ... and its number of indices */
     /* or a function that returns the length; called by the workers, needs no locking per worker */
     int32_t (*row)(int32_t target, int32_t worker, const int32_t **indices, void *user);
-    void *user;                 /* handed to row */
-    int32_t index_mask;         /* bits of an index that count (LAMMPS: NEIGHMASK); 0: all */
+    void *user;         /* handed to row */
+    int32_t index_mask; /* bits of an index that count (LAMMPS: NEIGHMASK); 0: all */
 } sphg_lists;
 
 typedef struct sphg_neighbors_info {
@@ -283,7 +282,7 @@ SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is igno
 
 /* Copies the positions and finds all pairs with r < H, exactly those of brute force. Reads
  * dimension and support_radius of scheme. Call it each step: it does what the skin demands.
- * Errors: ARGUMENT, TYPE, NOT_FINITE (old state kept); MEMORY (build again).
+ * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY (build again).
  * Cost: time and memory O(n + pairs) for any extent of the domain. */
 SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
                                            const sphg_scheme *scheme,
@@ -291,18 +290,21 @@ SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors
 
 /* Copies the positions and borrows your lists: leave them unchanged until the next build or
  * destroy. Pairs with r >= H add nothing. Indices are checked as operators read them.
- * Errors: ARGUMENT, TYPE, NOT_FINITE (old state kept); MEMORY (build again). Cost: O(n). */
+ * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY (build again). Cost:
+ * O(n). */
 SPHG_API sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
                                               const sphg_scheme *scheme,
                                               const sphg_geometry *geometry,
                                               const sphg_lists *lists);
 
-SPHG_API sphg_result sphg_neighbors_get_info(sphg_context *context,
-                                             const sphg_neighbors *neighbors,
+/* What the object holds; counts are 0 before the first build. Errors: ARGUMENT, BUSY. Cost: O(1).
+ */
+SPHG_API sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors *neighbors,
                                              sphg_neighbors_info *info);
 
 /* order[k]: the k-th source on the library's path through space, source_count items. Sort your
- * particles by it now and then: operators are fastest on data in this order. */
+ * particles by it now and then: operators are fastest on data in this order.
+ * Errors: ARGUMENT, STATE, BUSY; with lists of yours MEMORY. Cost: a copy; with lists a sort. */
 SPHG_API sphg_result sphg_neighbors_get_order(sphg_context *context,
                                               const sphg_neighbors *neighbors, int32_t *order);
 
@@ -389,7 +391,9 @@ typedef struct sphg_request {
 SPHG_API sphg_result sphg_evaluate(sphg_context *context, const sphg_scheme *scheme,
                                    const sphg_request *request);
 
-/* ---- Short ways, for targets that are part of their only source set ---------------------- */
+/* ---- Short ways, for targets that are part of their only source set ----------------------
+ * Requests of one source set and at most one field: errors, cost, precision and aliasing as at
+ * sphg_evaluate(). */
 
 /* C_i into correction; rank: U8, or absent. Needs no sources->correction, reads none. */
 SPHG_API sphg_result sphg_correction(sphg_context *context, const sphg_scheme *scheme,
@@ -425,11 +429,11 @@ SPHG_API sphg_result sphg_force(sphg_context *context, const sphg_scheme *scheme
 
 /* Your arrays; what is NULL or absent is not wanted. */
 typedef struct sphg_pairs {
-    int64_t *offsets;       /* selected targets + 1 items, from 0 */
-    int32_t *indices;       /* j, ascending within a row */
-    sphg_view gradient;     /* G_ij [1/L], a vector per pair */
-    int64_t capacity;       /* pairs that indices and gradient can hold */
-    int64_t count;          /* out: pairs there are */
+    int64_t *offsets;   /* selected targets + 1 items, from 0 */
+    int32_t *indices;   /* j, ascending within a row */
+    sphg_view gradient; /* G_ij [1/L], a vector per pair */
+    int64_t capacity;   /* pairs that indices and gradient can hold */
+    int64_t count;      /* out: pairs there are */
 } sphg_pairs;
 
 /* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: of everything (first
@@ -464,15 +468,19 @@ SPHG_API sphg_result sphg_invert_moments(sphg_context *context, const sphg_schem
                                          int32_t count, sphg_view moments, sphg_view volume,
                                          const sphg_inversion *wanted);
 
-/* A = Q diag(values) Q^T of SYM_TENSOR items; values descending, column k of Q for value k,
- * det Q = 1. Error: a few roundings of the largest |value|. */
+/* A = Q diag(values) Q^T of SYM_TENSOR items, cyclic Jacobi; values (VECTOR) descending, column k
+ * of vectors (TENSOR) for value k, det Q = 1. Either may be absent; outputs overlap nothing. Error:
+ * a few roundings of the largest |value|. NaN or Inf spoils its own item alone.
+ * Errors: ARGUMENT, TYPE. Cost: O(count). */
 SPHG_API sphg_result sphg_eigen(sphg_context *context, int32_t dimension, int32_t count,
                                 sphg_view matrices, sphg_view values, sphg_view vectors);
 
-/* A = U diag(sigma) V^T of 3 x 3 TENSOR items; sigma descending, >= 0. On deficient matrices u and
- * v of a vanishing sigma have no common sign: never threshold with them, use invert_moments. */
-SPHG_API sphg_result sphg_svd(sphg_context *context, int32_t count, sphg_view matrices,
-                              sphg_view u, sphg_view sigma, sphg_view v);
+/* A = U diag(sigma) V^T of 3 x 3 TENSOR items, one-sided Jacobi; sigma (VECTOR) descending, >= 0; U
+ * and V (TENSOR) orthogonal. Each may be absent; outputs overlap nothing. On deficient matrices u
+ * and v of a vanishing sigma have no common sign: never threshold with them, use invert_moments.
+ * Errors: ARGUMENT, TYPE. Cost: O(count). */
+SPHG_API sphg_result sphg_svd(sphg_context *context, int32_t count, sphg_view matrices, sphg_view u,
+                              sphg_view sigma, sphg_view v);
 
 #ifdef __cplusplus
 }
