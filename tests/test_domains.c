@@ -94,6 +94,25 @@ static void lengths_of_any_bits_have_the_pairs_of_brute_force(const test_case *t
     }
 }
 
+/* A box of exactly twice the reach: two particles a rounding more than half a box apart meet
+ * through the other side, a rounding inside the reach. The quotient that counts boxes may round to
+ * a tie. */
+static void halves_of_the_smallest_box_meet_through_its_side(const test_case *test)
+{
+    sphg_context *context = fixture_context();
+    sphg_neighbors *neighbors = pairs_neighbors(context);
+    for (int k = 0; k < 200; k++) {
+        scene particles = empty_scene(test, 2);
+        const double given = 1.5 + 0.5 * k / 200 + 0x1p-30;
+        const double reach = particles.is_double ? given : (double)(float)given;
+        memset(particles.sources, 0, 2 * (size_t)test->dimension * sizeof(double));
+        particles.sources[test->dimension] =
+            particles.is_double ? nextafter(reach, 9) : (double)nextafterf((float)reach, 9);
+        particles.period[0] = 2 * reach;
+        rows_require_search_exact(context, neighbors, &particles, reach, "half a box apart");
+    }
+}
+
 /* A lattice that fills the box looks the same from each of its points. */
 static void periodic_lattice_has_no_boundary(const test_case *test)
 {
@@ -306,6 +325,7 @@ static const test_entry entries[] = {
     EACH(periodic_boxes_have_the_pairs_of_brute_force),
     EACH(positions_may_lie_outside_the_box),
     EACH(lengths_of_any_bits_have_the_pairs_of_brute_force),
+    EACH(halves_of_the_smallest_box_meet_through_its_side),
     EACH(periodic_lattice_has_no_boundary),
     EACH(periodic_targets_need_not_be_sources),
     EACH(periods_shorter_than_twice_the_reach_are_refused),
