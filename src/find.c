@@ -127,7 +127,7 @@ int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbo
     const int32_t first = neighbors->part_of ? first_row_staged(around, staged) : 0;
     for (int32_t k = begin; k < end; ++k) {
         const int32_t own = own_row(neighbors, k);
-        self[k - begin] = own < 0 ? -1 : staged + own - first;
+        self[k - begin] = own < 0 ? -1 : SPHGI_ID_STEP * (staged + own - first);
     }
     find.self = self;
     find.runs = runs->count;
@@ -143,7 +143,8 @@ int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbo
 static void take_slice(const struct sphgi_finder *finder, struct sphgi_find *find, int32_t begin,
                        int32_t count, int32_t own, sphgi_take *take, void *data)
 {
-    const int32_t self = own >= begin && own < begin + count ? own - begin + 1 : -1;
+    const int32_t self =
+        own >= begin && own < begin + count ? SPHGI_ID_STEP * (own - begin + 1) : -1;
     find->self = &self;
     find->runs = 1;
     find->run_begin[0] = 1;
@@ -152,7 +153,7 @@ static void take_slice(const struct sphgi_finder *finder, struct sphgi_find *fin
     finder->passes->find(find, finder->ids, finder->lengths);
     const int32_t found = finder->lengths[0];
     for (int32_t k = found - 1; k >= 0; --k) /* in place: widening from behind */
-        rows[k] = (uint32_t)(begin + finder->ids[k] - 1);
+        rows[k] = (uint32_t)(begin + finder->ids[k] / SPHGI_ID_STEP - 1);
     take(data, rows, found);
 }
 

@@ -4,7 +4,7 @@
 #include "neighbors.h"
 
 enum {
-    SPHGI_STAGED_MOST = 65000, /* numbers that 16-bit ids can take; more take the wide way */
+    SPHGI_STAGED_MOST = 32000, /* what 16-bit ids can tell apart; more take the wide way */
     SPHGI_UNITS_MOST = 1 << 18 /* ids of a block that are collected before they are stored */
 };
 

@@ -4,8 +4,9 @@
 #include "grid.h"
 
 /* Found pairs, target by target in grid order. A target's ids are padded to a multiple of SPHGI_PAD
- * with 0. Normally they are staged numbers (struct sphgi_surroundings) in 16 bits; in a clump too
- * dense for that ("wide" block) they are 32-bit numbers of rows, and behind each target's length.
+ * with 0. Normally they are staged numbers (struct sphgi_surroundings) times SPHGI_ID_STEP in 16
+ * bits; in a clump too dense for that ("wide" block) they are 32-bit numbers of rows, and behind
+ * each target's length.
  */
 struct sphgi_found {
     struct sphgi_buffer block_list;  /* int64_t per block of the targets: place in ids, in units */

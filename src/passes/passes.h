@@ -15,6 +15,8 @@
 enum {
     SPHGI_ROW = 4,        /* numbers in a row */
     SPHGI_PAD = 8,        /* pairs of a target are padded to a multiple of this */
+    SPHGI_ID_STEP = 2,    /* 16-bit ids are staged numbers times this: a row of f32 then stands at
+                             base + 8 * id [byte], which needs no shift */
     SPHGI_PIECE = 512,    /* pairs in a piece, at most */
     SPHGI_LANES_MOST = 8, /* of any scalar type and instruction set */
     SPHGI_FIND_MOST = 16  /* targets that share one set of candidates */
@@ -54,8 +56,8 @@ struct sphgi_piece {
     int32_t begin[SPHGI_LANES_MOST + 1]; /* multiples of SPHGI_PAD */
     int32_t count[SPHGI_LANES_MOST];     /* without the padding */
     bool fresh[SPHGI_LANES_MOST];        /* the lane's first: its sums begin at 0 */
-    const void *ids[SPHGI_LANES_MOST];   /* row numbers of the pairs, padded */
-    bool wide;                           /* ids are uint32_t, else uint16_t */
+    const void *ids[SPHGI_LANES_MOST];   /* of the pairs, padded */
+    bool wide;                           /* ids are uint32_t row numbers, else uint16_t ids */
 };
 
 /* How pairs become x_ij. */
@@ -110,7 +112,7 @@ struct sphgi_find {
     int32_t run_begin[9], run_length[9], runs;
     const void *targets; /* rows */
     int32_t target_count;
-    const int32_t *self; /* per target: its own staged number, or -1 */
+    const int32_t *self; /* per target: its own id, or -1 */
     double reach;
     double slack; /* rounding of differences between images far apart [L] */
     double period[3];

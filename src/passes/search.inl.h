@@ -132,7 +132,7 @@ SPHGI_TEMPLATE void collect(const struct sphgi_find *find, struct candidates *c,
             pack_numbers(c->y + n, y, order);
             pack_numbers(c->z + n, z, order);
             for (int l = 0; l < SPHGI_PAD; ++l)
-                own[l] = (uint16_t)(k + l);
+                own[l] = (uint16_t)(SPHGI_ID_STEP * (k + l));
             pack_ids(c->ids + n, own, bits, order);
             n += __builtin_popcount(bits);
         }
@@ -152,7 +152,7 @@ SPHGI_TEMPLATE int32_t own_candidate(const struct sphgi_find *find, const struct
                                      int32_t self)
 {
     for (int32_t run = 0; self >= 0 && run < find->runs; ++run) {
-        const int32_t offset = self - find->run_begin[run];
+        const int32_t offset = self / SPHGI_ID_STEP - find->run_begin[run];
         if (offset < 0 || offset >= find->run_length[run])
             continue;
         for (int32_t k = c->run_begin[run]; k < c->run_begin[run + 1]; ++k)

@@ -228,12 +228,12 @@ SPHGI_TEMPLATE struct four transpose(const real *const *row)
 }
 #endif
 
-/* Rows ids[0 .. LANES) of rows. */
+/* The rows that ids[0 .. LANES) stand for. */
 SPHGI_TEMPLATE struct four gather_rows(const real *rows, const void *ids, bool wide)
 {
     const real *row[LANES];
     for (int k = 0; k < LANES; ++k)
-        row[k] = rows + SPHGI_ROW * (size_t)(wide ? ((const uint32_t *)ids)[k]
-                                                  : ((const uint16_t *)ids)[k]);
+        row[k] = wide ? rows + SPHGI_ROW * (size_t)((const uint32_t *)ids)[k]
+                      : rows + SPHGI_ROW / SPHGI_ID_STEP * (size_t)((const uint16_t *)ids)[k];
     return transpose(row);
 }
