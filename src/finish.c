@@ -26,63 +26,56 @@ struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
     }
 }
 
-/* A factor as mantissa times powers of two: multiplying with those is exact, also where the factor
- * itself is so large or small that a table could not hold its result. */
-struct split {
-    double mantissa, power[2];
-};
-
-static struct split split_of(double factor)
+void sphgi_open_shares(struct sphgi_worker *w)
 {
-    int exponent;
-    const double mantissa = frexp(factor, &exponent);
-    const int half = exponent / 2;
-    return (struct split){mantissa, {ldexp(1, half), ldexp(1, exponent - half)}};
-}
-
-/* The numbers of a table that share a factor. */
-struct share {
-    int32_t first, count;
-    double factor;
-};
-
-static struct share share_of(const struct sphgi_plan *plan, int k)
-{
+    const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
     const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
     const int32_t values = plan->classic ? plan->dimension + 1 : width;
-    return k == 0 ? (struct share){0, values, scales.value}
-                  : (struct share){values, width - values, scales.slope};
+    for (int k = 0; k < 2; ++k) {
+        int exponent;
+        struct sphgi_share *share = &w->share[k];
+        share->first = k ? values : 0;
+        share->count = k ? width - values : values;
+        share->mantissa = frexp(k ? scales.slope : scales.value, &exponent);
+        if (share->mantissa == 0.5) { /* a power of two: nothing is rounded */
+            share->mantissa = 1;
+            --exponent;
+        }
+        share->power[0] = ldexp(1, exponent / 2);
+        share->power[1] = ldexp(1, exponent - exponent / 2);
+    }
 }
 
 /* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
  * holds, if one is wanted. */
 static void round_as_table(struct sphgi_worker *w, bool wanted)
 {
-    const struct sphgi_plan *plan = w->sweep->plan;
-    for (int k = 0; k <= plan->classic; ++k) {
-        const struct share share = share_of(plan, k);
-        const struct split split = split_of(share.factor);
-        char *ours = sphgi_lane(w, w->coefficients, share.first);
-        char *raw = sphgi_lane(w, w->raw, share.first);
-        w->passes->scale(share.count, ours, split.mantissa, NULL, raw);
-        w->passes->divide(share.count, raw, split.mantissa, ours);
+    for (int k = 0; k < 2 && w->share[k].count; ++k) {
+        const struct sphgi_share *share = &w->share[k];
+        const bool exact = share->mantissa == 1;
+        char *ours = sphgi_lane(w, w->coefficients, share->first);
+        char *raw = sphgi_lane(w, w->raw, share->first);
+        if (!exact || wanted)
+            w->passes->scale(share->count, ours, share->mantissa, NULL, raw);
+        if (!exact)
+            w->passes->divide(share->count, raw, share->mantissa, ours);
         for (int p = 0; wanted && p < 2; ++p)
-            w->passes->scale(share.count, raw, split.power[p], NULL, raw);
+            if (share->power[p] != 1)
+                w->passes->scale(share->count, raw, share->power[p], NULL, raw);
     }
 }
 
 static void take_from_table(struct sphgi_worker *w)
 {
-    const struct sphgi_plan *plan = w->sweep->plan;
-    for (int k = 0; k <= plan->classic; ++k) {
-        const struct share share = share_of(plan, k);
-        const struct split split = split_of(share.factor);
-        char *raw = sphgi_lane(w, w->raw, share.first);
+    for (int k = 0; k < 2 && w->share[k].count; ++k) {
+        const struct sphgi_share *share = &w->share[k];
+        char *raw = sphgi_lane(w, w->raw, share->first);
         for (int p = 0; p < 2; ++p)
-            w->passes->scale(share.count, raw, 1 / split.power[p], NULL, raw);
-        w->passes->divide(share.count, raw, split.mantissa,
-                          sphgi_lane(w, w->coefficients, share.first));
+            if (share->power[p] != 1)
+                w->passes->scale(share->count, raw, 1 / share->power[p], NULL, raw);
+        w->passes->divide(share->count, raw, share->mantissa,
+                          sphgi_lane(w, w->coefficients, share->first));
     }
 }
 
@@ -90,7 +83,7 @@ void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *colum
 {
     w->passes->load_lanes(columns, w->group.target, to);
     w->tally->bad_volume |= !w->passes->valid_volumes(to);
-    w->passes->scale(1, to, w->gather.inverse_volume, NULL, to);
+    w->passes->scale(1, to, sphgi_volume_unit(w->sweep), NULL, to);
 }
 
 static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verdict)
@@ -106,7 +99,7 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
         scale = w->extra;
     }
     w->passes->invert(&w->threshold, sphgi_lane(w, w->reduced, plan->moment_sum), scale,
-                      w->coefficients, w->lambda_min, verdict);
+                      w->coefficients, plan->lambda_min.count ? w->lambda_min : NULL, verdict);
 }
 
 /* Weight of the target itself, if it is a source. */
@@ -114,7 +107,7 @@ static void self_weight(struct sphgi_worker *w, char *to)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-    w->passes->fill(plan->own_set < 0 ? 0 : at_zero, to);
+    w->passes->fill(w->passes->lanes, plan->own_set < 0 ? 0 : at_zero, to);
     if (plan->own_set >= 0 && plan->weighted) {
         sphgi_load_volume(w, &plan->own_volume, to);
         w->passes->scale(1, to, at_zero, NULL, to);
@@ -131,23 +124,23 @@ static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *ve
         w->passes->store_lanes(&plan->lambda_min, g->target, g->lanes, w->lambda_min, false);
     for (int32_t l = 0; plan->rank.count && l < g->lanes; ++l)
         *(uint8_t *)(uintptr_t)(plan->rank.at[0] + g->target[l] * plan->rank.stride) =
-            verdict->rank[l];
+            verdict->decomposed ? verdict->rank[l] : (uint8_t)plan->dimension;
 }
 
 void sphgi_finish_corrections(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    struct sphgi_verdict verdict;
+    struct sphgi_verdict verdict = {.lanes = w->group.lanes};
     if (plan->classic) {
         self_weight(w, w->self);
-        w->passes->invert_classic(&w->threshold,
-                                  sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
-                                  sphgi_lane(w, w->reduced, plan->moment_sum), w->self,
-                                  w->coefficients, w->lambda_min, &verdict);
+        w->passes->invert_classic(
+            &w->threshold, sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
+            sphgi_lane(w, w->reduced, plan->moment_sum), w->self, w->coefficients,
+            plan->lambda_min.count ? w->lambda_min : NULL, &verdict);
     } else
         invert_linearised(w, &verdict);
     round_as_table(w, plan->correction.count > 0);
-    sphgi_tally_verdict(w->tally, &verdict, w->lambda_min, plan->type, w->group.lanes);
+    sphgi_tally_verdict(w->tally, &verdict, plan->dimension);
     store_verdict(w, &verdict);
 }
 
@@ -170,7 +163,7 @@ void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
     const int32_t d = w->sweep->plan->dimension;
     self_weight(w, w->self);
     for (int32_t k = 0; k < d; ++k)
-        w->passes->scale(1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)), w->gather.inverse_h,
+        w->passes->scale(1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)), w->inverse_h,
                          w->self, sphgi_lane(w, gradient, k));
 }
 
@@ -186,7 +179,7 @@ static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_p
 static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const double inverse_h = w->gather.inverse_h;
+    const double inverse_h = w->inverse_h;
     const bool multiply = plan->corrects && !plan->classic;
     w->passes->apply(plan->dimension, field->components, multiply ? w->coefficients : NULL,
                      sphgi_lane(w, w->reduced, field->sum), inverse_h, w->jacobian);
@@ -233,7 +226,7 @@ static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_p
         own_weight = w->volume;
     p->add_outer(d, field->components, sphgi_lane(w, w->at_target, field->at_target), w->extra,
                  own_weight, w->jacobian);
-    const double factor = w->gather.inverse_h * (symmetric ? 1 : volume);
+    const double factor = w->inverse_h * (symmetric ? 1 : volume);
     p->scale(n, w->jacobian, factor, !symmetric && volume_inside ? w->volume : NULL, w->jacobian);
 }
 

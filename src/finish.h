@@ -3,6 +3,9 @@
 #define SPHGI_FINISH_H
 #include "worker.h"
 
+/* worker->share: once per worker. */
+void sphgi_open_shares(struct sphgi_worker *worker);
+
 /* worker->coefficients: from the sums, or from the table; writes what is wanted of them. */
 void sphgi_finish_corrections(struct sphgi_worker *worker);
 void sphgi_load_corrections(struct sphgi_worker *worker);

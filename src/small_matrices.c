@@ -75,8 +75,8 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
     LANES_BUFFER(lambda_min, 1);
     for (int32_t g = begin; g < end; ++g) {
         int32_t items[SPHGI_LANES_MOST];
-        struct sphgi_verdict verdict;
         const int32_t count = items_of(b, g, items);
+        struct sphgi_verdict verdict = {.lanes = count};
         p->load_lanes(&b->in, items, moments);
         p->scale(numbers, moments, factor, NULL, moments);
         if (b->volume.count) {
@@ -87,13 +87,14 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
         p->invert(&b->threshold, moments, b->volume.count ? volume : NULL, correction, lambda_min,
                   &verdict);
         p->scale(numbers, correction, factor, NULL, correction);
-        sphgi_tally_verdict(tally, &verdict, lambda_min, b->type, count);
+        sphgi_tally_verdict(tally, &verdict, b->dimension);
         if (b->out[0].count)
             p->store_lanes(&b->out[0], items, count, correction, false);
         if (b->out[1].count)
             p->store_lanes(&b->out[1], items, count, lambda_min, false);
         for (int32_t l = 0; b->rank.count && l < count; ++l)
-            *(uint8_t *)(uintptr_t)(b->rank.at[0] + items[l] * b->rank.stride) = verdict.rank[l];
+            *(uint8_t *)(uintptr_t)(b->rank.at[0] + items[l] * b->rank.stride) =
+                verdict.decomposed ? verdict.rank[l] : (uint8_t)b->dimension;
     }
 }
 
@@ -189,7 +190,7 @@ static sphg_result run_inversion(struct sphgi_checker checker, struct batch *b, 
     for (int32_t t = 0; t < context->threads; ++t)
         sphgi_tally_add(&total, &b->tallies[t]);
     if (stats)
-        *stats = total.stats;
+        *stats = sphgi_tally_stats(&total, b->type);
     if (total.bad_volume && !context->config.trusted)
         return sphgi_fail(context, SPHG_ERROR_VOLUME, "%s: a volume is negative or not finite",
                           checker.function);
@@ -212,7 +213,7 @@ sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme
         result = begin_batch(checker, &moments, "moments", count, &batch);
     batch.dimension = checked.dimension;
     batch.threshold =
-        (struct sphgi_threshold){checked.policy, checked.threshold, checked.dimension};
+        (struct sphgi_threshold){checked.policy, checked.threshold, checked.dimension, 1};
     if (!result)
         result = check_inversion(checker, &checked, &moments, &volume, wanted, &batch);
     if (!result)

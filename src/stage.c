@@ -1,5 +1,6 @@
 #include "stage.h"
 #include "parallel.h"
+#include <math.h>
 #include <string.h>
 
 enum { PACK_GRAIN = 4096 /* particles */ };
@@ -51,24 +52,47 @@ static void stage_positions(struct sphgi_worker *w, const struct sphgi_surroundi
     const struct sphgi_sweep *sweep = w->sweep;
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t size = row_size(n->position_type);
+    const char *ready = !sweep->volumes ? n->sources.rows.data
+                        : sweep->packed ? sweep->packed_positions
+                                        : NULL;
     char *to = w->staged_positions;
     memset(to, 0, size);
     to += size;
     for (int32_t r = 0; r < around->ranges; ++r) {
         const size_t count = (size_t)around->count[r];
-        if (sweep->packed)
-            memcpy(to, sweep->packed_positions + (size_t)around->begin[r] * size, count * size);
+        if (ready)
+            memcpy(to, ready + (size_t)around->begin[r] * size, count * size);
         else if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
-                     n->sources.rows.data, &sweep->set->volume, n->sources.order.data,
-                     around->begin[r], around->count[r], to))
+                     n->sources.rows.data, &sweep->set->volume, sphgi_volume_unit(sweep),
+                     n->sources.order.data, around->begin[r], around->count[r], to))
             w->tally->bad_volume = true;
         to += count * size;
     }
 }
 
+/* Moves the dummy away from everything around the block, so that padding has no weight. False: its
+ * distance, squared, could leave the range of the type. */
+static bool move_away(struct sphgi_worker *w, double reach)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const bool wide = sweep->set->neighbors->position_type == SPHG_F64;
+    const double most = sweep->plan->type == SPHG_F64 ? 0x1p500 : 0x1p60;
+    const double near = wide
+                            ? ((const double *)(const void *)w->staged_positions)[SPHGI_ROW]
+                            : (double)((const float *)(const void *)w->staged_positions)[SPHGI_ROW];
+    const double distance = fmax(64 * reach, fabs(near));
+    const double far = near > 0 ? near - distance : near + distance;
+    if (wide)
+        *(double *)(void *)w->staged_positions = far;
+    else
+        *(float *)(void *)w->staged_positions = (float)far;
+    return distance < most;
+}
+
 void sphgi_stage_block(struct sphgi_worker *w, const struct sphgi_surroundings *around)
 {
     const struct sphgi_sweep *sweep = w->sweep;
+    const sphg_neighbors *n = sweep->set->neighbors;
     const size_t stream_size = (size_t)around->staged * row_size(sweep->plan->type);
     stage_positions(w, around);
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
@@ -77,6 +101,8 @@ void sphgi_stage_block(struct sphgi_worker *w, const struct sphgi_surroundings *
         stage_items(w, around);
     w->gather.rows = w->staged_positions;
     w->gather.dummy = 0;
+    w->gather.guarded = w->gather.periodic || w->gather.superset || around->staged < 2 ||
+                        !move_away(w, n->radius + n->skin);
     w->local = false;
 }
 
@@ -94,6 +120,7 @@ void sphgi_use_local_rows(struct sphgi_worker *w)
     }
     w->gather.rows = w->staged_positions;
     w->gather.dummy = SPHGI_PIECE;
+    w->gather.guarded = true;
     w->items = (const int32_t *)(const void *)w->local_items;
     w->local = true;
 }
@@ -105,6 +132,7 @@ void sphgi_use_packed_rows(struct sphgi_worker *w)
     const size_t size = row_size(sweep->plan->type);
     w->gather.rows = sweep->packed_positions;
     w->gather.dummy = (uint32_t)(rows - 1);
+    w->gather.guarded = true;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
         w->rows[s] = sweep->packed_rows + (size_t)s * rows * size;
 }
@@ -133,9 +161,10 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
                                  stream->columns.count ? stream->count : 0,
                                  packing->rows + at * size);
     }
-    if (!sweep->position_passes->stage[type == SPHG_F64](
-            n->sources.rows.data, &sweep->set->volume, packing->order, begin, end - begin,
-            packing->positions + (size_t)begin * row_size(n->position_type)))
+    if (packing->positions &&
+        !sweep->position_passes->stage[type == SPHG_F64](
+            n->sources.rows.data, &sweep->set->volume, sphgi_volume_unit(sweep), packing->order,
+            begin, end - begin, packing->positions + (size_t)begin * row_size(n->position_type)))
         atomic_store(&packing->bad_volume, true);
 }
 
@@ -145,22 +174,25 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
     const sphg_neighbors *n = sweep->set->neighbors;
     const sphg_type type = sweep->plan->type;
     const size_t rows = (size_t)n->source_count + 1, streams = (size_t)sweep->plan->stream_count;
+    const bool positions = sweep->volumes || n->kind == SPHGI_HOST_LISTS;
     const size_t positions_size =
-        sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT);
+        positions ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
+    if (!positions && !streams)
+        return SPHG_OK;
     if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed,
                        positions_size + streams * rows * row_size(type), 1))
         return SPHG_ERROR_MEMORY;
     char *memory = sweep->context->packed.data;
     struct packing packing = {.sweep = sweep,
-                              .positions = memory,
+                              .positions = positions ? memory : NULL,
                               .rows = memory + positions_size,
                               .order = n->kind == SPHGI_HOST_LISTS ? NULL : n->sources.order.data};
     atomic_store(&packing.bad_volume, false);
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
     for (size_t s = 0; s < streams; ++s) /* the dummy rows */
         memset(packing.rows + ((s + 1) * rows - 1) * row_size(type), 0, row_size(type));
-    memset(packing.positions + (rows - 1) * row_size(n->position_type), 0,
-           row_size(n->position_type));
+    if (positions)
+        memset(memory + (rows - 1) * row_size(n->position_type), 0, row_size(n->position_type));
     sweep->packed_positions = packing.positions;
     sweep->packed_rows = packing.rows;
     *bad_volume |= atomic_load(&packing.bad_volume);

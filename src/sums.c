@@ -1,5 +1,6 @@
 #include "sums.h"
 #include "finish.h"
+#include "view.h"
 #include <string.h>
 
 char *sphgi_partial(const struct sphgi_worker *w, int32_t sum)
@@ -8,15 +9,21 @@ char *sphgi_partial(const struct sphgi_worker *w, int32_t sum)
     return w->partial + (size_t)sum * lanes * lanes * sphgi_size_of_type(w->sweep->plan->type);
 }
 
+/* Classic gradients are whole; those of the linearised methods still lack C_i. */
+static enum sphgi_vectors vectors_of(const struct sphgi_worker *w)
+{
+    return w->sweep->plan->classic ? SPHGI_GRADIENTS : SPHGI_FACTORS;
+}
+
 static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *field,
-                     enum sphgi_array gradient, const char *at_target)
+                     enum sphgi_vectors vectors, const char *at_target)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     for (int32_t k = 0; k < field->streams; ++k) {
         const int32_t first = k * SPHGI_ROW;
         const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
-        w->passes->sum_field(&w->piece, plan->dimension, gradient, w->rows[field->stream + k],
-                             count, sphgi_lane(w, (char *)(uintptr_t)at_target, first),
+        w->passes->sum_field(&w->piece, plan->dimension, vectors, w->rows[field->stream + k], count,
+                             sphgi_lane(w, (char *)(uintptr_t)at_target, first),
                              sphgi_partial(w, field->sum + first * plan->dimension));
     }
 }
@@ -25,7 +32,8 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
 static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const char *own = sphgi_lane(w, w->at_target, field->at_target);
-    sum_rows(w, field, SPHGI_GX, field->form == SPHG_DIFFERENCE ? own : w->zeros);
+    const enum sphgi_vectors vectors = vectors_of(w);
+    sum_rows(w, field, vectors, field->form == SPHG_DIFFERENCE ? own : w->zeros);
 }
 
 /* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
@@ -52,10 +60,38 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && field->form == (symmetric ? SPHG_SYMMETRIC : SPHG_ADJOINT))
-            sum_rows(w, field, SPHGI_TX, w->zeros);
+            sum_rows(w, field, SPHGI_TRANSPOSED, w->zeros);
     }
-    w->passes->sum_vectors(&w->piece, plan->dimension, symmetric ? density : NULL,
+    w->passes->sum_vectors(&w->piece, plan->dimension, vectors_of(w), symmetric ? density : NULL,
                            sphgi_partial(w, plan->vector_sum[symmetric]));
+}
+
+/* Targets that are the sources of this set, with the same values: these stand packed already. */
+bool sphgi_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const struct sphgi_stream *stream = &sweep->set->streams[field->stream];
+    return sweep->packed && sweep->set_number == sweep->plan->own_set && field->streams == 1 &&
+           sweep->set->neighbors->same && field->target.stride == stream->columns.stride &&
+           memcmp(field->target.at, stream->columns.at,
+                  (size_t)field->components * sizeof field->target.at[0]) == 0;
+}
+
+static void load_target(struct sphgi_worker *w, const struct sphgi_field_plan *field, char *to)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const size_t size = sphgi_size_of_type(sweep->plan->type);
+    if (!field->target.count) {
+        memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
+    } else if (sphgi_targets_in_rows(w, field)) {
+        const size_t rows = (size_t)sweep->set->neighbors->source_count + 1;
+        const struct sphgi_columns columns = sphgi_dense_columns(
+            sweep->packed_rows + (size_t)field->stream * rows * SPHGI_ROW * size, field->components,
+            SPHGI_ROW, sweep->plan->type);
+        w->passes->load_lanes(&columns, w->group.place, to);
+    } else {
+        w->passes->load_lanes(&field->target, w->group.target, to);
+    }
 }
 
 void sphgi_load_targets(struct sphgi_worker *w)
@@ -66,14 +102,8 @@ void sphgi_load_targets(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_group *g = &w->group;
     const struct sphgi_passes *p = w->passes;
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        char *to = sphgi_lane(w, w->at_target, field->at_target);
-        if (field->target.count)
-            p->load_lanes(&field->target, g->target, to);
-        else
-            memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
-    }
+    for (int32_t k = 0; k < plan->field_count; ++k)
+        load_target(w, &plan->fields[k], sphgi_lane(w, w->at_target, plan->fields[k].at_target));
     if (plan->transposes[0] || plan->transposes[1]) {
         if (plan->target_volume.count)
             sphgi_load_volume(w, &plan->target_volume, w->volume);
@@ -125,9 +155,9 @@ static void write_pairs(struct sphgi_worker *w)
     const struct sphgi_piece *piece = &w->piece;
     if (pairs->gradient.count)
         w->passes->pair_gradients(
-            piece, w->sweep->plan->dimension,
+            piece, w->sweep->plan->dimension, vectors_of(w),
             w->sweep->plan->classic || !w->sweep->plan->corrects ? NULL : w->coefficients,
-            w->gather.inverse_h);
+            w->inverse_h);
     for (int32_t p = 0; p < piece->parts; ++p) {
         const int32_t lane = piece->lane[p];
         const int32_t row = pairs->row_of_target[w->group.target[lane]];
@@ -143,27 +173,32 @@ static void write_pairs(struct sphgi_worker *w)
     }
 }
 
+static void weigh(struct sphgi_worker *w, int32_t count)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    if (plan->classic || plan->wants_value || plan->mean_volume)
+        p->shape_weights(&w->shape, w->arrays, count);
+    if (plan->classic)
+        return;
+    if (plan->wants_value || plan->mean_volume)
+        p->shape_values(w->arrays, count);
+    if (plan->mean_volume && (w->summing & SPHGI_SUM_MOMENTS))
+        p->sum_volume(&w->piece, sphgi_partial(w, plan->volume_sum));
+    if (plan->differentiates || plan->computes) /* takes the place of the weights */
+        p->shape_factors(&w->shape, w->arrays, count);
+}
+
 void sphgi_evaluate_piece(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
     struct sphgi_piece *piece = &w->piece;
-    const int32_t count = piece->begin[piece->parts];
-    if (plan->classic || plan->wants_value || plan->mean_volume)
-        p->shape_weights(&w->shape, piece->arrays, count);
-    if (!plan->classic && (plan->wants_value || plan->mean_volume))
-        p->shape_values(piece->arrays, count);
-    if (!plan->classic && (plan->differentiates || plan->computes))
-        p->shape_vectors(&w->shape, piece->arrays, count);
-    if (w->summing & SPHGI_SUM_MOMENTS) {
-        if (plan->classic)
-            p->sum_classic(piece, plan->dimension, plan->weighted,
-                           sphgi_partial(w, plan->moment_sum));
-        else
-            p->sum_moments(piece, plan->dimension, sphgi_partial(w, plan->moment_sum));
-        if (plan->mean_volume)
-            p->sum_volume(piece, sphgi_partial(w, plan->volume_sum));
-    }
+    weigh(w, piece->begin[piece->parts]);
+    if ((w->summing & SPHGI_SUM_MOMENTS) && plan->classic)
+        p->sum_classic(piece, plan->dimension, plan->weighted, sphgi_partial(w, plan->moment_sum));
+    else if ((w->summing & SPHGI_SUM_MOMENTS) && plan->computes)
+        p->sum_moments(piece, plan->dimension, sphgi_partial(w, plan->moment_sum));
     if (w->summing & SPHGI_SUM_FIELDS)
         sum_fields(w);
     if ((w->summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)

@@ -36,6 +36,30 @@ static void close_workers(const struct sphgi_sweep *sweep, struct sphgi_tally *t
         sphgi_tally_add(total, (const void *)(sweep->memory + (size_t)t * sweep->memory_each));
 }
 
+static bool is_bad_volume(const struct sphgi_columns *volume, sphg_type type, int64_t item,
+                          double *value)
+{
+    const char *at = volume->at[0] + item * volume->stride;
+    *value = type == SPHG_F64 ? *(const double *)(const void *)at
+                              : (double)*(const float *)(const void *)at;
+    return !(*value >= 0) || !isfinite(*value);
+}
+
+/* One volume for all sources needs no place in their rows; rounded like those that have one. */
+static void look_at_volumes(struct sphgi_sweep *sweep, struct sphgi_tally *tally)
+{
+    const struct sphgi_columns *volume = &sweep->set->volume;
+    const double unit = sphgi_volume_unit(sweep);
+    double value = 0;
+    sweep->volumes = volume->count && volume->stride;
+    sweep->volume = 0;
+    if (!volume->count || sweep->volumes)
+        return;
+    tally->bad_volume |= is_bad_volume(volume, sweep->plan->type, 0, &value);
+    sweep->volume =
+        sweep->plan->type == SPHG_F64 ? value * unit : (double)((float)value * (float)unit);
+}
+
 static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *selection,
                              struct sphgi_tally *tally)
 {
@@ -45,6 +69,7 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     const int64_t items = selection->end - selection->begin;
     sweep->position_passes = sphgi_passes_of(context, n->position_type);
     sweep->packed = items * PACK_WORTH >= n->source_count;
+    look_at_volumes(sweep, tally);
     const bool searched = n->kind == SPHGI_SEARCHED;
     const bool marks = searched && selection->subset;
     if ((sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) || !open_workers(sweep) ||
@@ -122,15 +147,6 @@ static sphg_result sweep_all(struct sphgi_task *task, struct sphgi_selection *se
 
 /* ---- Errors found on the way ---------------------------------------------------------------- */
 
-static bool is_bad_volume(const struct sphgi_columns *volume, sphg_type type, int64_t item,
-                          double *value)
-{
-    const char *at = volume->at[0] + item * volume->stride;
-    *value = type == SPHG_F64 ? *(const double *)(const void *)at
-                              : (double)*(const float *)(const void *)at;
-    return !(*value >= 0) || !isfinite(*value);
-}
-
 static int32_t first_bad_volume(const struct sphgi_columns *volume, sphg_type type, int32_t count,
                                 double *value)
 {
@@ -197,7 +213,7 @@ sphg_result sphgi_sweep_run(struct sphgi_checker checker, const struct sphgi_pla
     if (sweep_all(&task, &selection, &tally))
         return sphgi_fail_memory(context, checker.function);
     if (plan->stats)
-        *plan->stats = tally.stats;
+        *plan->stats = sphgi_tally_stats(&tally, plan->type);
     if (tally.bad_target >= 0)
         return report_index(checker, &tally);
     if (tally.bad_volume && !context->config.trusted)

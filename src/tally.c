@@ -21,20 +21,39 @@ void sphgi_tally_add(struct sphgi_tally *total, const struct sphgi_tally *part)
         total->bad_index = part->bad_index;
     }
     total->bad_volume |= part->bad_volume;
+    if (part->largest_square > total->largest_square)
+        total->largest_square = part->largest_square;
 }
 
 void sphgi_tally_verdict(struct sphgi_tally *tally, const struct sphgi_verdict *verdict,
-                         const void *lambda_min, sphg_type type, int32_t lanes)
+                         int32_t dimension)
 {
     sphg_stats *stats = &tally->stats;
-    for (int32_t l = 0; l < lanes; ++l) {
-        const double lambda = type == SPHG_F64 ? ((const double *)lambda_min)[l]
-                                               : (double)((const float *)lambda_min)[l];
-        ++stats->rank[verdict->rank[l]];
-        stats->certified += !verdict->decomposed[l];
-        stats->decomposed += verdict->decomposed[l];
-        stats->empty += verdict->empty[l];
-        if (lambda < stats->lambda_min)
-            stats->lambda_min = lambda;
+    if (verdict->largest_square > tally->largest_square)
+        tally->largest_square = verdict->largest_square;
+    if (!verdict->decomposed && !verdict->empty) {
+        stats->rank[dimension] += verdict->lanes;
+        stats->certified += verdict->lanes;
+        return;
     }
+    for (int32_t l = 0; l < verdict->lanes; ++l) {
+        const bool decomposed = verdict->decomposed >> l & 1;
+        ++stats->rank[decomposed ? verdict->rank[l] : dimension];
+        stats->certified += !decomposed;
+        stats->decomposed += decomposed;
+        stats->empty += verdict->empty >> l & 1;
+        if (decomposed && verdict->lambda_min[l] < stats->lambda_min)
+            stats->lambda_min = verdict->lambda_min[l];
+    }
+}
+
+sphg_stats sphgi_tally_stats(const struct sphgi_tally *tally, sphg_type type)
+{
+    sphg_stats stats = tally->stats;
+    const double certified = type == SPHG_F64
+                                 ? 1 / sqrt(tally->largest_square)
+                                 : (double)(1.0f / sqrtf((float)tally->largest_square));
+    if (tally->largest_square > 0 && certified < stats.lambda_min)
+        stats.lambda_min = certified;
+    return stats;
 }

@@ -3,39 +3,60 @@
 
 /* ---- Groups --------------------------------------------------------------------------------- */
 
-/* Where the pairs of a lane stand. */
+static int32_t add_target(struct sphgi_worker *w, int32_t target, int32_t place, const void *row)
+{
+    const int32_t lane = w->group.lanes++;
+    w->group.target[lane] = target;
+    w->group.place[lane] = place;
+    w->group.x[lane] = row;
+    return lane;
+}
+
+/* Lists of 16-bit ids wait in the piece until a group is full. */
+static void run_narrow(struct sphgi_worker *w)
+{
+    if (w->group.lanes)
+        sphgi_group_run(w);
+    w->group.lanes = 0;
+}
+
+static void add_narrow(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
+                       const uint16_t *ids, uint16_t count)
+{
+    const int32_t lane = add_target(w, target, place, row);
+    w->piece.ids[lane] = ids;
+    w->piece.count[lane] = count;
+    if (w->group.lanes == w->passes->lanes)
+        run_narrow(w);
+}
+
+/* Lists of 32-bit numbers. */
 struct supply {
     const void *ids[SPHGI_LANES_MOST];
     int64_t count[SPHGI_LANES_MOST];
-    bool wide;
 };
 
-static void run_listed(struct sphgi_worker *w, const struct supply *supply)
+static void run_wide(struct sphgi_worker *w, const struct supply *supply)
 {
+    if (!w->group.lanes)
+        return;
     sphgi_group_begin(w);
     do
-        sphgi_group_add_all(w, supply->ids, supply->count, supply->wide);
+        for (int32_t l = 0; l < w->group.lanes; ++l)
+            sphgi_group_add(w, l, supply->ids[l], supply->count[l], true);
     while (sphgi_group_again(w));
     sphgi_group_end(w);
     w->group.lanes = 0;
 }
 
-static void add_target(struct sphgi_worker *w, struct supply *supply, int32_t target,
-                       const void *row, const void *ids, int64_t count)
+static void add_wide(struct sphgi_worker *w, struct supply *supply, int32_t target, int32_t place,
+                     const void *row, const void *ids, int64_t count)
 {
-    const int32_t lane = w->group.lanes++;
-    w->group.target[lane] = target;
-    w->group.x[lane] = row;
+    const int32_t lane = add_target(w, target, place, row);
     supply->ids[lane] = ids;
     supply->count[lane] = count;
     if (w->group.lanes == w->passes->lanes)
-        run_listed(w, supply);
-}
-
-static void run_rest(struct sphgi_worker *w, const struct supply *supply)
-{
-    if (w->group.lanes)
-        run_listed(w, supply);
+        run_wide(w, supply);
 }
 
 /* ---- Blocks of a searched object ------------------------------------------------------------ */
@@ -56,7 +77,19 @@ static void prefetch_ahead(const struct sphgi_worker *w, int32_t place)
     enum { AHEAD = 2 * SPHGI_LANES_MOST };
     const sphg_neighbors *n = w->sweep->set->neighbors;
     if (place + AHEAD < n->target_count)
-        sphgi_group_prefetch(w->sweep->plan, target_at(n, place + AHEAD));
+        sphgi_group_prefetch(w, target_at(n, place + AHEAD));
+}
+
+static void sweep_cell(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
+                       int32_t end, const uint16_t *ids, const uint16_t *lengths)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    for (int32_t t = begin; t < end; ++t, ++lengths) {
+        prefetch_ahead(w, t);
+        if (is_active(task, t))
+            add_narrow(w, target_at(n, t), t, sphgi_target_row(n, t), ids, *lengths);
+        ids += (*lengths + SPHGI_PAD - 1) & -SPHGI_PAD;
+    }
 }
 
 static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block)
@@ -69,20 +102,14 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
     const uint16_t *list =
         (const uint16_t *)n->found.ids.data + ((const int64_t *)n->found.block_list.data)[block];
     const uint16_t *lengths = n->found.lengths.data;
-    struct supply supply = {.wide = false};
-    for (int32_t c = 0; c < grid->cells; ++c) {
-        const uint16_t *ids = list + (size_t)offset[c] * SPHGI_PAD;
-        for (int32_t t = start[c]; t < start[c + 1]; ++t) {
-            prefetch_ahead(w, t);
-            if (is_active(task, t))
-                add_target(w, &supply, target_at(n, t), sphgi_target_row(n, t), ids, lengths[t]);
-            ids += sphgi_round_up(lengths[t], SPHGI_PAD);
-        }
-    }
-    run_rest(w, &supply);
+    for (int32_t c = 0; c < grid->cells; ++c)
+        sweep_cell(task, w, start[c], start[c + 1], list + (size_t)offset[c] * SPHGI_PAD,
+                   lengths + start[c]);
+    run_narrow(w);
 }
 
-/* Nothing is kept: pairs are found cell by cell and used at once. */
+/* Nothing is kept: pairs are found cell by cell and used at once; they only have to stay until the
+ * group that they belong to is full. */
 static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
                               const struct sphgi_finder *finder,
                               const struct sphgi_surroundings *around)
@@ -90,7 +117,7 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
-    struct supply supply = {.wide = false};
+    int64_t used = 0;
     sphgi_stage_coordinates(finder, n, around);
     for (int32_t c = 0; c < grid->cells; ++c) {
         const struct sphgi_runs runs = sphgi_candidate_runs(&grid->lattice, around, c);
@@ -101,17 +128,16 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
                 any |= is_active(task, k);
             if (!any)
                 continue;
-            const uint16_t *ids = finder->ids;
-            sphgi_find_targets(finder, n, around, &runs, c, t, end, finder->ids, finder->lengths);
-            for (int32_t k = t; k < end; ++k) {
-                const uint16_t length = finder->lengths[k - t];
-                if (is_active(task, k))
-                    add_target(w, &supply, target_at(n, k), sphgi_target_row(n, k), ids, length);
-                ids += sphgi_round_up(length, SPHGI_PAD);
+            if (used + (int64_t)(end - t) * (runs.candidates + SPHGI_PAD) > SPHGI_UNITS_MOST) {
+                run_narrow(w);
+                used = 0;
             }
-            run_rest(w, &supply); /* the next search overwrites the ids */
+            uint16_t *ids = finder->ids + used;
+            used += sphgi_find_targets(finder, n, around, &runs, c, t, end, ids, finder->lengths);
+            sweep_cell(task, w, t, end, ids, finder->lengths);
         }
     }
+    run_narrow(w);
 }
 
 static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
@@ -125,19 +151,19 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
     const uint16_t *list =
         (const uint16_t *)n->found.ids.data + ((const int64_t *)n->found.block_list.data)[block];
-    struct supply supply = {.wide = true};
+    struct supply supply;
     for (int32_t c = 0; c < grid->cells; ++c) {
         const uint32_t *row =
             (const uint32_t *)(const void *)(list + (size_t)offset[c] * SPHGI_PAD);
         for (int32_t t = start[c]; t < start[c + 1]; ++t) {
             const size_t count = row[0];
             if (is_active(task, t))
-                add_target(w, &supply, target_at(n, t), sphgi_target_row(n, t), row + HEADER,
-                           (int64_t)count);
+                add_wide(w, &supply, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER,
+                         (int64_t)count);
             row += HEADER + sphgi_round_up(count, SPHGI_PAD);
         }
     }
-    run_rest(w, &supply);
+    run_wide(w, &supply);
 }
 
 static void take_wide(void *data, const uint32_t *rows, int32_t count)
@@ -158,6 +184,7 @@ static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_w
                 continue;
             w->group.lanes = 1;
             w->group.target[0] = target_at(n, t);
+            w->group.place[0] = t;
             w->group.x[0] = sphgi_target_row(n, t);
             sphgi_group_begin(w);
             do
@@ -223,7 +250,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    struct supply supply = {.wide = true};
+    struct supply supply;
     struct sphgi_worker w;
     sphgi_worker_open(&w, &task->sweep, number);
     if (task->sweep.packed)
@@ -243,11 +270,11 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
             }
             continue;
         }
-        add_target(&w, &supply, target, sphgi_target_row(n, target), ids, count);
+        add_wide(&w, &supply, target, target, sphgi_target_row(n, target), ids, count);
         if (n->lists.row)
-            run_rest(&w, &supply); /* the function may reuse its array */
+            run_wide(&w, &supply); /* the function may reuse its array */
     }
-    run_rest(&w, &supply);
+    run_wide(&w, &supply);
 }
 
 /* ---- Finishing the sums of several sets ----------------------------------------------------- */

@@ -31,14 +31,17 @@ struct sphgi_columns sphgi_columns_of(const sphg_view *view, sphg_shape shape, i
     const char *start[3] = {view->x, view->y, view->z};
     const int32_t each = components_per_pointer(shape, dimension);
     const size_t size = sphgi_size_of_type(view->type);
-    for (int32_t c = 0; c < count; ++c)
+    for (int32_t c = 0; c < count; ++c) {
         columns.at[c] = start[c / each] + (size_t)(c % each) * size;
+        columns.together &= columns.at[c] == columns.at[0] + (size_t)c * size;
+    }
     return columns;
 }
 
 struct sphgi_columns sphgi_flat_columns(const sphg_view *view, int32_t count)
 {
-    struct sphgi_columns columns = {.stride = view->stride, .count = view->x ? count : 0};
+    struct sphgi_columns columns = {
+        .stride = view->stride, .count = view->x ? count : 0, .together = true};
     for (int32_t c = 0; c < columns.count; ++c)
         columns.at[c] = (const char *)view->x + (size_t)c * sphgi_size_of_type(view->type);
     return columns;

@@ -68,81 +68,130 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
     return carve(&measured, sweep, NULL);
 }
 
-void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
+double sphgi_volume_unit(const struct sphgi_sweep *sweep)
+{
+    return sphgi_power(1 / sweep->plan->scheme.radius, sweep->plan->dimension);
+}
+
+/* Both ends of an item: they may lie on two cache lines. */
+static void will_need(struct sphgi_worker *w, const struct sphgi_columns *columns)
+{
+    if (!columns->count || !columns->stride || w->asks + 2 > SPHGI_ASKS_MOST)
+        return;
+    w->ask[w->asks++] = (struct sphgi_ask){columns->at[0], columns->stride};
+    if (columns->count > 1)
+        w->ask[w->asks++] = (struct sphgi_ask){columns->at[columns->count - 1], columns->stride};
+}
+
+static void list_needs(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    w->asks = 0;
+    will_need(w, &plan->target_correction);
+    will_need(w, &plan->correction);
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (!sphgi_targets_in_rows(w, field))
+            will_need(w, &field->target);
+        will_need(w, &field->gradient);
+        will_need(w, &field->divergence);
+        will_need(w, &field->curl);
+    }
+}
+
+/* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
+ * formed; the sums of the linearised methods are multiplied with them at the end. */
+static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
+    return (plan->classic || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) && plan->corrects;
+}
+
+/* Linearised methods sum in the units of the positions, classic ones in units of H: their sums hold
+ * third powers of the offsets. */
+static void open_scheme(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_scheme *scheme = &plan->scheme;
-    const sphg_neighbors *n = sweep->set->neighbors;
+    const sphg_neighbors *n = w->sweep->set->neighbors;
     const int32_t d = plan->dimension;
-    const double sigma = sphgi_kernel_sigma(scheme->kernel, d);
+    const double h = scheme->radius, sigma = sphgi_kernel_sigma(scheme->kernel, d);
     const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
     const bool by_value = scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM;
-    *w = (struct sphgi_worker){.sweep = sweep, .passes = sweep->passes};
-    carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
-    w->gather = (struct sphgi_gather){.inverse_h = 1 / scheme->radius,
-                                      .inverse_volume = sphgi_power(1 / scheme->radius, d),
-                                      .cutoff = scheme->radius,
+    w->gather = (struct sphgi_gather){.unit = plan->classic ? 1 / h : 1,
+                                      .cutoff = h,
                                       .periodic = n->periodic,
+                                      .volumes = w->sweep->volumes,
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
-    w->gather.superset = n->kind == SPHGI_HOST_LISTS || n->skin > 0 || scheme->radius < n->radius;
+    w->gather.superset = n->kind == SPHGI_HOST_LISTS || n->skin > 0 || h < n->radius;
+    w->gather.guarded = true; /* until a far row stands in front of those of a block */
     w->shape =
         (struct sphgi_shape){.kernel = scheme->kernel,
                              .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
                              .dimension = d,
-                             .w_scale = by_value ? sigma / mu2 : sigma,
+                             .inverse_h = plan->classic ? 1 : 1 / h,
+                             .w_scale = (by_value ? sigma / mu2 : sigma) / h,
                              .value_scale = sigma};
-    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d};
+    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d, 1 / h};
+}
+
+void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
+{
+    *w = (struct sphgi_worker){.sweep = sweep, .passes = sweep->passes};
+    carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
+    open_scheme(w);
+    w->inverse_h = 1 / sweep->plan->scheme.radius;
+    sphgi_open_shares(w);
+    w->coefficients_first = needs_coefficients_first(sweep);
     w->piece.arrays = w->arrays;
-    w->piece.wide = false;
+    const size_t volumes = SPHGI_V * SPHGI_PIECE * sphgi_size_of_type(sweep->plan->type);
+    if (!sweep->volumes)
+        w->passes->fill(SPHGI_PIECE, sweep->volume, w->arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
+    list_needs(w);
 }
 
 static void empty_piece(struct sphgi_worker *w)
 {
+    w->regular = false;
     w->piece.parts = 0;
     w->piece.begin[0] = 0;
 }
 
 /* ---- A group -------------------------------------------------------------------------------- */
 
-/* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
- * formed; the sums of the linearised methods are multiplied with them at the end. */
-static bool needs_coefficients_first(const struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    return (plan->classic || w->sweep->pairs) && (w->sweep->steps & SPHGI_SUM_FIELDS) &&
-           plan->corrects;
-}
-
 /* Lanes without a target repeat the first: they are read like the others, and never written. */
 static void pad_group(struct sphgi_group *group, int32_t lanes)
 {
-    for (int32_t l = group->lanes; l < lanes; ++l)
+    for (int32_t l = group->lanes; l < lanes; ++l) {
         group->target[l] = group->target[0];
+        group->place[l] = group->place[0];
+    }
 }
 
-/* Sums begin at 0 with the first part of each lane. */
-static void begin_round(struct sphgi_worker *w)
+static void begin(struct sphgi_worker *w)
 {
-    memset(w->touched, 0, sizeof w->touched);
-}
-
-void sphgi_group_begin(struct sphgi_worker *w)
-{
-    pad_group(&w->group, w->passes->lanes);
+    if (w->group.lanes < w->passes->lanes)
+        pad_group(&w->group, w->passes->lanes);
     w->targets_loaded = false;
     w->pieces = 0;
-    memset(w->written, 0, sizeof w->written);
-    empty_piece(w);
-    begin_round(w);
+    if (w->sweep->pairs)
+        memset(w->written, 0, sizeof w->written);
     w->summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
-    if (needs_coefficients_first(w)) {
+    if (w->coefficients_first) {
         if (w->summing & SPHGI_SUM_MOMENTS)
             w->summing = SPHGI_SUM_MOMENTS;
         else
             sphgi_load_corrections(w);
     }
+}
+
+void sphgi_group_begin(struct sphgi_worker *w)
+{
+    empty_piece(w);
+    w->touched = 0;
+    begin(w);
 }
 
 /* Copies the rows behind clean ids, so that they can be read like staged ones; ids become places.
@@ -162,7 +211,7 @@ static void make_local(struct sphgi_worker *w, uint32_t *rows, int32_t count, in
         items[k] = searched ? ((const int32_t *)n->sources.order.data)[rows[k]] : (int32_t)rows[k];
     }
     if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
-            positions, &sweep->set->volume, items, 0, count, positions))
+            positions, &sweep->set->volume, sphgi_volume_unit(sweep), items, 0, count, positions))
         w->tally->bad_volume = true;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
         const struct sphgi_stream *stream = &sweep->set->streams[s];
@@ -201,24 +250,23 @@ static int32_t clean_list(struct sphgi_worker *w, int32_t target, const int32_t 
 }
 
 /* One part of the piece: pairs of one lane, at most what is left of it. */
-static void add_part(struct sphgi_worker *w, int32_t lane, const void *ids, int32_t count,
-                     bool wide)
+static void add_part(struct sphgi_worker *w, int32_t lane, const void *ids, int32_t count)
 {
-    const struct sphgi_sweep *sweep = w->sweep;
     struct sphgi_piece *piece = &w->piece;
-    const int32_t at = piece->begin[piece->parts];
-    const int32_t padded = (int32_t)sphgi_round_up((size_t)count, SPHGI_PAD);
-    const size_t id_size = wide ? sizeof(uint32_t) : sizeof(uint16_t);
-    char *masked = w->masked_ids + (size_t)at * id_size;
-    sweep->position_passes->gather[sweep->plan->type == SPHG_F64](
-        &w->gather, w->group.x[lane], ids, wide, count, w->arrays, at, masked);
-    piece->wide = wide;
-    piece->ids[piece->parts] = w->gather.superset ? masked : ids;
-    piece->lane[piece->parts] = lane;
-    piece->count[piece->parts] = count;
-    piece->fresh[piece->parts] = !w->touched[lane];
-    w->touched[lane] = true;
-    piece->begin[++piece->parts] = at + padded;
+    const int32_t part = piece->parts++;
+    piece->ids[part] = ids;
+    piece->lane[part] = lane;
+    piece->count[part] = count;
+    piece->fresh[part] = !(w->touched >> lane & 1);
+    w->touched |= 1u << lane;
+    piece->begin[part + 1] = piece->begin[part] + (int32_t)sphgi_round_up((size_t)count, SPHGI_PAD);
+}
+
+static void gather(struct sphgi_worker *w, int32_t first, bool wide)
+{
+    w->piece.wide = wide;
+    w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
+        &w->gather, w->group.x, &w->piece, first, w->masked_ids);
 }
 
 static int32_t room_of(struct sphgi_worker *w, int64_t wanted)
@@ -253,8 +301,10 @@ static void add_listed(struct sphgi_worker *w, int32_t lane, const void *ids, in
         const int32_t padded = (int32_t)sphgi_round_up((size_t)kept, SPHGI_PAD);
         for (int32_t k = kept; k < padded; ++k)
             clean[k] = w->gather.dummy;
-        if (kept)
-            add_part(w, lane, clean, kept, true);
+        if (kept) {
+            add_part(w, lane, clean, kept);
+            gather(w, w->piece.parts - 1, true);
+        }
         ids = (const char *)ids + (size_t)part * sizeof(int32_t);
         count -= part;
     }
@@ -270,7 +320,8 @@ void sphgi_group_add(struct sphgi_worker *w, int32_t lane, const void *ids, int6
     while (count > 0) {
         const int32_t room = room_of(w, count);
         const int32_t part = (int32_t)(count < room ? count : room);
-        add_part(w, lane, ids, part, false);
+        add_part(w, lane, ids, part);
+        gather(w, w->piece.parts - 1, false);
         ids = (const char *)ids + (size_t)part * sizeof(uint16_t);
         count -= part;
     }
@@ -279,34 +330,12 @@ void sphgi_group_add(struct sphgi_worker *w, int32_t lane, const void *ids, int6
 /* Sums [first, first + count); lanes that saw no pair have none. */
 static void reduce(struct sphgi_worker *w, int32_t first, int32_t count)
 {
-    for (int32_t l = 0; l < w->passes->lanes; ++l)
-        if (!w->touched[l])
-            w->passes->clear_partial(sphgi_partial(w, first), count, l);
+    const int32_t lanes = w->passes->lanes;
+    if (w->touched != (1u << lanes) - 1)
+        for (int32_t l = 0; l < lanes; ++l)
+            if (!(w->touched >> l & 1))
+                w->passes->clear_partial(sphgi_partial(w, first), count, l);
     w->passes->reduce(sphgi_partial(w, first), count, sphgi_lane(w, w->reduced, first));
-}
-
-/* All lanes fit into one piece, as they nearly always do. */
-static bool fit_a_piece(const struct sphgi_worker *w, const int64_t *counts)
-{
-    int64_t total = 0;
-    for (int32_t l = 0; l < w->group.lanes; ++l)
-        total += (int64_t)sphgi_round_up((size_t)counts[l], SPHGI_PAD);
-    return total <= SPHGI_PIECE && !w->piece.parts;
-}
-
-void sphgi_group_add_all(struct sphgi_worker *w, const void *const *ids, const int64_t *counts,
-                         bool wide)
-{
-    struct sphgi_piece *piece = &w->piece;
-    if (wide || w->gather.superset || !fit_a_piece(w, counts)) {
-        for (int32_t l = 0; l < w->group.lanes; ++l)
-            sphgi_group_add(w, l, ids[l], counts[l], wide);
-        return;
-    }
-    w->sweep->position_passes->gather_all[w->sweep->plan->type == SPHG_F64](
-        &w->gather, w->group.lanes, w->group.x, ids, counts, piece);
-    for (int32_t p = 0; p < piece->parts; ++p)
-        w->touched[piece->lane[p]] = true;
 }
 
 /* After all pairs were added: is another round needed? Classic, corrections and fields in one
@@ -317,7 +346,7 @@ bool sphgi_group_again(struct sphgi_worker *w)
     const bool rest = w->piece.parts > 0;
     if (rest)
         sphgi_evaluate_piece(w);
-    const bool first_round = needs_coefficients_first(w) && (w->sweep->steps & SPHGI_SUM_MOMENTS) &&
+    const bool first_round = w->coefficients_first && (w->sweep->steps & SPHGI_SUM_MOMENTS) &&
                              w->summing == SPHGI_SUM_MOMENTS;
     if (!first_round)
         return false;
@@ -331,38 +360,8 @@ bool sphgi_group_again(struct sphgi_worker *w)
         return false;
     }
     empty_piece(w);
-    begin_round(w);
+    w->touched = 0;
     return true;
-}
-
-/* First and last number of an item: they may lie on two cache lines. */
-SPHGI_TEMPLATE void ask_for(const struct sphgi_columns *columns, int32_t item, bool write)
-{
-    if (!columns->count)
-        return;
-    const char *first = columns->at[0] + item * columns->stride;
-    const char *last = columns->at[columns->count - 1] + item * columns->stride;
-    if (write) {
-        __builtin_prefetch(first, 1);
-        __builtin_prefetch(last, 1);
-    } else {
-        __builtin_prefetch(first, 0);
-        __builtin_prefetch(last, 0);
-    }
-}
-
-void sphgi_group_prefetch(const struct sphgi_plan *plan, int32_t target)
-{
-    ask_for(&plan->target_correction, target, false);
-    ask_for(&plan->correction, target, true);
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        ask_for(&field->target, target, false);
-        ask_for(&field->gradient, target, true);
-        ask_for(&field->divergence, target, true);
-        ask_for(&field->curl, target, true);
-    }
-    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
 }
 
 /* ---- The arena: sums of several source sets ------------------------------------------------- */
@@ -389,7 +388,7 @@ static void finish(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const unsigned steps = w->sweep->steps;
-    const bool done = needs_coefficients_first(w); /* corrections, before the fields */
+    const bool done = w->coefficients_first; /* corrections, before the fields */
     sphgi_load_targets(w);
     if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);
@@ -436,12 +435,58 @@ void sphgi_group_end(struct sphgi_worker *w)
         finish_pairs(w);
         return;
     }
-    const int32_t first = needs_coefficients_first(w) ? w->sweep->plan->moment_sums : 0;
+    const int32_t first = w->coefficients_first ? w->sweep->plan->moment_sums : 0;
     reduce(w, first, w->sweep->plan->sums - first);
     if (w->sweep->steps & SPHGI_FINISH)
         finish(w);
     else
         each_arena_part(w, false);
+}
+
+/* One part a lane, whole and fresh. False: a piece cannot hold them. */
+static bool make_regular(struct sphgi_worker *w)
+{
+    struct sphgi_piece *piece = &w->piece;
+    int32_t at = 0;
+    for (int32_t l = 0; l < w->group.lanes; ++l) {
+        at += (piece->count[l] + SPHGI_PAD - 1) & -SPHGI_PAD;
+        piece->begin[l + 1] = at;
+    }
+    piece->parts = w->group.lanes;
+    w->touched = (1u << piece->parts) - 1;
+    for (int32_t l = 0; !w->regular && l < SPHGI_LANES_MOST; ++l) {
+        piece->lane[l] = l;
+        piece->fresh[l] = true;
+    }
+    w->regular = true;
+    return at <= SPHGI_PIECE;
+}
+
+/* More pairs than a piece holds. */
+static void run_in_pieces(struct sphgi_worker *w)
+{
+    const void *ids[SPHGI_LANES_MOST];
+    int32_t count[SPHGI_LANES_MOST];
+    memcpy(ids, w->piece.ids, sizeof ids);
+    memcpy(count, w->piece.count, sizeof count);
+    sphgi_group_begin(w);
+    do
+        for (int32_t l = 0; l < w->group.lanes; ++l)
+            sphgi_group_add(w, l, ids[l], count[l], false);
+    while (sphgi_group_again(w));
+    sphgi_group_end(w);
+}
+
+void sphgi_group_run(struct sphgi_worker *w)
+{
+    if (!make_regular(w)) {
+        run_in_pieces(w);
+        return;
+    }
+    begin(w);
+    gather(w, 0, false);
+    sphgi_group_again(w); /* a whole piece never needs its pairs again */
+    sphgi_group_end(w);
 }
 
 void sphgi_group_finish_from_arena(struct sphgi_worker *w)

@@ -30,9 +30,11 @@ struct sphgi_sweep {
     int32_t set_number;
     unsigned steps;
     const struct sphgi_passes *passes, *position_passes; /* of fields; of positions */
-    bool packed;                  /* positions, volumes, fields stand as rows in storage order */
+    bool packed;                  /* positions and fields stand as rows in storage order */
     const char *packed_positions; /* x y z V, source_count + 1 rows */
     const char *packed_rows;      /* streams, as many rows each */
+    bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
+    double volume;                /* V / H^d of all sources otherwise */
     char *arena;                  /* sums, plan->sums numbers a target */
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
@@ -44,7 +46,22 @@ struct sphgi_sweep {
 struct sphgi_group {
     int32_t lanes;
     int32_t target[SPHGI_LANES_MOST];
+    int32_t place[SPHGI_LANES_MOST]; /* in storage order */
     const void *x[SPHGI_LANES_MOST]; /* rows */
+};
+
+/* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
+ * exact, also where the factor itself is so large or small that no table could hold the result. */
+struct sphgi_share {
+    int32_t first, count;
+    double mantissa, power[2];
+};
+
+/* Memory of the host that is read or written target by target. */
+enum { SPHGI_ASKS_MOST = 16 };
+struct sphgi_ask {
+    const char *at;
+    ptrdiff_t stride;
 };
 
 struct sphgi_worker {
@@ -53,15 +70,21 @@ struct sphgi_worker {
     struct sphgi_gather gather;
     struct sphgi_shape shape;
     struct sphgi_threshold threshold;
+    double inverse_h;
     struct sphgi_piece piece;
     struct sphgi_group group;
+    struct sphgi_share share[2]; /* of the table of corrections */
+    struct sphgi_ask ask[SPHGI_ASKS_MOST];
+    int32_t asks;
+    bool regular;                      /* part k of the piece is lane k, whole */
     const void **rows;                 /* of each stream */
     unsigned summing;                  /* SPHGI_SUM_..., of this pass over the group */
+    bool coefficients_first;           /* they must be known before fields can be summed */
     bool targets_loaded;               /* A_i, V_i, rho_i of the group */
     int32_t pieces;                    /* evaluated since the group began */
     bool local;                        /* rows are copied pair by pair */
     const int32_t *items;              /* sources behind the ids; NULL: the ids are their numbers */
-    bool touched[SPHGI_LANES_MOST];    /* had a pair in this round */
+    uint32_t touched;                  /* a bit per lane: had a pair in this round */
     int64_t written[SPHGI_LANES_MOST]; /* pairs of each lane so far */
 
     /* Memory, in the order in which it is carved. */
@@ -82,16 +105,24 @@ void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sw
 void sphgi_group_begin(struct sphgi_worker *worker);
 void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids, int64_t count,
                      bool wide);
-void sphgi_group_add_all(struct sphgi_worker *worker, const void *const *ids, const int64_t *counts,
-                         bool wide);
+
+/* All of it, for groups whose 16-bit lists stand in piece.ids and .count, lane by lane. */
+void sphgi_group_run(struct sphgi_worker *worker);
 bool sphgi_group_again(struct sphgi_worker *worker);
 void sphgi_group_end(struct sphgi_worker *worker);
 
-/* Asks for the cache lines that a target of the group will need. */
-void sphgi_group_prefetch(const struct sphgi_plan *plan, int32_t target);
+/* Asks for the cache lines that a target will need. */
+static inline void sphgi_group_prefetch(const struct sphgi_worker *worker, int32_t target)
+{
+    for (int32_t k = 0; k < worker->asks; ++k)
+        __builtin_prefetch(worker->ask[k].at + target * worker->ask[k].stride);
+}
 
 /* Finishes a group whose sums stand in the arena already. */
 void sphgi_group_finish_from_arena(struct sphgi_worker *worker);
+
+/* What volumes are multiplied with: 1 / H^d. */
+double sphgi_volume_unit(const struct sphgi_sweep *sweep);
 
 /* A lane of numbers that belongs to target-side value `number` of the memory starting at base. */
 static inline char *sphgi_lane(const struct sphgi_worker *worker, char *base, int32_t number)

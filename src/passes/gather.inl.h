@@ -54,3 +54,18 @@ static bool is_neighbor(const void *a, const void *b, double reach, const double
         d[k] = wrapped(splat(k < dimension ? x[k] - y[k] : R(0)), w.axis[k]);
     return bits_of(less(square_distance(d[0], d[1], d[2]), square_of(reach))) & 1;
 }
+
+/* Ids [k, k + LANES) of pairs that are none are replaced by the dummy row: a field that is not
+ * finite there must not enter through 0 * NaN. */
+SPHGI_TEMPLATE void keep_ids(mask inside, const void *ids, int32_t k, uint32_t dummy, void *out,
+                             bool wide)
+{
+    const unsigned bits = bits_of(inside);
+    for (int l = 0; l < LANES; ++l) {
+        const bool keep = bits >> l & 1;
+        if (wide)
+            ((uint32_t *)out)[k + l] = keep ? ((const uint32_t *)ids)[k + l] : dummy;
+        else
+            ((uint16_t *)out)[k + l] = keep ? ((const uint16_t *)ids)[k + l] : (uint16_t)dummy;
+    }
+}

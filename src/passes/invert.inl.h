@@ -88,25 +88,20 @@ SPHGI_TEMPLATE void correct_lanes(const struct sphgi_threshold *threshold, const
     }
 }
 
-/* |c|_F; entries so small that their squares would vanish are scaled first. */
-SPHGI_TEMPLATE vec frobenius(const vec *c, bool three)
+/* |c|_F^2 */
+SPHGI_TEMPLATE vec square_norm(const vec *c, bool three)
 {
-    const vec trace = three ? c[0] + c[3] + c[5] : c[0] + c[2];
-    const mask tiny = trace < splat(REAL_IS_F64 ? R(0x1p-400) : R(0x1p-40));
-    const vec up = select(tiny, splat(REAL_IS_F64 ? R(0x1p900) : R(0x1p100)), splat(R(1)));
-    vec s[6];
-    for (int k = 0; k < (three ? 6 : 3); ++k)
-        s[k] = c[k] * up;
-    const vec square = three ? s[0] * s[0] + s[3] * s[3] + s[5] * s[5] +
-                                   R(2) * (s[1] * s[1] + s[2] * s[2] + s[4] * s[4])
-                             : s[0] * s[0] + s[2] * s[2] + R(2) * s[1] * s[1];
-    return vsqrt(square) / up;
+    if (!three)
+        return c[0] * c[0] + c[2] * c[2] + R(2) * (c[1] * c[1]);
+    const vec diagonal = c[0] * c[0] + c[3] * c[3] + c[5] * c[5];
+    return diagonal + R(2) * (c[1] * c[1] + c[2] * c[2] + c[4] * c[4]);
 }
 
 /* LDL^T inverse of one symmetric matrix a lane; gives the lanes that pass the certificate
  * |A^-1|_F (eps_hi + 80 u tr A) < 1, pivots > 0: there every eigenvalue exceeds eps_hi for sure,
- * so that the threshold would not have touched it. Written so that NaN fails. */
-SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, vec *c, vec *norm)
+ * so that the threshold would not have touched it. Both sides are squared; an inverse so small that
+ * its square is inexact does not pass. Written so that NaN fails. */
+SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, vec *c, vec *square)
 {
     const vec zero = splat(R(0));
     vec trace;
@@ -131,32 +126,98 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
         c[1] = -l1 * i1;
         c[0] = i0 - l1 * c[1];
     }
-    *norm = frobenius(c, three);
-    return pivots & less(*norm * (eps_high + R(80 * UNIT_ROUNDOFF) * trace), splat(R(1)));
+    *square = square_norm(c, three);
+    const vec bound = eps_high + R(80 * UNIT_ROUNDOFF) * trace;
+    const mask exact = (mask)(*square > splat(REAL_IS_F64 ? R(0x1p-800) : R(0x1p-80)));
+    return pivots & exact & less(*square * (bound * bound), splat(R(1)));
 }
 
-/* Corrections of normalised moments; low as in filtered(). */
-SPHGI_TEMPLATE void correction_of(const struct sphgi_threshold *threshold, const real *m,
-                                  double low, real *c, real *lambda_min,
-                                  struct sphgi_verdict *verdict, bool three)
+SPHGI_TEMPLATE double largest_of(vec v)
+{
+    real largest = v[0];
+    for (int l = 1; l < LANES; ++l)
+        largest = v[l] > largest ? v[l] : largest;
+    return (double)largest;
+}
+
+/* Lanes that lack the certificate, decomposed; the others are as certified_inverse() left them. */
+static __attribute__((noinline)) void decompose_open(const struct sphgi_threshold *threshold,
+                                                     const vec *m, double low, vec *c,
+                                                     vec *lambda_min, struct sphgi_verdict *verdict)
+{
+    real in[6 * LANES], out[6 * LANES], lambda[LANES];
+    const int numbers = threshold->dimension == 3 ? 6 : 3;
+    for (int k = 0; k < numbers; ++k) {
+        store(in + k * LANES, m[k]);
+        store(out + k * LANES, c[k]);
+    }
+    store(lambda, *lambda_min);
+    for (int l = 0; l < LANES; ++l)
+        verdict->rank[l] = (uint8_t)threshold->dimension;
+    if (threshold->dimension == 3)
+        correct_lanes(threshold, in, verdict->decomposed, low, out, lambda, verdict->rank, true);
+    else
+        correct_lanes(threshold, in, verdict->decomposed, low, out, lambda, verdict->rank, false);
+    for (int k = 0; k < numbers; ++k)
+        c[k] = load(out + k * LANES);
+    for (int l = 0; l < LANES; ++l)
+        verdict->lambda_min[l] = (double)lambda[l];
+    *lambda_min = load(lambda);
+}
+
+/* Corrections c of normalised moments m; low as in filtered(). */
+SPHGI_TEMPLATE void correction_of(const struct sphgi_threshold *threshold, const vec *m, double low,
+                                  vec *c, vec *lambda_min, struct sphgi_verdict *verdict,
+                                  bool three)
+{
+    const bool blend = threshold->policy == SPHG_BLEND;
+    vec square;
+    const mask passed =
+        certified_inverse(m, R((blend ? 4 : 1) * threshold->eps), three, c, &square);
+    const mask counts = first_lanes(verdict->lanes);
+    verdict->decomposed = bits_of(~passed & counts);
+    verdict->largest_square = largest_of(where(passed & counts, square));
+    *lambda_min = R(1) / vsqrt(square);
+    if (__builtin_expect(verdict->decomposed != 0, 0))
+        decompose_open(threshold, m, low, c, lambda_min, verdict);
+}
+
+/* Moments of a decomposed lane may be 0, which makes it empty, or not finite: rank 0 and NaN. */
+SPHGI_TEMPLATE void judge_moments(const vec *m, vec *c, struct sphgi_verdict *verdict, bool three)
+{
+    const vec zero = splat(R(0));
+    const int numbers = three ? 6 : 3;
+    vec poison = zero; /* NaN where a moment is not finite */
+    for (int k = 0; k < numbers; ++k)
+        poison += m[k] - m[k];
+    for (int k = 0; k < numbers; ++k)
+        c[k] += poison;
+    const mask none =
+        (mask)(m[0] == zero) & (mask)(m[three ? 3 : 2] == zero) & (mask)(m[numbers - 1] == zero);
+    verdict->empty = bits_of(none) & verdict->decomposed;
+    const unsigned finite = bits_of((mask)(poison == zero));
+    for (int l = 0; l < LANES; ++l)
+        if (!(finite >> l & 1))
+            verdict->rank[l] = 0;
+}
+
+SPHGI_TEMPLATE void invert_as(const struct sphgi_threshold *threshold, const real *moments,
+                              vec factor, real *correction, real *lambda_min,
+                              struct sphgi_verdict *verdict, bool three)
 {
     const int numbers = three ? 6 : 3;
-    const bool blend = threshold->policy == SPHG_BLEND;
-    vec in[6], out[6], norm;
+    const vec unit = splat(R(threshold->unit));
+    vec m[6], c[6], lambda;
     for (int k = 0; k < numbers; ++k)
-        in[k] = load(m + k * LANES);
-    const mask passed =
-        certified_inverse(in, R((blend ? 4 : 1) * threshold->eps), three, out, &norm);
+        m[k] = factor * (unit * load(moments + k * LANES));
+    correction_of(threshold, m, 1, c, &lambda, verdict, three);
+    verdict->empty = 0;
+    if (__builtin_expect(verdict->decomposed != 0, 0))
+        judge_moments(m, c, verdict, three);
     for (int k = 0; k < numbers; ++k)
-        store(c + k * LANES, out[k]);
-    store(lambda_min, R(1) / norm);
-    const unsigned open = ~bits_of(passed) & ((1u << LANES) - 1);
-    for (int l = 0; l < LANES; ++l) {
-        verdict->rank[l] = three ? 3 : 2;
-        verdict->decomposed[l] = open >> l & 1;
-    }
-    if (open)
-        correct_lanes(threshold, m, open, low, c, lambda_min, verdict->rank, three);
+        store(correction + k * LANES, factor * c[k]);
+    if (lambda_min)
+        store(lambda_min, lambda);
 }
 
 /* scale: what turns a lane's sums into normalised moments (MLS: V_i / H^d), NULL: 1; the
@@ -164,31 +225,11 @@ SPHGI_TEMPLATE void correction_of(const struct sphgi_threshold *threshold, const
 static void invert(const struct sphgi_threshold *threshold, const void *moments, const void *scale,
                    void *correction, void *lambda_min, struct sphgi_verdict *verdict)
 {
-    const bool three = threshold->dimension == 3;
-    const int numbers = three ? 6 : 3;
     const vec factor = scale ? load(scale) : splat(R(1));
-    real m[6 * SPHGI_LANES_MOST] __attribute__((aligned(SPHGI_ALIGNMENT)));
-    for (int k = 0; k < numbers; ++k)
-        store(m + k * LANES, factor * load((const real *)moments + k * LANES));
-    if (three)
-        correction_of(threshold, m, 1, correction, lambda_min, verdict, true);
+    if (threshold->dimension == 3)
+        invert_as(threshold, moments, factor, correction, lambda_min, verdict, true);
     else
-        correction_of(threshold, m, 1, correction, lambda_min, verdict, false);
-    for (int l = 0; l < LANES; ++l)
-        verdict->empty[l] = m[l] == R(0) && m[(three ? 3 : 2) * LANES + l] == R(0) &&
-                            m[(numbers - 1) * LANES + l] == R(0);
-    vec poison =
-        splat(R(0)); /* NaN where a moment is not finite: that lane must not look healthy */
-    for (int k = 0; k < numbers; ++k)
-        poison += load(m + k * LANES) - load(m + k * LANES);
-    for (int k = 0; k < numbers; ++k) {
-        real *c = (real *)correction + k * LANES;
-        store(c, factor * load(c) + poison);
-    }
-    const unsigned finite = bits_of((mask)(poison == splat(R(0))));
-    for (int l = 0; l < LANES; ++l)
-        if (!(finite >> l & 1))
-            verdict->rank[l] = 0;
+        invert_as(threshold, moments, factor, correction, lambda_min, verdict, false);
 }
 
 /* Index of x_a x_b in an upper triangle, of x_a x_b x_c among the triples of sum_classic. */
@@ -219,21 +260,22 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
     const mask some = s0 >= splat(REAL_IS_F64 ? R(0x1p-1000) : R(0x1p-106));
     const vec inverse = where(some, R(1) / s0), inverse_mu2 = splat(R(1 / mu2));
     vec mean[3]; /* xb = - sum w x / S0 */
-    real m[6 * SPHGI_LANES_MOST] __attribute__((aligned(SPHGI_ALIGNMENT)));
-    real c[6 * SPHGI_LANES_MOST] __attribute__((aligned(SPHGI_ALIGNMENT)));
+    vec m[6], c[6], lambda;
     for (int a = 0; a < d; ++a)
         mean[a] = -(load(wx + a * LANES) * inverse);
     for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
             const int k = pair_index(a, b, d);
             const vec centred = load(wxx + k * LANES) * inverse - mean[a] * mean[b];
-            store(m + k * LANES, centred * inverse_mu2);
+            m[k] = centred * inverse_mu2;
         }
-    correction_of(threshold, m, 0, c, lambda_min, verdict, three);
+    correction_of(threshold, m, 0, c, &lambda, verdict, three);
+    if (lambda_min)
+        store(lambda_min, lambda);
     vec full[3][3], y[3], y0 = splat(R(1));
     for (int a = 0; a < d; ++a)
         for (int b = 0; b < d; ++b)
-            full[a][b] = load(c + pair_index(a, b, d) * LANES) * inverse_mu2;
+            full[a][b] = c[pair_index(a, b, d)] * inverse_mu2;
     for (int a = 0; a < d; ++a) {
         y[a] = splat(R(0));
         for (int b = 0; b < d; ++b)
@@ -267,8 +309,7 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
         }
         store(z, where(some, z0 * inverse));
     }
-    for (int l = 0; l < LANES; ++l)
-        verdict->empty[l] = !(bits_of(some) >> l & 1);
+    verdict->empty = bits_of(~some) & bits_of(first_lanes(verdict->lanes));
 }
 
 static void invert_classic(const struct sphgi_threshold *threshold, double mu2, const void *sums,

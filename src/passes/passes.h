@@ -28,25 +28,34 @@ struct sphgi_columns {
     const char *at[SPHGI_COLUMNS_MOST];
     ptrdiff_t stride; /* [byte] */
     int32_t count;    /* components; 0: absent */
+    bool together;    /* they follow one another in memory */
 };
 
 /* Arrays of a piece, SPHGI_PIECE numbers each. */
 enum sphgi_array {
-    SPHGI_X, /* x_ij / H */
+    SPHGI_X, /* x_ij, times sphgi_gather.unit */
     SPHGI_Y,
     SPHGI_Z,
+    SPHGI_R,  /* |x_ij|, times unit */
     SPHGI_V,  /* V_j / H^d */
-    SPHGI_GX, /* gradient factor: s_ij x_ij, or the whole G_ij */
+    SPHGI_S,  /* s_ij / H; before that, and for the classic methods, w_j */
+    SPHGI_D,  /* (dw_j / dr) / r */
+    SPHGI_GX, /* G_ij: classic, and gradients pair by pair */
     SPHGI_GY,
     SPHGI_GZ,
     SPHGI_TX, /* minus the gradient seen from j, weighted: the other half of adjoint and symmetric
                */
     SPHGI_TY,
     SPHGI_TZ,
-    SPHGI_S,   /* s_ij; classic: w_j */
-    SPHGI_D,   /* classic: (dw_j / dr) / r */
     SPHGI_PHI, /* weight of the value: V_j W, classic Phi_j */
     SPHGI_ARRAYS
+};
+
+/* The vectors that a sum over pairs contains. */
+enum sphgi_vectors {
+    SPHGI_FACTORS,   /* s_ij x_ij */
+    SPHGI_GRADIENTS, /* G_ij */
+    SPHGI_TRANSPOSED /* T_ij */
 };
 
 struct sphgi_piece {
@@ -60,13 +69,17 @@ struct sphgi_piece {
     bool wide;                           /* ids are uint32_t row numbers, else uint16_t ids */
 };
 
-/* How pairs become x_ij. */
+/* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
+ * its weight is 0, and with fields of 0. If that cannot be (guarded), padding is told by its place.
+ */
 struct sphgi_gather {
-    const void *rows;                 /* x y z V of the sources */
-    double inverse_h, inverse_volume; /* 1/H, 1/H^d */
-    double cutoff;                    /* H, for supersets */
-    double period[3];                 /* 0: open */
+    const void *rows; /* x y z V of the sources */
+    double unit;      /* what x_ij is multiplied with: 1, classic 1 / H */
+    double cutoff;    /* H, for supersets */
+    double period[3]; /* 0: open */
     bool periodic, superset;
+    bool guarded; /* periodic, superset, or no dummy is far enough */
+    bool volumes; /* V_j differ: gather the 4th number of the rows */
     int32_t dimension;
     uint32_t dummy; /* row that a pair beyond the cutoff is sent to */
 };
@@ -76,7 +89,8 @@ struct sphgi_shape {
     sphg_kernel kernel;
     sphg_method method;
     int32_t dimension;
-    double w_scale;     /* sigma; RKPM and MLS sigma / mu2 */
+    double inverse_h;   /* from the unit of the offsets to q = r / H */
+    double w_scale;     /* sigma / H; RKPM and MLS sigma / (mu2 H) */
     double value_scale; /* sigma */
 };
 
@@ -84,6 +98,7 @@ struct sphgi_threshold {
     sphg_policy policy;
     double eps;
     int32_t dimension;
+    double unit; /* of the linearised moments: 1 / H */
 };
 
 /* What a source's term in adjoint and symmetric sums is multiplied with. */
@@ -99,11 +114,14 @@ struct sphgi_scales {
     double value, slope;
 };
 
-/* What became of the matrices of a group. */
+/* What became of the matrices of a group. A bit per lane. */
 struct sphgi_verdict {
-    uint8_t rank[SPHGI_LANES_MOST];
-    uint8_t decomposed[SPHGI_LANES_MOST];
-    uint8_t empty[SPHGI_LANES_MOST];
+    int32_t lanes;                       /* in: so many count */
+    uint32_t decomposed;                 /* the others have full rank */
+    uint32_t empty;                      /* no neighbour, or none that counts */
+    double largest_square;               /* of |A^-1|_F over the lanes that were not decomposed */
+    uint8_t rank[SPHGI_LANES_MOST];      /* of the decomposed lanes */
+    double lambda_min[SPHGI_LANES_MOST]; /* of the decomposed lanes */
 };
 
 /* Candidates of up to SPHGI_FIND_MOST targets: runs of staged sources. */
@@ -130,9 +148,9 @@ struct sphgi_passes {
                       int64_t end, int32_t first, int32_t count, void *rows);
     /* x y z from load_rows' columns; the first item that is not finite, or -1. */
     int64_t (*first_not_finite)(const struct sphgi_columns *columns, int64_t begin, int64_t end);
-    /* Rows [begin, begin + count) of positions with the volumes written into the 4th number.
-     * [0]: volumes are f32, [1]: f64. False: a volume is negative or not finite. */
-    bool (*stage[2])(const void *positions, const struct sphgi_columns *volume,
+    /* Rows [begin, begin + count) of positions with the volumes, times factor, written into the 4th
+     * number. [0]: volumes are f32, [1]: f64. False: a volume is negative or not finite. */
+    bool (*stage[2])(const void *positions, const struct sphgi_columns *volume, double factor,
                      const int32_t *order, int64_t begin, int64_t count, void *rows);
     void (*transpose_rows)(const void *rows, int32_t count, void *x, void *y, void *z);
     double (*largest_move)(const void *then, const void *now, int64_t begin, int64_t end);
@@ -142,24 +160,21 @@ struct sphgi_passes {
     bool (*is_neighbor)(const void *a, const void *b, double reach, const double *period,
                         int32_t dimension);
 
-    /* Pairs of one target, whose position is the row x_i, into the arrays of a piece from `at` on;
-     * [0]: f32 arrays, [1]: f64. ids_out: as many ids, written for supersets only. */
-    void (*gather[2])(const struct sphgi_gather *gather, const void *x_i, const void *ids,
-                      bool wide, int32_t count, void *arrays, int32_t at, void *ids_out);
-
-    /* The same for all lanes into an empty piece that holds them: 16-bit ids, no superset. */
-    void (*gather_all[2])(const struct sphgi_gather *gather, int32_t lanes, const void *const *x,
-                          const void *const *ids, const int64_t *counts, struct sphgi_piece *piece);
+    /* Pairs of the parts from `first` on into the arrays of the piece; x: row of each lane's
+     * target. [0]: f32 arrays, [1]: f64. masked: room for the ids of a piece; supersets leave
+     * theirs there, the dummy where there is no pair, and the parts point to them. */
+    void (*gather[2])(const struct sphgi_gather *gather, const void *const *x,
+                      struct sphgi_piece *piece, int32_t first, void *masked);
 
     /* Weights. */
-    void (*shape_vectors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
+    void (*shape_factors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
     void (*classic_vectors)(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
                             const void *coefficients);
-    /* The vectors of the arrays become G_ij: scale C_i times them; correction NULL: scale alone. */
+    /* G_ij = scale C_i times the vectors; correction NULL: scale alone. */
     void (*pair_gradients)(const struct sphgi_piece *piece, int32_t dimension,
-                           const void *correction, double scale);
+                           enum sphgi_vectors vectors, const void *correction, double scale);
     void (*transposed)(const struct sphgi_piece *piece, int32_t dimension,
                        const void *const rows[4], const void *density, enum sphgi_weight kind);
     void (*transposed_classic)(const struct sphgi_piece *piece, int32_t dimension,
@@ -171,17 +186,19 @@ struct sphgi_passes {
     void (*sum_moments)(const struct sphgi_piece *piece, int32_t dimension, void *partial);
     void (*sum_classic)(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
                         void *partial);
-    void (*sum_field)(const struct sphgi_piece *piece, int32_t dimension, enum sphgi_array g,
-                      const void *rows, int32_t count, const void *at_target, void *partial);
+    void (*sum_field)(const struct sphgi_piece *piece, int32_t dimension,
+                      enum sphgi_vectors vectors, const void *rows, int32_t count,
+                      const void *at_target, void *partial);
     void (*sum_value)(const struct sphgi_piece *piece, const void *rows, int32_t count,
                       void *partial);
-    void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension, const void *rows,
-                        void *partial);
+    void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension,
+                        enum sphgi_vectors vectors, const void *rows, void *partial);
     void (*sum_volume)(const struct sphgi_piece *piece, void *partial);
     void (*clear_partial)(void *partial, int32_t sums, int32_t lane);
     void (*reduce)(const void *partial, int32_t sums, void *reduced);
 
-    /* Corrections, one target a lane: sums in, numbers of the table out. */
+    /* Corrections, one target a lane: sums in, numbers of the table out. lambda_min NULL: not
+     * wanted. */
     void (*invert)(const struct sphgi_threshold *threshold, const void *moments, const void *scale,
                    void *correction, void *lambda_min, struct sphgi_verdict *verdict);
     void (*invert_classic)(const struct sphgi_threshold *threshold, double mu2, const void *sums,
@@ -196,7 +213,7 @@ struct sphgi_passes {
     void (*scale)(int32_t count, const void *in, double factor, const void *per_lane, void *out);
     void (*divide)(int32_t count, const void *in, double divisor, void *out);
     bool (*valid_volumes)(const void *volumes);                /* >= 0 and finite in every lane */
-    void (*fill)(double value, void *out);                     /* in every lane */
+    void (*fill)(int32_t count, double value, void *out);      /* a multiple of lanes */
     void (*quotient)(const void *a, const void *b, void *out); /* a NULL: 1; 0 where b is 0 */
     void (*add_outer)(int32_t dimension, int32_t count, const void *a, const void *b,
                       const void *per_lane, void *jacobian);

@@ -40,17 +40,15 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
 #if REAL_IS_F64
     .stage = {stage_f32, stage_f64},
     .gather = {gather_f32, gather_f64},
-    .gather_all = {gather_all_f32, gather_all_f64},
 #else
     .stage = {stage_f32},
     .gather = {gather_f32},
-    .gather_all = {gather_all_f32},
 #endif
     .transpose_rows = transpose_rows,
     .largest_move = largest_move,
     .find = find,
     .is_neighbor = is_neighbor,
-    .shape_vectors = shape_vectors,
+    .shape_factors = shape_factors,
     .shape_weights = shape_weights,
     .shape_values = shape_values,
     .classic_vectors = classic_vectors,

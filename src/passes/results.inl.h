@@ -29,9 +29,9 @@ static void apply(int32_t dimension, int32_t count, const void *correction, cons
         apply_as(count, correction, sums, splat(R(scale)), jacobian, 2);
 }
 
-/* G_ij = scale C_i g_ij in place, for each pair of the piece. */
+/* G_ij = scale C_i g_ij for each pair of the piece. */
 static void pair_gradients(const struct sphgi_piece *piece, int32_t dimension,
-                           const void *correction, double scale)
+                           enum sphgi_vectors vectors, const void *correction, double scale)
 {
     const int32_t d = dimension;
     const real *c = correction;
@@ -45,8 +45,7 @@ static void pair_gradients(const struct sphgi_piece *piece, int32_t dimension,
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
             real *g = array_of(piece->arrays, SPHGI_GX) + k;
             vec in[3];
-            for (int32_t a = 0; a < d; ++a)
-                in[a] = load(g + a * SPHGI_PIECE);
+            vectors_at(piece, k, vectors, d == 3, in);
             for (int32_t a = 0; a < d; ++a) {
                 vec sum = matrix[a][0] * in[0];
                 for (int32_t b = 1; b < d; ++b)
@@ -82,9 +81,10 @@ static void divide_lanes(int32_t count, const void *in, double divisor, void *ou
         store((real *)out + c * LANES, load((const real *)in + c * LANES) / splat(R(divisor)));
 }
 
-static void fill(double value, void *out)
+static void fill(int32_t count, double value, void *out)
 {
-    store(out, splat(R(value)));
+    for (int32_t k = 0; k < count; k += LANES)
+        store((real *)out + k, splat(R(value)));
 }
 
 static void quotient(const void *a, const void *b, void *out)

@@ -5,21 +5,51 @@ SPHGI_TEMPLATE real number_at(const char *at)
     return *(const real *)at;
 }
 
-static void load_rows(const struct sphgi_columns *columns, const int32_t *order, int64_t begin,
-                      int64_t end, int32_t first, int32_t count, void *rows)
+/* `count` numbers that follow one another, 0 behind them. */
+SPHGI_TEMPLATE void copy_row(real *row, const char *at, int32_t count)
+{
+    __builtin_memcpy(row, at, (size_t)count * sizeof(real));
+    for (int32_t c = count; c < SPHGI_ROW; ++c)
+        row[c] = R(0);
+}
+
+SPHGI_TEMPLATE void load_rows_as(const struct sphgi_columns *columns, const int32_t *order,
+                                 int64_t begin, int64_t end, int32_t first, int32_t count,
+                                 bool together, real *row)
 {
     enum { AHEAD = 16 };
     const ptrdiff_t stride = columns->stride;
-    real *row = rows;
+    const char *base = columns->at[first];
     for (int64_t k = begin; k < end; ++k, row += SPHGI_ROW) {
         const ptrdiff_t offset = (order ? order[k] : k) * stride;
-        if (order && count && k + AHEAD < end)
-            __builtin_prefetch(columns->at[first] + order[k + AHEAD] * stride);
+        if (order && k + AHEAD < end)
+            __builtin_prefetch(base + order[k + AHEAD] * stride);
+        if (together) {
+            copy_row(row, base + offset, count);
+            continue;
+        }
         for (int32_t c = 0; c < count; ++c)
             row[c] = number_at(columns->at[first + c] + offset);
         for (int32_t c = count; c < SPHGI_ROW; ++c)
             row[c] = R(0);
     }
+}
+
+static void load_rows(const struct sphgi_columns *columns, const int32_t *order, int64_t begin,
+                      int64_t end, int32_t first, int32_t count, void *rows)
+{
+    if (!count)
+        __builtin_memset(rows, 0, (size_t)(end - begin) * SPHGI_ROW * sizeof(real));
+    else if (!columns->together)
+        load_rows_as(columns, order, begin, end, first, count, false, rows);
+    else if (count == 1)
+        load_rows_as(columns, order, begin, end, first, 1, true, rows);
+    else if (count == 2)
+        load_rows_as(columns, order, begin, end, first, 2, true, rows);
+    else if (count == 3)
+        load_rows_as(columns, order, begin, end, first, 3, true, rows);
+    else
+        load_rows_as(columns, order, begin, end, first, 4, true, rows);
 }
 
 /* Not finite: x - x is not 0. */
@@ -39,8 +69,8 @@ static int64_t first_not_finite(const struct sphgi_columns *columns, int64_t beg
 
 /* The volume columns hold f32 or f64 fields beside the positions' own type. */
 SPHGI_TEMPLATE bool stage_as(const void *positions, const struct sphgi_columns *volume,
-                             const int32_t *order, int64_t begin, int64_t count, void *rows,
-                             bool volume_f64)
+                             double factor, const int32_t *order, int64_t begin, int64_t count,
+                             void *rows, bool volume_f64)
 {
     const real *from = (const real *)positions + SPHGI_ROW * begin;
     real *to = rows;
@@ -57,22 +87,22 @@ SPHGI_TEMPLATE bool stage_as(const void *positions, const struct sphgi_columns *
         to[0] = from[0];
         to[1] = from[1];
         to[2] = from[2];
-        to[3] = v;
+        to[3] = v * R(factor);
     }
     return valid;
 }
 
-static bool stage_f32(const void *positions, const struct sphgi_columns *volume,
+static bool stage_f32(const void *positions, const struct sphgi_columns *volume, double factor,
                       const int32_t *order, int64_t begin, int64_t count, void *rows)
 {
-    return stage_as(positions, volume, order, begin, count, rows, false);
+    return stage_as(positions, volume, factor, order, begin, count, rows, false);
 }
 
 #if REAL_IS_F64
-static bool stage_f64(const void *positions, const struct sphgi_columns *volume,
+static bool stage_f64(const void *positions, const struct sphgi_columns *volume, double factor,
                       const int32_t *order, int64_t begin, int64_t count, void *rows)
 {
-    return stage_as(positions, volume, order, begin, count, rows, true);
+    return stage_as(positions, volume, factor, order, begin, count, rows, true);
 }
 #endif
 
@@ -102,28 +132,104 @@ static double largest_move(const void *then, const void *now, int64_t begin, int
     return __builtin_sqrt(largest) * (1 + 0x1p-50);
 }
 
-/* One target a lane: LANES items. */
+/* One target a lane: LANES items. Items of numbers that follow one another are moved four numbers
+ * at a time; the last four of an item may overlap the ones before. */
+SPHGI_TEMPLATE int32_t last_four(int32_t c, int32_t count)
+{
+    return c + 4 <= count ? c : count - 4;
+}
+
+SPHGI_TEMPLATE void put_four(struct four v, real *to)
+{
+    store(to, v.x);
+    store(to + LANES, v.y);
+    store(to + 2 * LANES, v.z);
+    store(to + 3 * LANES, v.w);
+}
+
+SPHGI_TEMPLATE void load_three(const char *base, ptrdiff_t stride, const int32_t *items, real *to)
+{
+    real rows[LANES * 4];
+    const real *row[LANES];
+    for (int32_t l = 0; l < LANES; ++l) {
+        row[l] = rows + 4 * l;
+        copy_row(rows + 4 * l, base + items[l] * stride, 3);
+    }
+    const struct four v = transpose(row);
+    store(to, v.x);
+    store(to + LANES, v.y);
+    store(to + 2 * LANES, v.z);
+}
+
 static void load_lanes(const struct sphgi_columns *columns, const int32_t *items, void *out)
 {
+    const int32_t count = columns->count;
     real *to = out;
-    for (int32_t c = 0; columns->stride == 0 && c < columns->count; ++c)
-        store(to + c * LANES, splat(number_at(columns->at[c])));
-    for (int32_t l = 0; columns->stride != 0 && l < LANES; ++l) {
-        const ptrdiff_t offset = items[l] * columns->stride;
-        for (int32_t c = 0; c < columns->count; ++c)
-            to[c * LANES + l] = number_at(columns->at[c] + offset);
+    if (columns->stride == 0) {
+        for (int32_t c = 0; c < count; ++c)
+            store(to + c * LANES, splat(number_at(columns->at[c])));
+    } else if (columns->together && count >= 4) {
+        const real *row[LANES];
+        for (int32_t c = 0; c < count; c += 4) {
+            const int32_t first = last_four(c, count);
+            for (int32_t l = 0; l < LANES; ++l)
+                row[l] = (const real *)(columns->at[first] + items[l] * columns->stride);
+            put_four(transpose(row), to + first * LANES);
+        }
+    } else if (columns->together && count == 3) {
+        load_three(columns->at[0], columns->stride, items, to);
+    } else {
+        for (int32_t l = 0; l < LANES; ++l)
+            for (int32_t c = 0; c < count; ++c)
+                to[c * LANES + l] = number_at(columns->at[c] + items[l] * columns->stride);
     }
+}
+
+SPHGI_TEMPLATE real *number_of(const struct sphgi_columns *columns, int32_t c, int32_t item)
+{
+    return (real *)(void *)(uintptr_t)(columns->at[c] + item * columns->stride);
+}
+
+SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_t *items,
+                               int32_t lanes, const real *from, int32_t first, int32_t numbers)
+{
+    quad rows[LANES];
+    const real *in = from + first * LANES;
+    rows_of((struct four){load(in), load(in + LANES), load(in + 2 * LANES),
+                          load(in + (numbers - 1) * LANES)},
+            rows);
+    for (int32_t l = 0; l < LANES && l < lanes; ++l) {
+        real *to = number_of(columns, first, items[l]);
+        if (numbers == 4)
+            *(quad *)to = rows[l];
+        else
+            __builtin_memcpy(to, &rows[l], 3 * sizeof(real));
+    }
+}
+
+SPHGI_TEMPLATE void store_together(const struct sphgi_columns *columns, const int32_t *items,
+                                   int32_t lanes, const real *from)
+{
+    if (columns->count == 3)
+        store_rows(columns, items, lanes, from, 0, 3);
+    for (int32_t c = 0; columns->count > 3 && c < columns->count; c += 4)
+        store_rows(columns, items, lanes, from, last_four(c, columns->count), 4);
 }
 
 static void store_lanes(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
                         const void *in, bool accumulate)
 {
     const real *from = in;
-    for (int32_t l = 0; l < lanes; ++l) {
-        const ptrdiff_t offset = items[l] * columns->stride;
+    if (columns->together && columns->count > 2 && !accumulate) {
+        if (lanes == LANES)
+            store_together(columns, items, LANES, from);
+        else
+            store_together(columns, items, lanes, from);
+        return;
+    }
+    for (int32_t l = 0; l < lanes; ++l)
         for (int32_t c = 0; c < columns->count; ++c) {
-            real *to = (real *)(void *)(uintptr_t)(columns->at[c] + offset);
+            real *to = number_of(columns, c, items[l]);
             *to = accumulate ? *to + from[c * LANES + l] : from[c * LANES + l];
         }
-    }
 }

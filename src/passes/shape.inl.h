@@ -1,83 +1,58 @@
-/* Weights of the pairs of a piece: from x_ij and V_j to what is summed. */
+/* Weights of the pairs of a piece: from distances and V_j to what is summed. */
 
 SPHGI_TEMPLATE real *array_of(void *arrays, enum sphgi_array array)
 {
     return (real *)arrays + array * SPHGI_PIECE;
 }
 
-SPHGI_TEMPLATE vec radius(vec x, vec y, vec z, bool three)
-{
-    vec square = x * x + y * y;
-    if (three)
-        square += z * z;
-    return vsqrt(square);
-}
-
-/* s_ij x_ij (theory.md, section 2), s_ij divided by m_ref; MLS still lacks its V_i. */
-SPHGI_TEMPLATE void vectors_as(const struct sphgi_shape *shape, real *a, int32_t count,
-                               sphg_kernel kernel, sphg_method method, bool three)
+/* s_ij / H (theory.md, section 2), divided by m_ref; MLS still lacks its V_i. */
+SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t count,
+                               sphg_kernel kernel, sphg_method method)
 {
     const vec scale = splat(R(method == SPHG_KGC ? shape->w_scale : -shape->w_scale));
+    const vec inverse_h = splat(R(shape->inverse_h));
     for (int32_t k = 0; k < count; k += LANES, a += LANES) {
-        const vec x = load(a + SPHGI_X * SPHGI_PIECE), y = load(a + SPHGI_Y * SPHGI_PIECE);
-        const vec z = three ? load(a + SPHGI_Z * SPHGI_PIECE) : splat(R(0));
-        const vec v = load(a + SPHGI_V * SPHGI_PIECE);
-        const vec q = radius(x, y, z, three);
-        const vec shape_value = method == SPHG_KGC ? kernel_d(kernel, q) : kernel_w(kernel, q);
-        vec s = scale * shape_value;
+        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_PIECE);
+        const vec value = method == SPHG_KGC ? kernel_d(kernel, q) : kernel_w(kernel, q);
+        vec weight = scale;
         if (method != SPHG_MLS)
-            s *= v;
-        store(a + SPHGI_GX * SPHGI_PIECE, s * x);
-        store(a + SPHGI_GY * SPHGI_PIECE, s * y);
-        if (three)
-            store(a + SPHGI_GZ * SPHGI_PIECE, s * z);
+            weight *= load(a + SPHGI_V * SPHGI_PIECE);
+        store(a + SPHGI_S * SPHGI_PIECE, weight * value);
     }
 }
 
 /* S: w_j, D: w_j'/r, both without V_j. */
 SPHGI_TEMPLATE void weights_as(const struct sphgi_shape *shape, real *a, int32_t count,
-                               sphg_kernel kernel, bool three)
+                               sphg_kernel kernel)
 {
-    const vec scale = splat(R(shape->value_scale));
+    const vec scale = splat(R(shape->value_scale)), inverse_h = splat(R(shape->inverse_h));
     for (int32_t k = 0; k < count; k += LANES, a += LANES) {
-        const vec z = three ? load(a + SPHGI_Z * SPHGI_PIECE) : splat(R(0));
-        const vec q =
-            radius(load(a + SPHGI_X * SPHGI_PIECE), load(a + SPHGI_Y * SPHGI_PIECE), z, three);
+        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_PIECE);
         store(a + SPHGI_S * SPHGI_PIECE, scale * kernel_w(kernel, q));
         store(a + SPHGI_D * SPHGI_PIECE, scale * kernel_d(kernel, q));
     }
 }
 
-/* One instance per kernel, and inside it per method and dimension. */
+/* One instance per kernel, and inside it per method. */
 #define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
-    static void prefix##_vectors(const struct sphgi_shape *shape, void *arrays, int32_t count)     \
+    static void prefix##_factors(const struct sphgi_shape *shape, void *arrays, int32_t count)     \
     {                                                                                              \
-        vectors_of(shape, arrays, count, SPHG_##name);                                             \
+        factors_of(shape, arrays, count, SPHG_##name);                                             \
     }                                                                                              \
     static void prefix##_weights(const struct sphgi_shape *shape, void *arrays, int32_t count)     \
     {                                                                                              \
-        if (shape->dimension == 3)                                                                 \
-            weights_as(shape, arrays, count, SPHG_##name, true);                                   \
-        else                                                                                       \
-            weights_as(shape, arrays, count, SPHG_##name, false);                                  \
+        weights_as(shape, arrays, count, SPHG_##name);                                             \
     }
 
-SPHGI_TEMPLATE void vectors_of(const struct sphgi_shape *shape, real *arrays, int32_t count,
+SPHGI_TEMPLATE void factors_of(const struct sphgi_shape *shape, real *arrays, int32_t count,
                                sphg_kernel kernel)
 {
-    const bool three = shape->dimension == 3;
-    if (shape->method == SPHG_MLS && three)
-        vectors_as(shape, arrays, count, kernel, SPHG_MLS, true);
-    else if (shape->method == SPHG_MLS)
-        vectors_as(shape, arrays, count, kernel, SPHG_MLS, false);
-    else if (shape->method == SPHG_RKPM && three)
-        vectors_as(shape, arrays, count, kernel, SPHG_RKPM, true);
+    if (shape->method == SPHG_MLS)
+        factors_as(shape, arrays, count, kernel, SPHG_MLS);
     else if (shape->method == SPHG_RKPM)
-        vectors_as(shape, arrays, count, kernel, SPHG_RKPM, false);
-    else if (three)
-        vectors_as(shape, arrays, count, kernel, SPHG_KGC, true);
+        factors_as(shape, arrays, count, kernel, SPHG_RKPM);
     else
-        vectors_as(shape, arrays, count, kernel, SPHG_KGC, false);
+        factors_as(shape, arrays, count, kernel, SPHG_KGC);
 }
 
 SPHGI_KERNELS(SPHGI_INSTANCE)
@@ -85,10 +60,10 @@ SPHGI_KERNELS(SPHGI_INSTANCE)
 
 typedef void shape_function(const struct sphgi_shape *shape, void *arrays, int32_t count);
 
-static void shape_vectors(const struct sphgi_shape *shape, void *arrays, int32_t count)
+static void shape_factors(const struct sphgi_shape *shape, void *arrays, int32_t count)
 {
     static shape_function *const instance[] = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_vectors,
+#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_factors,
         SPHGI_KERNELS(SPHGI_ENTRY)
 #undef SPHGI_ENTRY
     };

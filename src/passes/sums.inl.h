@@ -16,6 +16,19 @@ SPHGI_TEMPLATE vec from(const struct sphgi_piece *piece, enum sphgi_array array,
     return load((const real *)piece->arrays + array * SPHGI_PIECE + k);
 }
 
+/* The vectors of pairs [k, k + LANES), of pair k's part. */
+SPHGI_TEMPLATE void vectors_at(const struct sphgi_piece *piece, int32_t k,
+                               enum sphgi_vectors vectors, bool three, vec *g)
+{
+    for (int32_t a = 0; a < (three ? 3 : 2); ++a)
+        if (vectors == SPHGI_FACTORS)
+            g[a] = from(piece, SPHGI_S, k) * from(piece, (enum sphgi_array)(SPHGI_X + a), k);
+        else if (vectors == SPHGI_GRADIENTS)
+            g[a] = from(piece, (enum sphgi_array)(SPHGI_GX + a), k);
+        else
+            g[a] = from(piece, (enum sphgi_array)(SPHGI_TX + a), k);
+}
+
 /* M_i = - sum s_ij x_ij x_ij^T    theory.md section 2 */
 SPHGI_TEMPLATE void moments_as(const struct sphgi_piece *piece, void *partial, bool three)
 {
@@ -26,11 +39,11 @@ SPHGI_TEMPLATE void moments_as(const struct sphgi_piece *piece, void *partial, b
             m[c] = begin_sum(piece, p, partial, c);
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
             const vec x = from(piece, SPHGI_X, k), y = from(piece, SPHGI_Y, k);
-            const vec gx = from(piece, SPHGI_GX, k), gy = from(piece, SPHGI_GY, k);
+            const vec s = from(piece, SPHGI_S, k), gx = s * x, gy = s * y;
             m[0] -= gx * x;
             m[1] -= gx * y;
             if (three) {
-                const vec z = from(piece, SPHGI_Z, k), gz = from(piece, SPHGI_GZ, k);
+                const vec z = from(piece, SPHGI_Z, k), gz = s * z;
                 m[2] -= gx * z;
                 m[3] -= gy * y;
                 m[4] -= gy * z;
@@ -54,31 +67,29 @@ static void sum_moments(const struct sphgi_piece *piece, int32_t dimension, void
 
 /* sum (A_j - A_i) g, A_i at_target[c][lane], for `count` components of one row; partial in the
  * order [component][axis]. */
-SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_array g, const real *rows,
-                             const real *at_target, void *partial, int32_t count, bool three)
+SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                             const real *rows, const real *at_target, void *partial, int32_t count,
+                             bool three, bool wide)
 {
     const int32_t d = three ? 3 : 2;
     for (int32_t p = 0; p < piece->parts; ++p) {
         const int32_t lane = piece->lane[p], begin = piece->begin[p];
+        const char *ids = piece->ids[p];
         vec sum[12], a[4];
         for (int32_t c = 0; c < count; ++c)
             a[c] = splat(at_target[c * LANES + lane]);
         for (int32_t c = 0; c < count * d; ++c)
             sum[c] = begin_sum(piece, p, partial, c);
-        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES) {
-            const char *ids =
-                (const char *)piece->ids[p] + (ptrdiff_t)(k - begin) * (piece->wide ? 4 : 2);
-            const struct four row = gather_rows(rows, ids, piece->wide);
-            const vec x = from(piece, g, k);
-            const vec y = from(piece, (enum sphgi_array)(g + 1), k);
-            const vec z = three ? from(piece, (enum sphgi_array)(g + 2), k) : x;
+        for (int32_t k = begin; k < piece->begin[p + 1];
+             k += LANES, ids += LANES * (wide ? 4 : 2)) {
+            const struct four row = gather_rows(rows, ids, wide);
             const vec value[4] = {row.x, row.y, row.z, row.w};
+            vec g[3];
+            vectors_at(piece, k, vectors, three, g);
             for (int32_t c = 0; c < count; ++c) {
                 const vec difference = value[c] - a[c];
-                sum[c * d] += difference * x;
-                sum[c * d + 1] += difference * y;
-                if (three)
-                    sum[c * d + 2] += difference * z;
+                for (int32_t b = 0; b < d; ++b)
+                    sum[c * d + b] += difference * g[b];
             }
         }
         for (int32_t c = 0; c < count * d; ++c)
@@ -86,31 +97,53 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_array g
     }
 }
 
-SPHGI_TEMPLATE void field_of(const struct sphgi_piece *piece, enum sphgi_array g, const void *rows,
-                             int32_t count, const void *at_target, void *partial, bool three)
+SPHGI_TEMPLATE void field_ids(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                              const void *rows, int32_t count, const void *at_target, void *partial,
+                              bool three)
+{
+    if (piece->wide)
+        field_as(piece, vectors, rows, at_target, partial, count, three, true);
+    else
+        field_as(piece, vectors, rows, at_target, partial, count, three, false);
+}
+
+SPHGI_TEMPLATE void field_of(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                             const void *rows, int32_t count, const void *at_target, void *partial,
+                             bool three)
 {
     switch (count) {
     case 1:
-        field_as(piece, g, rows, at_target, partial, 1, three);
+        field_ids(piece, vectors, rows, 1, at_target, partial, three);
         break;
     case 2:
-        field_as(piece, g, rows, at_target, partial, 2, three);
+        field_ids(piece, vectors, rows, 2, at_target, partial, three);
         break;
     case 3:
-        field_as(piece, g, rows, at_target, partial, 3, three);
+        field_ids(piece, vectors, rows, 3, at_target, partial, three);
         break;
     default:
-        field_as(piece, g, rows, at_target, partial, 4, three);
+        field_ids(piece, vectors, rows, 4, at_target, partial, three);
     }
 }
 
-static void sum_field(const struct sphgi_piece *piece, int32_t dimension, enum sphgi_array g,
-                      const void *rows, int32_t count, const void *at_target, void *partial)
+SPHGI_TEMPLATE void field_in(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                             const void *rows, int32_t count, const void *at_target, void *partial,
+                             bool three)
+{
+    if (vectors == SPHGI_FACTORS)
+        field_of(piece, SPHGI_FACTORS, rows, count, at_target, partial, three);
+    else /* G or T: which of them is no question inside the loop */
+        field_of(piece, vectors, rows, count, at_target, partial, three);
+}
+
+static void sum_field(const struct sphgi_piece *piece, int32_t dimension,
+                      enum sphgi_vectors vectors, const void *rows, int32_t count,
+                      const void *at_target, void *partial)
 {
     if (dimension == 3)
-        field_of(piece, g, rows, count, at_target, partial, true);
+        field_in(piece, vectors, rows, count, at_target, partial, true);
     else
-        field_of(piece, g, rows, count, at_target, partial, false);
+        field_in(piece, vectors, rows, count, at_target, partial, false);
 }
 
 /* Components of row k's source. */
@@ -143,17 +176,21 @@ static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t
 }
 
 /* sum g, or sum rho_j g with the density in the first number of the rows */
-static void sum_vectors(const struct sphgi_piece *piece, int32_t dimension, const void *rows,
-                        void *partial)
+static void sum_vectors(const struct sphgi_piece *piece, int32_t dimension,
+                        enum sphgi_vectors vectors, const void *rows, void *partial)
 {
     for (int32_t p = 0; p < piece->parts; ++p)
         for (int32_t c = 0; c < dimension; ++c) {
             vec sum = begin_sum(piece, p, partial, c);
             for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-                vec g = from(piece, (enum sphgi_array)(SPHGI_GX + c), k);
+                vec g[3];
+                if (dimension == 3)
+                    vectors_at(piece, k, vectors, true, g);
+                else
+                    vectors_at(piece, k, vectors, false, g);
                 if (rows)
-                    g *= row_at(piece, p, k, rows).x;
-                sum += g;
+                    g[c] *= row_at(piece, p, k, rows).x;
+                sum += g[c];
             }
             *partial_of(partial, c, piece->lane[p]) = sum;
         }
@@ -214,20 +251,20 @@ static void transposed(const struct sphgi_piece *piece, int32_t dimension,
             const char *ids = (const char *)piece->ids[p] +
                               (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
             const vec weight = weight_of(piece, p, k, density, kind);
-            const vec gx = weight * from(piece, SPHGI_GX, k);
-            const vec gy = weight * from(piece, SPHGI_GY, k);
+            const vec s = weight * from(piece, SPHGI_S, k);
+            const vec gx = s * from(piece, SPHGI_X, k), gy = s * from(piece, SPHGI_Y, k);
             real *t = array_of(piece->arrays, SPHGI_TX) + k;
             if (!rows[0]) { /* plain SPH: C_j = 1 */
                 store(t, gx);
                 store(t + SPHGI_PIECE, gy);
                 if (three)
-                    store(t + 2 * SPHGI_PIECE, weight * from(piece, SPHGI_GZ, k));
+                    store(t + 2 * SPHGI_PIECE, s * from(piece, SPHGI_Z, k));
                 continue;
             }
             const struct four c = gather_rows(rows[0], ids, piece->wide);
             if (three) {
                 const struct four e = gather_rows(rows[1], ids, piece->wide);
-                const vec gz = weight * from(piece, SPHGI_GZ, k);
+                const vec gz = s * from(piece, SPHGI_Z, k);
                 store(t, c.x * gx + c.y * gy + c.z * gz);
                 store(t + SPHGI_PIECE, c.y * gx + c.w * gy + e.x * gz);
                 store(t + 2 * SPHGI_PIECE, c.z * gx + e.x * gy + e.y * gz);

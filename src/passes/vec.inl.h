@@ -47,9 +47,15 @@ SPHGI_TEMPLATE vec where(mask m, vec v) /* v where m, else +0 */
     return (vec)(m & (mask)v);
 }
 
-SPHGI_TEMPLATE vec select(mask m, vec a, vec b)
+SPHGI_TEMPLATE vec select(mask m, vec a, vec b) /* whole lanes: a where m, else b */
 {
+#if defined(__AVX2__) && REAL_IS_F64
+    return (vec)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)m);
+#elif defined(__AVX2__)
+    return (vec)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)m);
+#else
     return (vec)((m & (mask)a) | (~m & (mask)b));
+#endif
 }
 
 SPHGI_TEMPLATE vec vabs(vec v)
@@ -139,6 +145,14 @@ SPHGI_TEMPLATE mask less(vec a, vec b)
     return (mask)(a < b);
 }
 
+SPHGI_TEMPLATE mask first_lanes(int32_t count) /* the lanes below count, which may be any number */
+{
+    mask numbers;
+    for (int k = 0; k < LANES; ++k)
+        numbers[k] = k;
+    return (mask)(numbers < (mask){0} + (lane_int)count);
+}
+
 /* Keeps the compiler from fusing a product into a following sum: the neighbour predicate is
  * defined without FMA (docs/theory.md, section 1). */
 SPHGI_TEMPLATE vec rounded(vec v)
@@ -188,16 +202,17 @@ struct four {
     vec x, y, z, w;
 };
 
+typedef real quad
+    __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
+
 #if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes of f32 */
-typedef real quad __attribute__((vector_size(16), aligned(4), may_alias));
 SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
 {
     return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-SPHGI_TEMPLATE struct four transpose(const real *const *row)
+/* [row][number] to [number][row] in each half, and back. */
+SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
 {
-    const vec a = two_rows(row[0], row[4]), b = two_rows(row[1], row[5]);
-    const vec c = two_rows(row[2], row[6]), d = two_rows(row[3], row[7]);
     const vec ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
     const vec AB = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
     const vec cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
@@ -207,6 +222,26 @@ SPHGI_TEMPLATE struct four transpose(const real *const *row)
                          __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
                          __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    return turned(two_rows(row[0], row[4]), two_rows(row[1], row[5]), two_rows(row[2], row[6]),
+                  two_rows(row[3], row[7]));
+}
+SPHGI_TEMPLATE quad half_of(vec v, int half)
+{
+    return half ? __builtin_shufflevector(v, v, 4, 5, 6, 7)
+                : __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    for (int half = 0; half < 2; ++half) {
+        rows[4 * half] = half_of(t.x, half);
+        rows[4 * half + 1] = half_of(t.y, half);
+        rows[4 * half + 2] = half_of(t.z, half);
+        rows[4 * half + 3] = half_of(t.w, half);
+    }
+}
 #elif REAL_IS_F64 && VECTOR_BYTES == 16
 SPHGI_TEMPLATE struct four transpose(const real *const *row)
 {
@@ -214,10 +249,14 @@ SPHGI_TEMPLATE struct four transpose(const real *const *row)
     return (struct four){__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3),
                          __builtin_shufflevector(A, B, 0, 2), __builtin_shufflevector(A, B, 1, 3)};
 }
-#else /* four lanes */
-SPHGI_TEMPLATE struct four transpose(const real *const *row)
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
 {
-    const vec a = load(row[0]), b = load(row[1]), c = load(row[2]), d = load(row[3]);
+    for (int l = 0; l < 2; ++l)
+        rows[l] = (quad){v.x[l], v.y[l], v.z[l], v.w[l]};
+}
+#else /* four lanes */
+SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
+{
     const vec ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
     const vec AB = __builtin_shufflevector(a, b, 1, 5, 3, 7);
     const vec cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
@@ -225,6 +264,18 @@ SPHGI_TEMPLATE struct four transpose(const real *const *row)
     return (struct four){
         __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(AB, CD, 0, 1, 4, 5),
         __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(AB, CD, 2, 3, 6, 7)};
+}
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    return turned(load(row[0]), load(row[1]), load(row[2]), load(row[3]));
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    rows[0] = (quad)t.x;
+    rows[1] = (quad)t.y;
+    rows[2] = (quad)t.z;
+    rows[3] = (quad)t.w;
 }
 #endif
 
