@@ -263,7 +263,7 @@ static sphg_result take_field(struct making *making, int32_t k)
     field->stream = plan->stream_count;
     plan->stream_count += field->streams;
     field->at_target = plan->target_lanes;
-    plan->target_lanes += field->components;
+    plan->target_lanes += field->streams * SPHGI_ROW; /* whole rows may be loaded */
     result = take_results(making, k);
     return result ? result : take_field_at_target(making, k);
 }

@@ -77,20 +77,23 @@ bool sphgi_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_fiel
                   (size_t)field->components * sizeof field->target.at[0]) == 0;
 }
 
-static void load_target(struct sphgi_worker *w, const struct sphgi_field_plan *field, char *to)
+static void load_target(struct sphgi_worker *w, int32_t number, char *to)
 {
     const struct sphgi_sweep *sweep = w->sweep;
-    const size_t size = sphgi_size_of_type(sweep->plan->type);
-    if (!field->target.count) {
-        memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
-    } else if (sphgi_targets_in_rows(w, field)) {
+    const struct sphgi_field_plan *field = &sweep->plan->fields[number];
+    const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
+    if (number < 32 && (w->targets_in_rows >> number & 1)) {
         const size_t rows = (size_t)sweep->set->neighbors->source_count + 1;
-        const struct sphgi_columns columns = sphgi_dense_columns(
-            sweep->packed_rows + (size_t)field->stream * rows * SPHGI_ROW * size, field->components,
-            SPHGI_ROW, sweep->plan->type);
+        struct sphgi_columns columns;
+        columns.at[0] = sweep->packed_rows + (size_t)field->stream * rows * row;
+        columns.stride = (ptrdiff_t)row;
+        columns.count = SPHGI_ROW;
+        columns.together = true;
         w->passes->load_lanes(&columns, w->group.place, to);
-    } else {
+    } else if (field->target.count) {
         w->passes->load_lanes(&field->target, w->group.target, to);
+    } else {
+        memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
     }
 }
 
@@ -103,7 +106,7 @@ void sphgi_load_targets(struct sphgi_worker *w)
     const struct sphgi_group *g = &w->group;
     const struct sphgi_passes *p = w->passes;
     for (int32_t k = 0; k < plan->field_count; ++k)
-        load_target(w, &plan->fields[k], sphgi_lane(w, w->at_target, plan->fields[k].at_target));
+        load_target(w, k, sphgi_lane(w, w->at_target, plan->fields[k].at_target));
     if (plan->transposes[0] || plan->transposes[1]) {
         if (plan->target_volume.count)
             sphgi_load_volume(w, &plan->target_volume, w->volume);

@@ -91,7 +91,9 @@ static void list_needs(struct sphgi_worker *w)
     will_need(w, &plan->correction);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (!sphgi_targets_in_rows(w, field))
+        if (k < 32 && sphgi_targets_in_rows(w, field))
+            w->targets_in_rows |= 1u << k;
+        else
             will_need(w, &field->target);
         will_need(w, &field->gradient);
         will_need(w, &field->divergence);

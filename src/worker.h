@@ -81,6 +81,7 @@ struct sphgi_worker {
     unsigned summing;                  /* SPHGI_SUM_..., of this pass over the group */
     bool coefficients_first;           /* they must be known before fields can be summed */
     bool targets_loaded;               /* A_i, V_i, rho_i of the group */
+    uint32_t targets_in_rows;          /* a bit per field: A_i stand in packed rows */
     int32_t pieces;                    /* evaluated since the group began */
     bool local;                        /* rows are copied pair by pair */
     const int32_t *items;              /* sources behind the ids; NULL: the ids are their numbers */

@@ -151,9 +151,10 @@ SPHGI_TEMPLATE void load_three(const char *base, ptrdiff_t stride, const int32_t
 {
     real rows[LANES * 4];
     const real *row[LANES];
-    for (int32_t l = 0; l < LANES; ++l) {
+    for (int32_t l = 0; l < LANES; ++l) { /* whole rows: what is stored in parts is read late */
+        const real *at = (const real *)(base + items[l] * stride);
         row[l] = rows + 4 * l;
-        copy_row(rows + 4 * l, base + items[l] * stride, 3);
+        *(quad *)(rows + 4 * l) = (quad){at[0], at[1], at[2], R(0)};
     }
     const struct four v = transpose(row);
     store(to, v.x);
