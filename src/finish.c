@@ -57,12 +57,12 @@ static void round_as_table(struct sphgi_worker *w, bool wanted)
         char *ours = sphgi_lane(w, w->coefficients, share->first);
         char *raw = sphgi_lane(w, w->raw, share->first);
         if (!exact || wanted)
-            w->passes->scale(share->count, ours, share->mantissa, NULL, raw);
+            w->passes->scale(w->width, share->count, ours, share->mantissa, NULL, raw);
         if (!exact)
-            w->passes->divide(share->count, raw, share->mantissa, ours);
+            w->passes->divide(w->width, share->count, raw, share->mantissa, ours);
         for (int p = 0; wanted && p < 2; ++p)
             if (share->power[p] != 1)
-                w->passes->scale(share->count, raw, share->power[p], NULL, raw);
+                w->passes->scale(w->width, share->count, raw, share->power[p], NULL, raw);
     }
 }
 
@@ -73,17 +73,17 @@ static void take_from_table(struct sphgi_worker *w)
         char *raw = sphgi_lane(w, w->raw, share->first);
         for (int p = 0; p < 2; ++p)
             if (share->power[p] != 1)
-                w->passes->scale(share->count, raw, 1 / share->power[p], NULL, raw);
-        w->passes->divide(share->count, raw, share->mantissa,
+                w->passes->scale(w->width, share->count, raw, 1 / share->power[p], NULL, raw);
+        w->passes->divide(w->width, share->count, raw, share->mantissa,
                           sphgi_lane(w, w->coefficients, share->first));
     }
 }
 
 void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
 {
-    w->passes->load_lanes(columns, w->group.target, to);
-    w->tally->bad_volume |= !w->passes->valid_volumes(to);
-    w->passes->scale(1, to, sphgi_volume_unit(w->sweep), NULL, to);
+    w->passes->load_lanes(w->width, columns, sphgi_targets(w), to);
+    w->tally->bad_volume |= !w->passes->valid_volumes(w->width, to);
+    w->passes->scale(w->width, 1, to, sphgi_volume_unit(w->sweep), NULL, to);
 }
 
 static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verdict)
@@ -92,14 +92,15 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
     const void *scale = NULL;
     if (plan->scheme.method == SPHG_MLS) {
         if (plan->mean_volume)
-            w->passes->quotient(sphgi_lane(w, w->reduced, plan->volume_sum),
+            w->passes->quotient(w->width, sphgi_lane(w, w->reduced, plan->volume_sum),
                                 sphgi_lane(w, w->reduced, plan->volume_sum + 1), w->extra);
         else
             sphgi_load_volume(w, &plan->target_volume, w->extra);
         scale = w->extra;
     }
-    w->passes->invert(&w->threshold, sphgi_lane(w, w->reduced, plan->moment_sum), scale,
-                      w->coefficients, plan->lambda_min.count ? w->lambda_min : NULL, verdict);
+    w->passes->invert(w->width, &w->threshold, sphgi_lane(w, w->reduced, plan->moment_sum), scale,
+                      sphgi_lane(w, w->coefficients, 0),
+                      plan->lambda_min.count ? w->lambda_min : NULL, verdict);
 }
 
 /* Weight of the target itself, if it is a source. */
@@ -107,35 +108,36 @@ static void self_weight(struct sphgi_worker *w, char *to)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-    w->passes->fill(w->passes->lanes, plan->own_set < 0 ? 0 : at_zero, to);
+    w->passes->fill(w->width, plan->own_set < 0 ? 0 : at_zero, to);
     if (plan->own_set >= 0 && plan->weighted) {
         sphgi_load_volume(w, &plan->own_volume, to);
-        w->passes->scale(1, to, at_zero, NULL, to);
+        w->passes->scale(w->width, 1, to, at_zero, NULL, to);
     }
 }
 
 static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *verdict)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
     if (plan->correction.count)
-        w->passes->store_lanes(&plan->correction, g->target, g->lanes, w->raw, false);
+        w->passes->store_lanes(w->targets, &plan->correction, sphgi_targets(w),
+                               sphgi_lane(w, w->raw, 0), false);
     if (plan->lambda_min.count)
-        w->passes->store_lanes(&plan->lambda_min, g->target, g->lanes, w->lambda_min, false);
-    for (int32_t l = 0; plan->rank.count && l < g->lanes; ++l)
-        *(uint8_t *)(uintptr_t)(plan->rank.at[0] + g->target[l] * plan->rank.stride) =
-            verdict->decomposed ? verdict->rank[l] : (uint8_t)plan->dimension;
+        w->passes->store_lanes(w->targets, &plan->lambda_min, sphgi_targets(w), w->lambda_min,
+                               false);
+    for (int32_t l = 0; plan->rank.count && l < w->targets; ++l)
+        *(uint8_t *)(uintptr_t)(plan->rank.at[0] + sphgi_targets(w)[l] * plan->rank.stride) =
+            verdict->decomposed >> l & 1 ? verdict->rank[l] : (uint8_t)plan->dimension;
 }
 
 void sphgi_finish_corrections(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    struct sphgi_verdict verdict = {.lanes = w->group.lanes};
+    struct sphgi_verdict verdict = {.lanes = w->targets};
     if (plan->classic) {
         self_weight(w, w->self);
         w->passes->invert_classic(
-            &w->threshold, sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
-            sphgi_lane(w, w->reduced, plan->moment_sum), w->self, w->coefficients,
+            w->width, &w->threshold, sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
+            sphgi_lane(w, w->reduced, plan->moment_sum), w->self, sphgi_lane(w, w->coefficients, 0),
             plan->lambda_min.count ? w->lambda_min : NULL, &verdict);
     } else
         invert_linearised(w, &verdict);
@@ -147,12 +149,13 @@ void sphgi_finish_corrections(struct sphgi_worker *w)
 void sphgi_load_corrections(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
     if (w->sweep->coefficients) {
-        w->passes->load_lanes(w->sweep->coefficients, g->target, w->coefficients);
+        w->passes->load_lanes(w->width, w->sweep->coefficients, sphgi_targets(w),
+                              sphgi_lane(w, w->coefficients, 0));
         return;
     }
-    w->passes->load_lanes(&plan->target_correction, g->target, w->raw);
+    w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
+                          sphgi_lane(w, w->raw, 0));
     take_from_table(w);
 }
 
@@ -163,15 +166,15 @@ void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
     const int32_t d = w->sweep->plan->dimension;
     self_weight(w, w->self);
     for (int32_t k = 0; k < d; ++k)
-        w->passes->scale(1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)), w->inverse_h,
-                         w->self, sphgi_lane(w, gradient, k));
+        w->passes->scale(w->width, 1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)),
+                         w->inverse_h, w->self, sphgi_lane(w, gradient, k));
 }
 
 /* The target's own term of the direct form. */
 static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     sphgi_self_gradient(w, w->extra);
-    w->passes->add_outer(w->sweep->plan->dimension, field->components,
+    w->passes->add_outer(w->width, w->sweep->plan->dimension, field->components,
                          sphgi_lane(w, w->at_target, field->at_target), w->extra, NULL,
                          w->jacobian);
 }
@@ -181,8 +184,9 @@ static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan
     const struct sphgi_plan *plan = w->sweep->plan;
     const double inverse_h = w->inverse_h;
     const bool multiply = plan->corrects && !plan->classic;
-    w->passes->apply(plan->dimension, field->components, multiply ? w->coefficients : NULL,
-                     sphgi_lane(w, w->reduced, field->sum), inverse_h, w->jacobian);
+    w->passes->apply(w->width, plan->dimension, field->components,
+                     multiply ? w->coefficients : NULL, sphgi_lane(w, w->reduced, field->sum),
+                     inverse_h, w->jacobian);
     if (field->form == SPHG_DIRECT && plan->classic && plan->own_set >= 0)
         add_self_gradient(w, field);
 }
@@ -192,7 +196,7 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const bool multiply = plan->corrects && !plan->classic;
-    w->passes->apply(plan->dimension, 1, multiply ? w->coefficients : NULL,
+    w->passes->apply(w->width, plan->dimension, 1, multiply ? w->coefficients : NULL,
                      sphgi_lane(w, w->reduced, sum), 1, to);
 }
 
@@ -211,58 +215,59 @@ static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_p
     const double volume = sphgi_power(plan->scheme.radius, d);
     char *weight = sphgi_lane(w, w->extra, 4);
     own_side(w, plan->vector_sum[symmetric], w->extra);
-    p->apply(d, field->components, NULL, sphgi_lane(w, w->reduced, field->sum), table, w->jacobian);
+    p->apply(w->width, d, field->components, NULL, sphgi_lane(w, w->reduced, field->sum), table,
+             w->jacobian);
     const void *own_weight = NULL;
     if (symmetric) {
         if (volume_inside)
-            p->scale(n, w->jacobian, 1, w->density, w->jacobian);
+            p->scale(w->width, n, w->jacobian, 1, w->density, w->jacobian);
         else {
-            p->quotient(w->density, w->volume, weight);
-            p->scale(n, w->jacobian, 1, weight, w->jacobian);
+            p->quotient(w->width, w->density, w->volume, weight);
+            p->scale(w->width, n, w->jacobian, 1, weight, w->jacobian);
         }
-        p->quotient(NULL, w->density, weight);
+        p->quotient(w->width, NULL, w->density, weight);
         own_weight = weight;
     } else if (!volume_inside)
         own_weight = w->volume;
-    p->add_outer(d, field->components, sphgi_lane(w, w->at_target, field->at_target), w->extra,
-                 own_weight, w->jacobian);
+    p->add_outer(w->width, d, field->components, sphgi_lane(w, w->at_target, field->at_target),
+                 w->extra, own_weight, w->jacobian);
     const double factor = w->inverse_h * (symmetric ? 1 : volume);
-    p->scale(n, w->jacobian, factor, !symmetric && volume_inside ? w->volume : NULL, w->jacobian);
+    p->scale(w->width, n, w->jacobian, factor, !symmetric && volume_inside ? w->volume : NULL,
+             w->jacobian);
 }
 
 static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
     char *value = sphgi_lane(w, w->reduced, field->value_sum);
     if (plan->own_set >= 0) {
         if (plan->classic) {
             self_weight(w, w->self);
-            w->passes->scale(1, w->coefficients, 1, w->self, w->extra);
+            w->passes->scale(w->width, 1, w->coefficients, 1, w->self, w->extra);
         } else {
             const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
             sphgi_load_volume(w, &plan->own_volume, w->extra);
-            w->passes->scale(1, w->extra, at_zero, NULL, w->extra);
+            w->passes->scale(w->width, 1, w->extra, at_zero, NULL, w->extra);
         }
-        w->passes->add_outer(1, field->components, sphgi_lane(w, w->at_target, field->at_target),
-                             w->extra, NULL, value);
+        w->passes->add_outer(w->width, 1, field->components,
+                             sphgi_lane(w, w->at_target, field->at_target), w->extra, NULL, value);
     }
-    w->passes->store_lanes(&field->value, g->target, g->lanes, value, field->accumulate);
+    w->passes->store_lanes(w->targets, &field->value, sphgi_targets(w), value, field->accumulate);
 }
 
 static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
     char *divergence = w->contracted, *curl = sphgi_lane(w, w->contracted, 3);
-    w->passes->contract(plan->dimension, field->shape, w->jacobian,
+    w->passes->contract(w->width, plan->dimension, field->shape, w->jacobian,
                         field->divergence.count ? divergence : NULL,
                         field->curl.count ? curl : NULL);
     const struct sphgi_columns *columns[3] = {&field->gradient, &field->divergence, &field->curl};
     const char *lanes[3] = {w->jacobian, divergence, curl};
     for (int32_t k = 0; k < 3; ++k)
         if (columns[k]->count)
-            w->passes->store_lanes(columns[k], g->target, g->lanes, lanes[k], field->accumulate);
+            w->passes->store_lanes(w->targets, columns[k], sphgi_targets(w), lanes[k],
+                                   field->accumulate);
 }
 
 void sphgi_finish_fields(struct sphgi_worker *w)

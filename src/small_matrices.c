@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { GRAIN = 64 /* groups of lanes */ };
+enum { GRAIN = 16 /* groups */ };
 
 /* What the batches share: one group of lanes after the other. */
 struct batch {
@@ -25,33 +25,33 @@ struct batch {
 };
 
 #define LANES_BUFFER(name, numbers)                                                                \
-    unsigned char name[(numbers)*SPHGI_LANES_MOST * sizeof(double)]                                \
+    unsigned char name[(numbers)*SPHGI_WIDTH * sizeof(double)]                                     \
         __attribute__((aligned(SPHGI_ALIGNMENT)))
 
 static int32_t group_count(const struct batch *b)
 {
-    return (int32_t)(((int64_t)b->count + b->passes->lanes - 1) / b->passes->lanes);
+    return (int32_t)(((int64_t)b->count + SPHGI_WIDTH - 1) / SPHGI_WIDTH);
 }
 
 /* Items of group g; returns how many. */
 static int32_t items_of(const struct batch *b, int32_t g, int32_t *items)
 {
-    const int32_t lanes = b->passes->lanes, first = g * lanes;
-    const int32_t count = sphgi_min32(lanes, b->count - first);
-    for (int32_t l = 0; l < lanes; ++l)
+    const int32_t first = g * SPHGI_WIDTH;
+    const int32_t count = sphgi_min32(SPHGI_WIDTH, b->count - first);
+    for (int32_t l = 0; l < SPHGI_WIDTH; ++l)
         items[l] = first + (l < count ? l : 0);
     return count;
 }
 
 static double lane_get(const struct batch *b, const void *lanes, int32_t number, int32_t lane)
 {
-    const int32_t k = number * b->passes->lanes + lane;
+    const int32_t k = number * SPHGI_WIDTH + lane;
     return b->type == SPHG_F64 ? ((const double *)lanes)[k] : (double)((const float *)lanes)[k];
 }
 
 static void lane_set(const struct batch *b, void *lanes, int32_t number, int32_t lane, double x)
 {
-    const int32_t k = number * b->passes->lanes + lane;
+    const int32_t k = number * SPHGI_WIDTH + lane;
     if (b->type == SPHG_F64)
         ((double *)lanes)[k] = x;
     else
@@ -74,27 +74,27 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
     LANES_BUFFER(volume, 1);
     LANES_BUFFER(lambda_min, 1);
     for (int32_t g = begin; g < end; ++g) {
-        int32_t items[SPHGI_LANES_MOST];
+        int32_t items[SPHGI_WIDTH];
         const int32_t count = items_of(b, g, items);
         struct sphgi_verdict verdict = {.lanes = count};
-        p->load_lanes(&b->in, items, moments);
-        p->scale(numbers, moments, factor, NULL, moments);
+        p->load_lanes(SPHGI_WIDTH, &b->in, items, moments);
+        p->scale(SPHGI_WIDTH, numbers, moments, factor, NULL, moments);
         if (b->volume.count) {
-            p->load_lanes(&b->volume, items, volume);
-            tally->bad_volume |= !p->valid_volumes(volume);
-            p->scale(1, volume, per_volume, NULL, volume);
+            p->load_lanes(SPHGI_WIDTH, &b->volume, items, volume);
+            tally->bad_volume |= !p->valid_volumes(SPHGI_WIDTH, volume);
+            p->scale(SPHGI_WIDTH, 1, volume, per_volume, NULL, volume);
         }
-        p->invert(&b->threshold, moments, b->volume.count ? volume : NULL, correction, lambda_min,
-                  &verdict);
-        p->scale(numbers, correction, factor, NULL, correction);
+        p->invert(SPHGI_WIDTH, &b->threshold, moments, b->volume.count ? volume : NULL, correction,
+                  lambda_min, &verdict);
+        p->scale(SPHGI_WIDTH, numbers, correction, factor, NULL, correction);
         sphgi_tally_verdict(tally, &verdict, b->dimension);
         if (b->out[0].count)
-            p->store_lanes(&b->out[0], items, count, correction, false);
+            p->store_lanes(count, &b->out[0], items, correction, false);
         if (b->out[1].count)
-            p->store_lanes(&b->out[1], items, count, lambda_min, false);
+            p->store_lanes(count, &b->out[1], items, lambda_min, false);
         for (int32_t l = 0; b->rank.count && l < count; ++l)
             *(uint8_t *)(uintptr_t)(b->rank.at[0] + items[l] * b->rank.stride) =
-                verdict.decomposed ? verdict.rank[l] : (uint8_t)b->dimension;
+                verdict.decomposed >> l & 1 ? verdict.rank[l] : (uint8_t)b->dimension;
     }
 }
 
@@ -226,7 +226,7 @@ sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme
 /* Powers of two that keep products of entries in range; f32 is widened anyway. */
 static void scale_lanes(const struct batch *b, void *matrices, int32_t numbers, int *exponents)
 {
-    for (int32_t l = 0; l < b->passes->lanes; ++l) {
+    for (int32_t l = 0; l < SPHGI_WIDTH; ++l) {
         double largest = 0;
         exponents[l] = 0;
         for (int32_t k = 0; k < numbers; ++k)
@@ -275,12 +275,12 @@ static void eigen_task(void *data, int32_t begin, int32_t end, int32_t worker)
     LANES_BUFFER(vectors, 9);
     (void)worker;
     for (int32_t g = begin; g < end; ++g) {
-        int32_t items[SPHGI_LANES_MOST];
-        int exponents[SPHGI_LANES_MOST];
+        int32_t items[SPHGI_WIDTH];
+        int exponents[SPHGI_WIDTH];
         const int32_t count = items_of(b, g, items);
-        b->passes->load_lanes(&b->in, items, matrices);
+        b->passes->load_lanes(SPHGI_WIDTH, &b->in, items, matrices);
         scale_lanes(b, matrices, b->in.count, exponents);
-        b->passes->eigen(d, matrices, values, vectors);
+        b->passes->eigen(SPHGI_WIDTH, d, matrices, values, vectors);
         for (int32_t l = 0; l < count; ++l) {
             struct eigen e;
             for (int32_t c = 0; c < d; ++c) {
@@ -296,9 +296,9 @@ static void eigen_task(void *data, int32_t begin, int32_t end, int32_t worker)
             }
         }
         if (b->out[0].count)
-            b->passes->store_lanes(&b->out[0], items, count, values, false);
+            b->passes->store_lanes(count, &b->out[0], items, values, false);
         if (b->out[1].count)
-            b->passes->store_lanes(&b->out[1], items, count, vectors, false);
+            b->passes->store_lanes(count, &b->out[1], items, vectors, false);
     }
 }
 
@@ -361,9 +361,9 @@ static void svd_task(void *data, int32_t begin, int32_t end, int32_t worker)
     const void *results[3] = {u, sigma, v};
     (void)worker;
     for (int32_t g = begin; g < end; ++g) {
-        int32_t items[SPHGI_LANES_MOST];
+        int32_t items[SPHGI_WIDTH];
         const int32_t count = items_of(b, g, items);
-        b->passes->load_lanes(&b->in, items, matrices);
+        b->passes->load_lanes(SPHGI_WIDTH, &b->in, items, matrices);
         for (int32_t l = 0; l < count; ++l) {
             double a[9], left[9], values[3], right[9];
             for (int32_t k = 0; k < 9; ++k)
@@ -378,7 +378,7 @@ static void svd_task(void *data, int32_t begin, int32_t end, int32_t worker)
         }
         for (int32_t k = 0; k < 3; ++k)
             if (b->out[k].count)
-                b->passes->store_lanes(&b->out[k], items, count, results[k], false);
+                b->passes->store_lanes(count, &b->out[k], items, results[k], false);
     }
 }
 

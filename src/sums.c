@@ -23,7 +23,8 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
         const int32_t first = k * SPHGI_ROW;
         const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
         w->passes->sum_field(&w->piece, plan->dimension, vectors, w->rows[field->stream + k], count,
-                             sphgi_lane(w, (char *)(uintptr_t)at_target, first),
+                             at_target +
+                                 (size_t)first * SPHGI_WIDTH * sphgi_size_of_type(plan->type),
                              sphgi_partial(w, field->sum + first * plan->dimension));
     }
 }
@@ -54,7 +55,8 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
     if (plan->classic) {
         const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
         w->passes->transposed_classic(&w->piece, plan->dimension, table, &units,
-                                      plan->weighted ? w->volume : NULL, density, weight);
+                                      plan->weighted ? sphgi_lane(w, w->volume, 0) : NULL, density,
+                                      weight);
     } else
         w->passes->transposed(&w->piece, plan->dimension, table, density, weight);
     for (int32_t k = 0; k < plan->field_count; ++k) {
@@ -89,11 +91,12 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
         columns.stride = (ptrdiff_t)row;
         columns.count = SPHGI_ROW;
         columns.together = true;
-        w->passes->load_lanes(&columns, w->group.place, to);
+        w->passes->load_lanes(w->width, &columns, w->group.place + w->first, to);
     } else if (field->target.count) {
-        w->passes->load_lanes(&field->target, w->group.target, to);
+        w->passes->load_lanes(w->width, &field->target, sphgi_targets(w), to);
     } else {
-        memset(to, 0, (size_t)(sphgi_lane(w, to, field->components) - to));
+        for (int32_t c = 0; c < field->components; ++c)
+            w->passes->fill(w->width, 0, to + (size_t)c * SPHGI_WIDTH * row / SPHGI_ROW);
     }
 }
 
@@ -103,15 +106,15 @@ void sphgi_load_targets(struct sphgi_worker *w)
         return;
     w->targets_loaded = true;
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_group *g = &w->group;
     const struct sphgi_passes *p = w->passes;
     for (int32_t k = 0; k < plan->field_count; ++k)
         load_target(w, k, sphgi_lane(w, w->at_target, plan->fields[k].at_target));
     if (plan->transposes[0] || plan->transposes[1]) {
         if (plan->target_volume.count)
-            sphgi_load_volume(w, &plan->target_volume, w->volume);
+            sphgi_load_volume(w, &plan->target_volume, sphgi_lane(w, w->volume, 0));
         if (plan->target_density.count)
-            p->load_lanes(&plan->target_density, g->target, w->density);
+            p->load_lanes(w->width, &plan->target_density, sphgi_targets(w),
+                          sphgi_lane(w, w->density, 0));
     }
 }
 
@@ -120,7 +123,8 @@ static void sum_fields(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     sphgi_load_targets(w);
     if (plan->classic && plan->corrects)
-        w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted, w->coefficients);
+        w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted,
+                                   sphgi_lane(w, w->coefficients, 0));
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && field->form <= SPHG_DIRECT)
@@ -157,12 +161,13 @@ static void write_pairs(struct sphgi_worker *w)
     const struct sphgi_pair_sink *pairs = w->sweep->pairs;
     const struct sphgi_piece *piece = &w->piece;
     if (pairs->gradient.count)
-        w->passes->pair_gradients(
-            piece, w->sweep->plan->dimension, vectors_of(w),
-            w->sweep->plan->classic || !w->sweep->plan->corrects ? NULL : w->coefficients,
-            w->inverse_h);
+        w->passes->pair_gradients(piece, w->sweep->plan->dimension, vectors_of(w),
+                                  w->sweep->plan->classic || !w->sweep->plan->corrects
+                                      ? NULL
+                                      : sphgi_lane(w, w->coefficients, 0),
+                                  w->inverse_h);
     for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = piece->lane[p];
+        const int32_t lane = w->first + piece->lane[p];
         const int32_t row = pairs->row_of_target[w->group.target[lane]];
         for (int32_t k = 0; k < piece->count[p]; ++k) {
             const uint32_t id = row_at(piece, p, k);

@@ -12,22 +12,30 @@ static int32_t add_target(struct sphgi_worker *w, int32_t target, int32_t place,
     return lane;
 }
 
-/* Lists of 16-bit ids wait in the piece until a group is full. */
-static void run_narrow(struct sphgi_worker *w)
+static void finish_group(struct sphgi_worker *w)
 {
     if (w->group.lanes)
+        sphgi_group_finish(w);
+}
+
+/* Lists of 16-bit ids wait in the piece until a vector of targets is there. */
+static void run_narrow(struct sphgi_worker *w)
+{
+    if (w->group.lanes > w->summed)
         sphgi_group_run(w);
-    w->group.lanes = 0;
+    finish_group(w);
 }
 
 static void add_narrow(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
                        const uint16_t *ids, uint16_t count)
 {
-    const int32_t lane = add_target(w, target, place, row);
+    const int32_t lane = add_target(w, target, place, row) - w->summed;
     w->piece.ids[lane] = ids;
     w->piece.count[lane] = count;
-    if (w->group.lanes == w->passes->lanes)
-        run_narrow(w);
+    if (lane + 1 == w->passes->lanes)
+        sphgi_group_run(w);
+    if (w->summed == SPHGI_WIDTH)
+        finish_group(w);
 }
 
 /* Lists of 32-bit numbers. */
@@ -36,27 +44,34 @@ struct supply {
     int64_t count[SPHGI_LANES_MOST];
 };
 
-static void run_wide(struct sphgi_worker *w, const struct supply *supply)
+static void sum_wide(struct sphgi_worker *w, const struct supply *supply)
 {
-    if (!w->group.lanes)
+    if (w->group.lanes == w->summed)
         return;
     sphgi_group_begin(w);
     do
-        for (int32_t l = 0; l < w->group.lanes; ++l)
+        for (int32_t l = 0; l < w->targets; ++l)
             sphgi_group_add(w, l, supply->ids[l], supply->count[l], true);
     while (sphgi_group_again(w));
     sphgi_group_end(w);
-    w->group.lanes = 0;
+}
+
+static void run_wide(struct sphgi_worker *w, const struct supply *supply)
+{
+    sum_wide(w, supply);
+    finish_group(w);
 }
 
 static void add_wide(struct sphgi_worker *w, struct supply *supply, int32_t target, int32_t place,
                      const void *row, const void *ids, int64_t count)
 {
-    const int32_t lane = add_target(w, target, place, row);
+    const int32_t lane = add_target(w, target, place, row) - w->summed;
     supply->ids[lane] = ids;
     supply->count[lane] = count;
-    if (w->group.lanes == w->passes->lanes)
-        run_wide(w, supply);
+    if (lane + 1 == w->passes->lanes)
+        sum_wide(w, supply);
+    if (w->summed == SPHGI_WIDTH)
+        finish_group(w);
 }
 
 /* ---- Blocks of a searched object ------------------------------------------------------------ */
@@ -191,7 +206,7 @@ static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_w
                 sphgi_find_wide(finder, n, around, c, t, take_wide, w);
             while (sphgi_group_again(w));
             sphgi_group_end(w);
-            w->group.lanes = 0;
+            finish_group(w);
         }
 }
 
@@ -288,9 +303,7 @@ void sphgi_finish_task(void *data, int32_t begin, int32_t end, int32_t number)
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
         if (target >= 0)
             w.group.target[w.group.lanes++] = target;
-        if (w.group.lanes == w.passes->lanes || (k + 1 == end && w.group.lanes)) {
+        if (w.group.lanes == SPHGI_WIDTH || (k + 1 == end && w.group.lanes))
             sphgi_group_finish_from_arena(&w);
-            w.group.lanes = 0;
-        }
     }
 }

@@ -43,18 +43,18 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(clean_ids, SPHGI_PIECE, sizeof(uint32_t));
     CARVE(local_items, SPHGI_PIECE, sizeof(uint32_t));
     CARVE(partial, (size_t)plan->sums * lanes * lanes, size);
-    CARVE(reduced, (size_t)plan->sums * lanes, size);
-    CARVE(at_target, (size_t)plan->target_lanes * lanes, size);
-    CARVE(raw, 16 * lanes, size);
-    CARVE(coefficients, 16 * lanes, size);
-    CARVE(lambda_min, lanes, size);
-    CARVE(volume, lanes, size);
-    CARVE(density, lanes, size);
-    CARVE(self, lanes, size);
-    CARVE(zeros, 16 * lanes, size);
-    CARVE(jacobian, 27 * lanes, size);
-    CARVE(contracted, 6 * lanes, size);
-    CARVE(extra, 8 * lanes, size);
+    CARVE(reduced, (size_t)plan->sums * SPHGI_WIDTH, size);
+    CARVE(at_target, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
+    CARVE(raw, 16 * SPHGI_WIDTH, size);
+    CARVE(coefficients, 16 * SPHGI_WIDTH, size);
+    CARVE(lambda_min, SPHGI_WIDTH, size);
+    CARVE(volume, SPHGI_WIDTH, size);
+    CARVE(density, SPHGI_WIDTH, size);
+    CARVE(self, SPHGI_WIDTH, size);
+    CARVE(zeros, 16 * SPHGI_WIDTH, size);
+    CARVE(jacobian, 27 * SPHGI_WIDTH, size);
+    CARVE(contracted, 6 * SPHGI_WIDTH, size);
+    CARVE(extra, 8 * SPHGI_WIDTH, size);
     CARVE(staged_items, sweep->pairs ? staged : 0, sizeof(int32_t));
     CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n, sphgi_finder_room(n)) : 0,
           1);
@@ -163,23 +163,27 @@ static void empty_piece(struct sphgi_worker *w)
 
 /* ---- A group -------------------------------------------------------------------------------- */
 
-/* Lanes without a target repeat the first: they are read like the others, and never written. */
-static void pad_group(struct sphgi_group *group, int32_t lanes)
+/* The lanes from `first` on. Those without a target repeat one: they are read like the others, and
+ * never written. */
+static void put_to_work(struct sphgi_worker *w, int32_t first)
 {
-    for (int32_t l = group->lanes; l < lanes; ++l) {
-        group->target[l] = group->target[0];
-        group->place[l] = group->place[0];
+    struct sphgi_group *group = &w->group;
+    w->first = first;
+    w->targets = group->lanes - first;
+    w->width = (int32_t)sphgi_round_up((size_t)w->targets, (size_t)w->passes->lanes);
+    for (int32_t l = group->lanes; l < first + w->width; ++l) {
+        group->target[l] = group->target[first];
+        group->place[l] = group->place[first];
     }
 }
 
 static void begin(struct sphgi_worker *w)
 {
-    if (w->group.lanes < w->passes->lanes)
-        pad_group(&w->group, w->passes->lanes);
+    put_to_work(w, w->summed);
     w->targets_loaded = false;
     w->pieces = 0;
     if (w->sweep->pairs)
-        memset(w->written, 0, sizeof w->written);
+        memset(w->written + w->first, 0, (size_t)w->targets * sizeof w->written[0]);
     w->summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
     if (w->coefficients_first) {
         if (w->summing & SPHGI_SUM_MOMENTS)
@@ -268,7 +272,7 @@ static void gather(struct sphgi_worker *w, int32_t first, bool wide)
 {
     w->piece.wide = wide;
     w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
-        &w->gather, w->group.x, &w->piece, first, w->masked_ids);
+        &w->gather, w->group.x + w->first, &w->piece, first, w->masked_ids);
 }
 
 static int32_t room_of(struct sphgi_worker *w, int64_t wanted)
@@ -295,7 +299,7 @@ static void add_listed(struct sphgi_worker *w, int32_t lane, const void *ids, in
         uint32_t *clean = (uint32_t *)(void *)w->clean_ids + at;
         int32_t kept = part;
         if (n->kind == SPHGI_HOST_LISTS)
-            kept = clean_list(w, w->group.target[lane], ids, part, clean);
+            kept = clean_list(w, sphgi_targets(w)[lane], ids, part, clean);
         else
             memcpy(clean, ids, (size_t)part * sizeof *clean);
         if (w->local)
@@ -379,9 +383,9 @@ static void each_arena_part(struct sphgi_worker *w, bool load)
             sphgi_dense_columns(sweep->arena + (size_t)s * size, count, plan->sums, plan->type);
         char *lanes = sphgi_lane(w, w->reduced, s);
         if (load)
-            w->passes->load_lanes(&columns, w->group.target, lanes);
+            w->passes->load_lanes(w->width, &columns, sphgi_targets(w), lanes);
         else
-            w->passes->store_lanes(&columns, w->group.target, w->group.lanes, lanes,
+            w->passes->store_lanes(w->targets, &columns, sphgi_targets(w), lanes,
                                    sweep->set_number > 0);
     }
 }
@@ -391,7 +395,6 @@ static void finish(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     const unsigned steps = w->sweep->steps;
     const bool done = w->coefficients_first; /* corrections, before the fields */
-    sphgi_load_targets(w);
     if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);
     else if (!done && plan->corrects)
@@ -433,29 +436,40 @@ static void finish_pairs(struct sphgi_worker *w)
 
 void sphgi_group_end(struct sphgi_worker *w)
 {
-    if (w->sweep->pairs) {
-        finish_pairs(w);
+    w->summed = w->group.lanes;
+    if (w->sweep->pairs)
         return;
-    }
+    if (w->summing & SPHGI_SUM_FIELDS)
+        sphgi_load_targets(w); /* no pair may have asked for them */
     const int32_t first = w->coefficients_first ? w->sweep->plan->moment_sums : 0;
     reduce(w, first, w->sweep->plan->sums - first);
-    if (w->sweep->steps & SPHGI_FINISH)
+}
+
+void sphgi_group_finish(struct sphgi_worker *w)
+{
+    put_to_work(w, 0);
+    if (w->sweep->pairs)
+        finish_pairs(w);
+    else if (w->sweep->steps & SPHGI_FINISH)
         finish(w);
     else
         each_arena_part(w, false);
+    w->group.lanes = w->summed = 0;
 }
 
 /* One part a lane, whole and fresh. False: a piece cannot hold them. */
 static bool make_regular(struct sphgi_worker *w)
 {
     struct sphgi_piece *piece = &w->piece;
+    const int32_t lanes = w->group.lanes - w->summed;
     int32_t at = 0;
-    for (int32_t l = 0; l < w->group.lanes; ++l) {
+    for (int32_t l = 0; l < lanes; ++l) {
         at += (piece->count[l] + SPHGI_PAD - 1) & -SPHGI_PAD;
         piece->begin[l + 1] = at;
     }
-    piece->parts = w->group.lanes;
-    w->touched = (1u << piece->parts) - 1;
+    piece->begin[0] = 0;
+    piece->parts = lanes;
+    w->touched = (1u << lanes) - 1;
     for (int32_t l = 0; !w->regular && l < SPHGI_LANES_MOST; ++l) {
         piece->lane[l] = l;
         piece->fresh[l] = true;
@@ -473,7 +487,7 @@ static void run_in_pieces(struct sphgi_worker *w)
     memcpy(count, w->piece.count, sizeof count);
     sphgi_group_begin(w);
     do
-        for (int32_t l = 0; l < w->group.lanes; ++l)
+        for (int32_t l = 0; l < w->targets; ++l)
             sphgi_group_add(w, l, ids[l], count[l], false);
     while (sphgi_group_again(w));
     sphgi_group_end(w);
@@ -494,7 +508,7 @@ void sphgi_group_run(struct sphgi_worker *w)
 void sphgi_group_finish_from_arena(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    pad_group(&w->group, w->passes->lanes);
+    put_to_work(w, 0);
     w->targets_loaded = false;
     sphgi_load_targets(w);
     each_arena_part(w, true);
@@ -503,8 +517,9 @@ void sphgi_group_finish_from_arena(struct sphgi_worker *w)
     else if (plan->corrects)
         sphgi_load_corrections(w);
     if (w->sweep->coefficients && (w->sweep->steps & SPHGI_SUM_MOMENTS))
-        w->passes->store_lanes(w->sweep->coefficients, w->group.target, w->group.lanes,
+        w->passes->store_lanes(w->targets, w->sweep->coefficients, sphgi_targets(w),
                                w->coefficients, false);
     if (w->sweep->steps & SPHGI_SUM_FIELDS)
         sphgi_finish_fields(w);
+    w->group.lanes = 0;
 }

@@ -45,9 +45,9 @@ struct sphgi_sweep {
 
 struct sphgi_group {
     int32_t lanes;
-    int32_t target[SPHGI_LANES_MOST];
-    int32_t place[SPHGI_LANES_MOST]; /* in storage order */
-    const void *x[SPHGI_LANES_MOST]; /* rows */
+    int32_t target[SPHGI_WIDTH];
+    int32_t place[SPHGI_WIDTH]; /* in storage order */
+    const void *x[SPHGI_WIDTH]; /* rows */
 };
 
 /* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
@@ -73,20 +73,23 @@ struct sphgi_worker {
     double inverse_h;
     struct sphgi_piece piece;
     struct sphgi_group group;
-    struct sphgi_share share[2]; /* of the table of corrections */
+    int32_t first, width, targets; /* the lanes of the group that are at work: first of them, how
+                                      many, and how many of those have a target */
+    int32_t summed;                /* lanes whose sums are done */
+    struct sphgi_share share[2];   /* of the table of corrections */
     struct sphgi_ask ask[SPHGI_ASKS_MOST];
     int32_t asks;
-    bool regular;                      /* part k of the piece is lane k, whole */
-    const void **rows;                 /* of each stream */
-    unsigned summing;                  /* SPHGI_SUM_..., of this pass over the group */
-    bool coefficients_first;           /* they must be known before fields can be summed */
-    bool targets_loaded;               /* A_i, V_i, rho_i of the group */
-    uint32_t targets_in_rows;          /* a bit per field: A_i stand in packed rows */
-    int32_t pieces;                    /* evaluated since the group began */
-    bool local;                        /* rows are copied pair by pair */
-    const int32_t *items;              /* sources behind the ids; NULL: the ids are their numbers */
-    uint32_t touched;                  /* a bit per lane: had a pair in this round */
-    int64_t written[SPHGI_LANES_MOST]; /* pairs of each lane so far */
+    bool regular;                 /* part k of the piece is lane k, whole */
+    const void **rows;            /* of each stream */
+    unsigned summing;             /* SPHGI_SUM_..., of this pass over the group */
+    bool coefficients_first;      /* they must be known before fields can be summed */
+    bool targets_loaded;          /* A_i, V_i, rho_i of the group */
+    uint32_t targets_in_rows;     /* a bit per field: A_i stand in packed rows */
+    int32_t pieces;               /* evaluated since the group began */
+    bool local;                   /* rows are copied pair by pair */
+    const int32_t *items;         /* sources behind the ids; NULL: the ids are their numbers */
+    uint32_t touched;             /* a bit per lane: had a pair in this round */
+    int64_t written[SPHGI_WIDTH]; /* pairs of each target so far */
 
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
@@ -101,16 +104,20 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep);
 void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sweep,
                        int32_t number);
 
-/* A group goes: begin; add its pairs for each round that is left; end.
- *   do { for each lane: add } while (sphgi_group_again()); */
+/* Up to `lanes` targets of a group are summed together:
+ *   begin; do { for each lane: add } while (again); end.
+ * When no more follow, the group is finished. Lanes of add count from the first of these. */
 void sphgi_group_begin(struct sphgi_worker *worker);
 void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids, int64_t count,
                      bool wide);
-
-/* All of it, for groups whose 16-bit lists stand in piece.ids and .count, lane by lane. */
-void sphgi_group_run(struct sphgi_worker *worker);
 bool sphgi_group_again(struct sphgi_worker *worker);
 void sphgi_group_end(struct sphgi_worker *worker);
+
+/* From begin to end, for 16-bit lists that stand in piece.ids and .count, lane by lane. */
+void sphgi_group_run(struct sphgi_worker *worker);
+
+/* Writes the results; the group is empty again. */
+void sphgi_group_finish(struct sphgi_worker *worker);
 
 /* Asks for the cache lines that a target will need. */
 static inline void sphgi_group_prefetch(const struct sphgi_worker *worker, int32_t target)
@@ -119,17 +126,24 @@ static inline void sphgi_group_prefetch(const struct sphgi_worker *worker, int32
         __builtin_prefetch(worker->ask[k].at + target * worker->ask[k].stride);
 }
 
-/* Finishes a group whose sums stand in the arena already. */
+/* The same for a group whose sums stand in the arena already. */
 void sphgi_group_finish_from_arena(struct sphgi_worker *worker);
 
 /* What volumes are multiplied with: 1 / H^d. */
 double sphgi_volume_unit(const struct sphgi_sweep *sweep);
 
-/* A lane of numbers that belongs to target-side value `number` of the memory starting at base. */
+/* Where value `number` of the first target at work stands in memory of the form
+ * [number][SPHGI_WIDTH]. */
 static inline char *sphgi_lane(const struct sphgi_worker *worker, char *base, int32_t number)
 {
     const size_t size = sphgi_size_of_type(worker->sweep->plan->type);
-    return base + (size_t)number * (size_t)worker->passes->lanes * size;
+    return base + ((size_t)number * SPHGI_WIDTH + (size_t)worker->first) * size;
+}
+
+/* The targets at work. */
+static inline const int32_t *sphgi_targets(const struct sphgi_worker *worker)
+{
+    return worker->group.target + worker->first;
 }
 
 #endif

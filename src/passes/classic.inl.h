@@ -70,7 +70,7 @@ static void sum_classic(const struct sphgi_piece *piece, int32_t dimension, bool
         classic_sums_as(piece, partial, false, false);
 }
 
-/* G_ij = D x (p.y) + S (p.z_k), PHI = S (p.y) from the coefficients [y0 y | z_x0 z_x | ..][lane].
+/* G_ij = D x (p.y) + S (p.z_k), PHI = S (p.y) from the coefficients [y0 y | z_x0 z_x | ..][target].
  */
 SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_piece *piece, const real *coefficients,
                                        bool weighted, bool three)
@@ -80,7 +80,7 @@ SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_piece *piece, const re
         const int32_t lane = piece->lane[p];
         vec c[16];
         for (int32_t k = 0; k < width * width; ++k)
-            c[k] = splat(coefficients[k * LANES + lane]);
+            c[k] = splat(coefficients[k * SPHGI_WIDTH + lane]);
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
             vec x[3], s = from(piece, SPHGI_S, k), slope = from(piece, SPHGI_D, k);
             for (int32_t a = 0; a < d; ++a)

@@ -101,20 +101,21 @@ SPHGI_TEMPLATE void narrowed(real *to, dvec v)
         to[k] = (real)v[k];
 }
 
-/* LANES matrices; vectors [row][column][lane]. Neither sorted nor scaled. */
-static void eigen_lanes(int32_t dimension, const void *matrices, void *values, void *vectors)
+/* Vectors [row][column][matrix]. Neither sorted nor scaled. */
+static void eigen_lanes(int32_t width, int32_t dimension, const void *matrices, void *values,
+                        void *vectors)
 {
     const bool three = dimension == 3;
     const int32_t d = dimension, numbers = d * (d + 1) / 2;
-    for (int32_t l = 0; l < LANES; l += DLANES) {
+    for (int32_t l = 0; l < width; l += DLANES) {
         dvec m[6];
         for (int32_t c = 0; c < numbers; ++c)
-            m[c] = widened((const real *)matrices + c * LANES + l);
+            m[c] = widened((const real *)matrices + c * SPHGI_WIDTH + l);
         const struct eigen e = three ? decompose(m, true) : decompose(m, false);
         for (int32_t a = 0; a < d; ++a) {
-            narrowed((real *)values + a * LANES + l, e.l[a]);
+            narrowed((real *)values + a * SPHGI_WIDTH + l, e.l[a]);
             for (int32_t b = 0; b < d; ++b)
-                narrowed((real *)vectors + (a * d + b) * LANES + l, e.q[3 * a + b]);
+                narrowed((real *)vectors + (a * d + b) * SPHGI_WIDTH + l, e.q[3 * a + b]);
         }
     }
 }

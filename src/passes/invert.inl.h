@@ -63,31 +63,6 @@ SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold,
     return out;
 }
 
-/* C of the lanes in `open`, decomposed. Each lane for itself: neighbours in the group change
- * nothing. */
-SPHGI_TEMPLATE void correct_lanes(const struct sphgi_threshold *threshold, const real *m,
-                                  unsigned open, double low, real *c, real *lambda_min,
-                                  uint8_t *rank, bool three)
-{
-    const int numbers = three ? 6 : 3;
-    for (int l = 0; l < LANES; l += DLANES) {
-        if (!(open >> l & ((1u << DLANES) - 1)))
-            continue;
-        dvec wide[6];
-        for (int k = 0; k < numbers; ++k)
-            wide[k] = widened(m + k * LANES + l);
-        const struct corrected done = correct(threshold, wide, low, three);
-        for (int s = 0; s < DLANES; ++s) {
-            if (!(open >> (l + s) & 1))
-                continue;
-            for (int k = 0; k < numbers; ++k)
-                c[k * LANES + l + s] = (real)done.c[k][s];
-            lambda_min[l + s] = (real)done.lambda_min[s];
-            rank[l + s] = (uint8_t)done.rank[s];
-        }
-    }
-}
-
 /* |c|_F^2 */
 SPHGI_TEMPLATE vec square_norm(const vec *c, bool three)
 {
@@ -140,96 +115,133 @@ SPHGI_TEMPLATE double largest_of(vec v)
     return (double)largest;
 }
 
-/* Lanes that lack the certificate, decomposed; the others are as certified_inverse() left them. */
-static __attribute__((noinline)) void decompose_open(const struct sphgi_threshold *threshold,
-                                                     const vec *m, double low, vec *c,
-                                                     vec *lambda_min, struct sphgi_verdict *verdict)
+/* What a decomposed lane leaves behind. Moments of 0 make it empty; moments that are not finite
+ * give NaN and rank 0. */
+SPHGI_TEMPLATE void keep_lane(const struct corrected *done, int from, int lane, const real *m,
+                              int numbers, real *c, real *lambda_min, struct sphgi_verdict *verdict)
 {
-    real in[6 * LANES], out[6 * LANES], lambda[LANES];
-    const int numbers = threshold->dimension == 3 ? 6 : 3;
-    for (int k = 0; k < numbers; ++k) {
-        store(in + k * LANES, m[k]);
-        store(out + k * LANES, c[k]);
-    }
-    store(lambda, *lambda_min);
-    for (int l = 0; l < LANES; ++l)
-        verdict->rank[l] = (uint8_t)threshold->dimension;
-    if (threshold->dimension == 3)
-        correct_lanes(threshold, in, verdict->decomposed, low, out, lambda, verdict->rank, true);
-    else
-        correct_lanes(threshold, in, verdict->decomposed, low, out, lambda, verdict->rank, false);
+    double poison = 0;
     for (int k = 0; k < numbers; ++k)
-        c[k] = load(out + k * LANES);
-    for (int l = 0; l < LANES; ++l)
-        verdict->lambda_min[l] = (double)lambda[l];
-    *lambda_min = load(lambda);
-}
-
-/* Corrections c of normalised moments m; low as in filtered(). */
-SPHGI_TEMPLATE void correction_of(const struct sphgi_threshold *threshold, const vec *m, double low,
-                                  vec *c, vec *lambda_min, struct sphgi_verdict *verdict,
-                                  bool three)
-{
-    const bool blend = threshold->policy == SPHG_BLEND;
-    vec square;
-    const mask passed =
-        certified_inverse(m, R((blend ? 4 : 1) * threshold->eps), three, c, &square);
-    const mask counts = first_lanes(verdict->lanes);
-    verdict->decomposed = bits_of(~passed & counts);
-    verdict->largest_square = largest_of(where(passed & counts, square));
-    *lambda_min = R(1) / vsqrt(square);
-    if (__builtin_expect(verdict->decomposed != 0, 0))
-        decompose_open(threshold, m, low, c, lambda_min, verdict);
-}
-
-/* Moments of a decomposed lane may be 0, which makes it empty, or not finite: rank 0 and NaN. */
-SPHGI_TEMPLATE void judge_moments(const vec *m, vec *c, struct sphgi_verdict *verdict, bool three)
-{
-    const vec zero = splat(R(0));
-    const int numbers = three ? 6 : 3;
-    vec poison = zero; /* NaN where a moment is not finite */
+        poison += (double)m[k * SPHGI_WIDTH + lane] - (double)m[k * SPHGI_WIDTH + lane];
     for (int k = 0; k < numbers; ++k)
-        poison += m[k] - m[k];
-    for (int k = 0; k < numbers; ++k)
-        c[k] += poison;
-    const mask none =
-        (mask)(m[0] == zero) & (mask)(m[three ? 3 : 2] == zero) & (mask)(m[numbers - 1] == zero);
-    verdict->empty = bits_of(none) & verdict->decomposed;
-    const unsigned finite = bits_of((mask)(poison == zero));
-    for (int l = 0; l < LANES; ++l)
-        if (!(finite >> l & 1))
-            verdict->rank[l] = 0;
-}
-
-SPHGI_TEMPLATE void invert_as(const struct sphgi_threshold *threshold, const real *moments,
-                              vec factor, real *correction, real *lambda_min,
-                              struct sphgi_verdict *verdict, bool three)
-{
-    const int numbers = three ? 6 : 3;
-    const vec unit = splat(R(threshold->unit));
-    vec m[6], c[6], lambda;
-    for (int k = 0; k < numbers; ++k)
-        m[k] = factor * (unit * load(moments + k * LANES));
-    correction_of(threshold, m, 1, c, &lambda, verdict, three);
-    verdict->empty = 0;
-    if (__builtin_expect(verdict->decomposed != 0, 0))
-        judge_moments(m, c, verdict, three);
-    for (int k = 0; k < numbers; ++k)
-        store(correction + k * LANES, factor * c[k]);
+        c[k * SPHGI_WIDTH + lane] = (real)(done->c[k][from] + poison);
+    verdict->rank[lane] = poison < 0 || poison >= 0 ? (uint8_t)done->rank[from] : 0;
+    const real lambda = (real)done->lambda_min[from];
+    verdict->lambda_min[lane] = (double)lambda;
     if (lambda_min)
-        store(lambda_min, lambda);
+        lambda_min[lane] = lambda;
+    const bool none = m[lane] == R(0) && m[(numbers == 6 ? 3 : 2) * SPHGI_WIDTH + lane] == R(0) &&
+                      m[(numbers - 1) * SPHGI_WIDTH + lane] == R(0);
+    verdict->empty |= (uint32_t)none << lane;
 }
 
-/* scale: what turns a lane's sums into normalised moments (MLS: V_i / H^d), NULL: 1; the
- * correction takes the same factor. */
-static void invert(const struct sphgi_threshold *threshold, const void *moments, const void *scale,
-                   void *correction, void *lambda_min, struct sphgi_verdict *verdict)
+/* Decomposes the lanes of `open`, packed: each for itself, whatever stands beside it. m, c:
+ * [number][SPHGI_WIDTH], normalised. */
+SPHGI_TEMPLATE void decompose_as(const struct sphgi_threshold *threshold, const real *m,
+                                 uint32_t open, double low, real *c, real *lambda_min,
+                                 struct sphgi_verdict *verdict, bool three)
 {
-    const vec factor = scale ? load(scale) : splat(R(1));
+    const int numbers = three ? 6 : 3;
+    while (open) {
+        int lane[DLANES], taken = 0;
+        for (; open && taken < DLANES; open &= open - 1)
+            lane[taken++] = __builtin_ctz(open);
+        dvec wide[6];
+        for (int k = 0; k < numbers; ++k) {
+            double picked[DLANES];
+            for (int s = 0; s < DLANES; ++s)
+                picked[s] = (double)m[k * SPHGI_WIDTH + lane[s < taken ? s : 0]];
+            __builtin_memcpy(&wide[k], picked, sizeof picked);
+        }
+        const struct corrected done = correct(threshold, wide, low, three);
+        for (int s = 0; s < taken; ++s)
+            keep_lane(&done, s, lane[s], m, numbers, c, lambda_min, verdict);
+    }
+}
+
+static __attribute__((noinline)) void decompose_open(const struct sphgi_threshold *threshold,
+                                                     const real *m, uint32_t open, double low,
+                                                     real *c, real *lambda_min,
+                                                     struct sphgi_verdict *verdict)
+{
     if (threshold->dimension == 3)
-        invert_as(threshold, moments, factor, correction, lambda_min, verdict, true);
+        decompose_as(threshold, m, open, low, c, lambda_min, verdict, true);
     else
-        invert_as(threshold, moments, factor, correction, lambda_min, verdict, false);
+        decompose_as(threshold, m, open, low, c, lambda_min, verdict, false);
+}
+
+SPHGI_TEMPLATE real highest_touched(const struct sphgi_threshold *threshold)
+{
+    return R((threshold->policy == SPHG_BLEND ? 4 : 1) * threshold->eps);
+}
+
+SPHGI_TEMPLATE vec scaled_moment(const struct sphgi_threshold *threshold, const real *moment,
+                                 const real *scale, int32_t l)
+{
+    vec m = splat(R(threshold->unit)) * load(moment + l);
+    if (scale)
+        m *= load(scale + l);
+    return m;
+}
+
+/* The lanes that lack the certificate: their moments once more, and their corrections anew. */
+static __attribute__((noinline)) void invert_open(const struct sphgi_threshold *threshold,
+                                                  const real *moments, const real *scale,
+                                                  int32_t width, real *correction, real *lambda_min,
+                                                  struct sphgi_verdict *verdict)
+{
+    const int numbers = threshold->dimension == 3 ? 6 : 3;
+    real m[6 * SPHGI_WIDTH], c[6 * SPHGI_WIDTH];
+    for (int k = 0; k < numbers * SPHGI_WIDTH; k += SPHGI_WIDTH)
+        for (int32_t l = 0; l < width; l += LANES)
+            store(m + k + l, scaled_moment(threshold, moments + k, scale, l));
+    decompose_open(threshold, m, verdict->decomposed, 1, c, lambda_min, verdict);
+    for (uint32_t open = verdict->decomposed; open; open &= open - 1)
+        for (int k = 0, l = __builtin_ctz(open); k < numbers; ++k)
+            correction[k * SPHGI_WIDTH + l] = (scale ? scale[l] : R(1)) * c[k * SPHGI_WIDTH + l];
+}
+
+SPHGI_TEMPLATE void invert_as(int32_t width, const struct sphgi_threshold *threshold,
+                              const real *moments, const real *scale, real *correction,
+                              real *lambda_min, struct sphgi_verdict *verdict, bool three)
+{
+    const int numbers = three ? 6 : 3;
+    const real eps_high = highest_touched(threshold);
+    vec largest = splat(R(0));
+    for (int32_t l = 0; l < width; l += LANES) {
+        vec m[6], c[6], square;
+        for (int k = 0; k < numbers; ++k)
+            m[k] = scaled_moment(threshold, moments + k * SPHGI_WIDTH, scale, l);
+        const mask passed = certified_inverse(m, eps_high, three, c, &square);
+        const mask counts = first_lanes(verdict->lanes - l);
+        verdict->decomposed |= bits_of(~passed & counts) << l;
+        largest = vmax(where(passed & counts, square), largest);
+        vec factor = splat(R(1));
+        if (scale)
+            factor = load(scale + l);
+        for (int k = 0; k < numbers; ++k)
+            store(correction + k * SPHGI_WIDTH + l, factor * c[k]);
+        if (lambda_min)
+            store(lambda_min + l, R(1) / vsqrt(square));
+    }
+    verdict->largest_square = largest_of(largest);
+}
+
+/* scale: what turns a target's sums into normalised moments (MLS: V_i / H^d), NULL: 1; the
+ * correction takes the same factor. */
+static void invert(int32_t width, const struct sphgi_threshold *threshold, const void *moments,
+                   const void *scale, void *correction, void *lambda_min,
+                   struct sphgi_verdict *verdict)
+{
+    verdict->decomposed = verdict->empty = 0;
+    if (threshold->dimension == 3 && !scale)
+        invert_as(width, threshold, moments, NULL, correction, lambda_min, verdict, true);
+    else if (threshold->dimension == 3)
+        invert_as(width, threshold, moments, scale, correction, lambda_min, verdict, true);
+    else
+        invert_as(width, threshold, moments, scale, correction, lambda_min, verdict, false);
+    if (__builtin_expect(verdict->decomposed != 0, 0))
+        invert_open(threshold, moments, scale, width, correction, lambda_min, verdict);
 }
 
 /* Index of x_a x_b in an upper triangle, of x_a x_b x_c among the triples of sum_classic. */
@@ -246,32 +258,61 @@ SPHGI_TEMPLATE int triple_index(int a, int b, int c, int d)
     return d == 3 ? three[9 * a + 3 * b + c] : a + b + c;
 }
 
+/* Inverse of the lanes of one vector, l the first of them; gives |A^-1|_F^2 where it is certain. */
+SPHGI_TEMPLATE vec classic_inverse(const struct sphgi_threshold *threshold, const vec *m, int32_t l,
+                                   vec *c, real *lambda_min, struct sphgi_verdict *verdict,
+                                   bool three)
+{
+    const int numbers = three ? 6 : 3;
+    vec square;
+    const mask passed = certified_inverse(m, highest_touched(threshold), three, c, &square);
+    const mask counts = first_lanes(verdict->lanes - l);
+    const uint32_t open = bits_of(~passed & counts) << l, empty = verdict->empty;
+    if (lambda_min)
+        store(lambda_min + l, R(1) / vsqrt(square));
+    verdict->decomposed |= open;
+    if (__builtin_expect(open != 0, 0)) {
+        real in[6 * SPHGI_WIDTH], out[6 * SPHGI_WIDTH];
+        for (int k = 0; k < numbers; ++k) {
+            store(in + k * SPHGI_WIDTH + l, m[k]);
+            store(out + k * SPHGI_WIDTH + l, c[k]);
+        }
+        decompose_open(threshold, in, open, 0, out, lambda_min, verdict);
+        for (int k = 0; k < numbers; ++k)
+            c[k] = load(out + k * SPHGI_WIDTH + l);
+        verdict->empty = empty; /* a target alone has a second moment of 0 and is not empty */
+    }
+    return where(passed & counts, square);
+}
+
 /* y and z_k of theory.md section 4 from the sums of sum_classic. Everything is divided by
  * S0 = sum w first, so that only the last factor can leave the range of the type; a sum so small
  * that its inverse would overflow counts as none. */
-SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double mu2,
+SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double mu2, int32_t l,
                                const real *sums, const real *self, real *out, real *lambda_min,
                                struct sphgi_verdict *verdict, bool three)
 {
     const int d = three ? 3 : 2, pairs = three ? 6 : 3;
-    const real *wx = sums + LANES, *wxx = wx + d * LANES, *dx = wxx + pairs * LANES;
-    const real *dxx = dx + d * LANES, *dxxx = dxx + pairs * LANES;
+    const real *wx = sums + SPHGI_WIDTH, *wxx = wx + d * SPHGI_WIDTH,
+               *dx = wxx + pairs * SPHGI_WIDTH;
+    const real *dxx = dx + d * SPHGI_WIDTH, *dxxx = dxx + pairs * SPHGI_WIDTH;
     const vec s0 = load(sums) + load(self);
     const mask some = s0 >= splat(REAL_IS_F64 ? R(0x1p-1000) : R(0x1p-106));
     const vec inverse = where(some, R(1) / s0), inverse_mu2 = splat(R(1 / mu2));
     vec mean[3]; /* xb = - sum w x / S0 */
-    vec m[6], c[6], lambda;
+    vec m[6], c[6];
     for (int a = 0; a < d; ++a)
-        mean[a] = -(load(wx + a * LANES) * inverse);
+        mean[a] = -(load(wx + a * SPHGI_WIDTH) * inverse);
     for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
             const int k = pair_index(a, b, d);
-            const vec centred = load(wxx + k * LANES) * inverse - mean[a] * mean[b];
+            const vec centred = load(wxx + k * SPHGI_WIDTH) * inverse - mean[a] * mean[b];
             m[k] = centred * inverse_mu2;
         }
-    correction_of(threshold, m, 0, c, &lambda, verdict, three);
-    if (lambda_min)
-        store(lambda_min, lambda);
+    vec largest = classic_inverse(threshold, m, l, c, lambda_min, verdict, three);
+    verdict->largest_square = verdict->largest_square > largest_of(largest)
+                                  ? verdict->largest_square
+                                  : largest_of(largest);
     vec full[3][3], y[3], y0 = splat(R(1));
     for (int a = 0; a < d; ++a)
         for (int b = 0; b < d; ++b)
@@ -285,39 +326,45 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
         y0 -= mean[a] * y[a];
     store(out, where(some, y0 * inverse));
     for (int a = 0; a < d; ++a)
-        store(out + (1 + a) * LANES, where(some, y[a] * inverse));
+        store(out + (1 + a) * SPHGI_WIDTH, where(some, y[a] * inverse));
     for (int k = 0; k < d; ++k) { /* r = e_k - B_k y, z_k = A^-1 r */
-        vec r0 = -(load(dx + k * LANES) * y0), t[3];
+        vec r0 = -(load(dx + k * SPHGI_WIDTH) * y0), t[3];
         for (int a = 0; a < d; ++a) {
-            const vec dka = load(dxx + pair_index(k, a, d) * LANES);
+            const vec dka = load(dxx + pair_index(k, a, d) * SPHGI_WIDTH);
             r0 += dka * y[a];
             t[a] = dka * y0;
             for (int b = 0; b < d; ++b)
-                t[a] -= load(dxxx + triple_index(k, a, b, d) * LANES) * y[b];
+                t[a] -= load(dxxx + triple_index(k, a, b, d) * SPHGI_WIDTH) * y[b];
         }
         r0 *= inverse;
         for (int a = 0; a < d; ++a)
             t[a] = t[a] * inverse + splat(R(a == k)) - mean[a] * r0;
         vec z0 = r0;
-        real *z = out + (k + 1) * (d + 1) * LANES;
+        real *z = out + (k + 1) * (d + 1) * SPHGI_WIDTH;
         for (int a = 0; a < d; ++a) {
             vec za = splat(R(0));
             for (int b = 0; b < d; ++b)
                 za += full[a][b] * t[b];
             z0 -= mean[a] * za;
-            store(z + (1 + a) * LANES, where(some, za * inverse));
+            store(z + (1 + a) * SPHGI_WIDTH, where(some, za * inverse));
         }
         store(z, where(some, z0 * inverse));
     }
-    verdict->empty = bits_of(~some) & bits_of(first_lanes(verdict->lanes));
+    verdict->empty |= bits_of(~some & first_lanes(verdict->lanes - l)) << l;
 }
 
-static void invert_classic(const struct sphgi_threshold *threshold, double mu2, const void *sums,
-                           const void *self, void *coefficients, void *lambda_min,
+static void invert_classic(int32_t width, const struct sphgi_threshold *threshold, double mu2,
+                           const void *sums, const void *self, void *coefficients, void *lambda_min,
                            struct sphgi_verdict *verdict)
 {
-    if (threshold->dimension == 3)
-        classic_as(threshold, mu2, sums, self, coefficients, lambda_min, verdict, true);
-    else
-        classic_as(threshold, mu2, sums, self, coefficients, lambda_min, verdict, false);
+    verdict->decomposed = verdict->empty = 0;
+    verdict->largest_square = 0;
+    for (int32_t l = 0; l < width; l += LANES) {
+        const real *in = (const real *)sums + l, *weight = (const real *)self + l;
+        real *out = (real *)coefficients + l;
+        if (threshold->dimension == 3)
+            classic_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, true);
+        else
+            classic_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, false);
+    }
 }

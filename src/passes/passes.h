@@ -4,7 +4,9 @@
  *
  * Words used throughout:
  *   row     4 numbers of one particle: x y z V, or up to 4 components of a field
- *   group   up to `lanes` targets that are summed, corrected and written together, one a lane
+ *   lanes   numbers that an instruction works on
+ *   group   up to SPHGI_WIDTH targets that are corrected and written together, summed `lanes` at a
+ *           time. What belongs to targets stands as [number][SPHGI_WIDTH].
  *   piece   pairs of a group, gathered into arrays that stay in the L1 cache
  *   sums    what is accumulated over the pairs of a target; first a vector of partial sums per
  *           target (lane k adds the pairs k, k + lanes, ...), then reduced to one number a lane */
@@ -13,13 +15,14 @@
 #include "../internal.h"
 
 enum {
-    SPHGI_ROW = 4,        /* numbers in a row */
-    SPHGI_PAD = 8,        /* pairs of a target are padded to a multiple of this */
-    SPHGI_ID_STEP = 2,    /* 16-bit ids are staged numbers times this: a row of f32 then stands at
-                             base + 8 * id [byte], which needs no shift */
-    SPHGI_PIECE = 512,    /* pairs in a piece, at most */
-    SPHGI_LANES_MOST = 8, /* of any scalar type and instruction set */
-    SPHGI_FIND_MOST = 16  /* targets that share one set of candidates */
+    SPHGI_ROW = 4,         /* numbers in a row */
+    SPHGI_PAD = 8,         /* pairs of a target are padded to a multiple of this */
+    SPHGI_ID_STEP = 2,     /* 16-bit ids are staged numbers times this: a row of f32 then stands at
+                              base + 8 * id [byte], which needs no shift */
+    SPHGI_PIECE = 512,     /* pairs in a piece, at most */
+    SPHGI_LANES_MOST = 16, /* of any scalar type and instruction set */
+    SPHGI_WIDTH = 32,      /* targets that are finished together */
+    SPHGI_FIND_MOST = 16   /* targets that share one set of candidates */
 };
 
 /* Where the components of the items of a view stand. */
@@ -116,12 +119,12 @@ struct sphgi_scales {
 
 /* What became of the matrices of a group. A bit per lane. */
 struct sphgi_verdict {
-    int32_t lanes;                       /* in: so many count */
-    uint32_t decomposed;                 /* the others have full rank */
-    uint32_t empty;                      /* no neighbour, or none that counts */
-    double largest_square;               /* of |A^-1|_F over the lanes that were not decomposed */
-    uint8_t rank[SPHGI_LANES_MOST];      /* of the decomposed lanes */
-    double lambda_min[SPHGI_LANES_MOST]; /* of the decomposed lanes */
+    int32_t lanes;                  /* in: so many count */
+    uint32_t decomposed;            /* the others have full rank */
+    uint32_t empty;                 /* no neighbour, or none that counts */
+    double largest_square;          /* of |A^-1|_F over the lanes that were not decomposed */
+    uint8_t rank[SPHGI_WIDTH];      /* of the decomposed lanes */
+    double lambda_min[SPHGI_WIDTH]; /* of the decomposed lanes */
 };
 
 /* Candidates of up to SPHGI_FIND_MOST targets: runs of staged sources. */
@@ -195,32 +198,37 @@ struct sphgi_passes {
                         enum sphgi_vectors vectors, const void *rows, void *partial);
     void (*sum_volume)(const struct sphgi_piece *piece, void *partial);
     void (*clear_partial)(void *partial, int32_t sums, int32_t lane);
-    void (*reduce)(const void *partial, int32_t sums, void *reduced);
+    void (*reduce)(const void *partial, int32_t sums, void *reduced); /* of `lanes` targets */
 
-    /* Corrections, one target a lane: sums in, numbers of the table out. lambda_min NULL: not
-     * wanted. */
-    void (*invert)(const struct sphgi_threshold *threshold, const void *moments, const void *scale,
-                   void *correction, void *lambda_min, struct sphgi_verdict *verdict);
-    void (*invert_classic)(const struct sphgi_threshold *threshold, double mu2, const void *sums,
-                           const void *self, void *coefficients, void *lambda_min,
+    /* From here on `width` says for how many targets, a multiple of lanes.
+     * Corrections: sums in, numbers of the table out. lambda_min NULL: not wanted. */
+    void (*invert)(int32_t width, const struct sphgi_threshold *threshold, const void *moments,
+                   const void *scale, void *correction, void *lambda_min,
+                   struct sphgi_verdict *verdict);
+    void (*invert_classic)(int32_t width, const struct sphgi_threshold *threshold, double mu2,
+                           const void *sums, const void *self, void *coefficients, void *lambda_min,
                            struct sphgi_verdict *verdict);
     /* A = Q diag(values) Q^T of one group of matrices. */
-    void (*eigen)(int32_t dimension, const void *matrices, void *values, void *vectors);
+    void (*eigen)(int32_t width, int32_t dimension, const void *matrices, void *values,
+                  void *vectors);
 
-    /* Results, one target a lane. */
-    void (*apply)(int32_t dimension, int32_t count, const void *correction, const void *sums,
-                  double scale, void *jacobian);
-    void (*scale)(int32_t count, const void *in, double factor, const void *per_lane, void *out);
-    void (*divide)(int32_t count, const void *in, double divisor, void *out);
-    bool (*valid_volumes)(const void *volumes);                /* >= 0 and finite in every lane */
+    /* Results. */
+    void (*apply)(int32_t width, int32_t dimension, int32_t count, const void *correction,
+                  const void *sums, double scale, void *jacobian);
+    void (*scale)(int32_t width, int32_t count, const void *in, double factor, const void *each,
+                  void *out);
+    void (*divide)(int32_t width, int32_t count, const void *in, double divisor, void *out);
+    bool (*valid_volumes)(int32_t width, const void *volumes); /* >= 0 and finite in every lane */
     void (*fill)(int32_t count, double value, void *out);      /* a multiple of lanes */
-    void (*quotient)(const void *a, const void *b, void *out); /* a NULL: 1; 0 where b is 0 */
-    void (*add_outer)(int32_t dimension, int32_t count, const void *a, const void *b,
-                      const void *per_lane, void *jacobian);
-    void (*contract)(int32_t dimension, sphg_shape shape, const void *jacobian, void *divergence,
-                     void *curl);
-    void (*load_lanes)(const struct sphgi_columns *columns, const int32_t *items, void *out);
-    void (*store_lanes)(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
+    /* a NULL: 1; 0 where b is 0 */
+    void (*quotient)(int32_t width, const void *a, const void *b, void *out);
+    void (*add_outer)(int32_t width, int32_t dimension, int32_t count, const void *a, const void *b,
+                      const void *each, void *jacobian);
+    void (*contract)(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
+                     void *divergence, void *curl);
+    void (*load_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
+                       void *out);
+    void (*store_lanes)(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,
                         const void *in, bool accumulate);
 };
 

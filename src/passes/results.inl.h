@@ -1,32 +1,40 @@
-/* From sums and corrections to results, one target a lane. jacobian: [component][axis][lane]. */
+/* From sums and corrections to results. jacobian: [component][axis][target]. Loops over the vectors
+ * of a group stand outermost: one vector's numbers fit the registers. */
 
 /* J[a][b] = scale sum_c C[b][c] sums[a][c]; correction NULL: the sums are gradients already. */
-SPHGI_TEMPLATE void apply_as(int32_t count, const real *c, const real *sums, vec factor, real *j,
-                             int32_t d)
+SPHGI_TEMPLATE void apply_as(int32_t count, const real *correction, const real *sums, vec factor,
+                             real *j, int32_t d)
 {
-    for (int32_t a = 0; a < count; ++a, sums += d * LANES, j += d * LANES) {
+    vec c[6];
+    for (int32_t k = 0; correction && k < d * (d + 1) / 2; ++k)
+        c[k] = load(correction + k * SPHGI_WIDTH);
+    for (int32_t a = 0; a < count; ++a, sums += d * SPHGI_WIDTH, j += d * SPHGI_WIDTH) {
         vec b[3];
         for (int32_t k = 0; k < d; ++k)
-            b[k] = load(sums + k * LANES);
+            b[k] = load(sums + k * SPHGI_WIDTH);
         for (int32_t row = 0; row < d; ++row) {
             vec sum = b[row];
-            if (c) {
-                sum = load(c + pair_index(row, 0, d) * LANES) * b[0];
+            if (correction) {
+                sum = c[pair_index(row, 0, d)] * b[0];
                 for (int32_t k = 1; k < d; ++k)
-                    sum += load(c + pair_index(row, k, d) * LANES) * b[k];
+                    sum += c[pair_index(row, k, d)] * b[k];
             }
-            store(j + row * LANES, factor * sum);
+            store(j + row * SPHGI_WIDTH, factor * sum);
         }
     }
 }
 
-static void apply(int32_t dimension, int32_t count, const void *correction, const void *sums,
-                  double scale, void *jacobian)
+static void apply(int32_t width, int32_t dimension, int32_t count, const void *correction,
+                  const void *sums, double scale, void *jacobian)
 {
-    if (dimension == 3)
-        apply_as(count, correction, sums, splat(R(scale)), jacobian, 3);
-    else
-        apply_as(count, correction, sums, splat(R(scale)), jacobian, 2);
+    const vec factor = splat(R(scale));
+    for (int32_t l = 0; l < width; l += LANES) {
+        const real *c = correction ? (const real *)correction + l : NULL;
+        if (dimension == 3)
+            apply_as(count, c, (const real *)sums + l, factor, (real *)jacobian + l, 3);
+        else
+            apply_as(count, c, (const real *)sums + l, factor, (real *)jacobian + l, 2);
+    }
 }
 
 /* G_ij = scale C_i g_ij for each pair of the piece. */
@@ -41,7 +49,7 @@ static void pair_gradients(const struct sphgi_piece *piece, int32_t dimension,
         for (int32_t a = 0; a < d; ++a)
             for (int32_t b = 0; b < d; ++b)
                 matrix[a][b] =
-                    splat(c ? c[pair_index(a, b, d) * LANES + piece->lane[p]] : R(a == b));
+                    splat(c ? c[pair_index(a, b, d) * SPHGI_WIDTH + piece->lane[p]] : R(a == b));
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
             real *g = array_of(piece->arrays, SPHGI_GX) + k;
             vec in[3];
@@ -56,29 +64,37 @@ static void pair_gradients(const struct sphgi_piece *piece, int32_t dimension,
     }
 }
 
-/* out[c] = factor per_lane in[c]; per_lane NULL: 1 */
-static void scale_lanes(int32_t count, const void *in, double factor, const void *per_lane,
-                        void *out)
+/* out[c] = factor each in[c]; each NULL: 1 */
+static void scale_lanes(int32_t width, int32_t count, const void *in, double factor,
+                        const void *each, void *out)
 {
-    vec each = splat(R(factor));
-    if (per_lane)
-        each *= load(per_lane);
-    for (int32_t c = 0; c < count; ++c)
-        store((real *)out + c * LANES, each * load((const real *)in + c * LANES));
+    for (int32_t l = 0; l < width; l += LANES) {
+        vec by = splat(R(factor));
+        if (each)
+            by *= load((const real *)each + l);
+        for (int32_t k = l; k < count * SPHGI_WIDTH; k += SPHGI_WIDTH)
+            store((real *)out + k, by * load((const real *)in + k));
+    }
 }
 
-/* All lanes >= 0 and finite. */
-static bool valid_volumes(const void *volumes)
+static bool valid_volumes(int32_t width, const void *volumes)
 {
-    const vec v = load(volumes), zero = splat(R(0));
-    return bits_of((mask)(v >= zero) & (mask)(v - v == zero)) == (1u << LANES) - 1;
+    const vec zero = splat(R(0));
+    mask valid = (mask)(zero == zero);
+    for (int32_t l = 0; l < width; l += LANES) {
+        const vec v = load((const real *)volumes + l);
+        valid &= (mask)(v >= zero) & (mask)(v - v == zero);
+    }
+    return bits_of(valid) == (1u << LANES) - 1;
 }
 
 /* out[c] = in[c] / divisor */
-static void divide_lanes(int32_t count, const void *in, double divisor, void *out)
+static void divide_lanes(int32_t width, int32_t count, const void *in, double divisor, void *out)
 {
-    for (int32_t c = 0; c < count; ++c)
-        store((real *)out + c * LANES, load((const real *)in + c * LANES) / splat(R(divisor)));
+    const vec by = splat(R(divisor));
+    for (int32_t l = 0; l < width; l += LANES)
+        for (int32_t k = l; k < count * SPHGI_WIDTH; k += SPHGI_WIDTH)
+            store((real *)out + k, load((const real *)in + k) / by);
 }
 
 static void fill(int32_t count, double value, void *out)
@@ -87,25 +103,30 @@ static void fill(int32_t count, double value, void *out)
         store((real *)out + k, splat(R(value)));
 }
 
-static void quotient(const void *a, const void *b, void *out)
+static void quotient(int32_t width, const void *a, const void *b, void *out)
 {
-    vec numerator = splat(R(1));
-    if (a)
-        numerator = load(a);
-    const vec denominator = load(b);
-    store(out, where(denominator != splat(R(0)), numerator / denominator));
+    for (int32_t l = 0; l < width; l += LANES) {
+        vec numerator = splat(R(1));
+        if (a)
+            numerator = load((const real *)a + l);
+        const vec denominator = load((const real *)b + l);
+        store((real *)out + l, where((mask)(denominator != splat(R(0))), numerator / denominator));
+    }
 }
 
-/* J[a][b] += per_lane a_a b_b; per_lane NULL: 1 */
-static void add_outer(int32_t dimension, int32_t count, const void *a, const void *b,
-                      const void *per_lane, void *jacobian)
+/* J[a][b] += each a_a b_b; each NULL: 1 */
+static void add_outer(int32_t width, int32_t dimension, int32_t count, const void *a, const void *b,
+                      const void *each, void *jacobian)
 {
-    const vec each = per_lane ? load(per_lane) : splat(R(1));
-    for (int32_t i = 0; i < count; ++i)
-        for (int32_t k = 0; k < dimension; ++k) {
-            real *j = (real *)jacobian + (i * dimension + k) * LANES;
-            store(j, load(j) + each * load((const real *)a + i * LANES) *
-                                   load((const real *)b + k * LANES));
+    for (int32_t l = 0; l < width; l += LANES)
+        for (int32_t i = 0; i < count; ++i) {
+            vec factor = load((const real *)a + i * SPHGI_WIDTH + l);
+            if (each)
+                factor *= load((const real *)each + l);
+            for (int32_t k = 0; k < dimension; ++k) {
+                real *j = (real *)jacobian + (i * dimension + k) * SPHGI_WIDTH + l;
+                store(j, load(j) + factor * load((const real *)b + k * SPHGI_WIDTH + l));
+            }
         }
 }
 
@@ -115,29 +136,39 @@ SPHGI_TEMPLATE int tensor_index(sphg_shape shape, int a, int b, int d)
     return shape == SPHG_SYM_TENSOR ? pair_index(a, b, d) : a * d + b;
 }
 
-/* divergence: vector sum_a J[a][a], tensors sum_b J[(a, b)][b]; curl of a vector. NULL: not
- * wanted. */
-static void contract(int32_t dimension, sphg_shape shape, const void *jacobian, void *divergence,
-                     void *curl)
+/* divergence: vector sum_a J[a][a], tensors sum_b J[(a, b)][b] */
+SPHGI_TEMPLATE void diverge(int32_t d, sphg_shape shape, const real *j, real *divergence)
 {
-    const int32_t d = dimension;
-    const real *j = jacobian;
-    real *div = divergence, *rot = curl;
-    if (div) {
-        const int32_t rows = shape == SPHG_VECTOR ? 1 : d;
-        for (int32_t a = 0; a < rows; ++a) {
-            vec sum = splat(R(0));
-            for (int32_t b = 0; b < d; ++b) {
-                const int32_t c = shape == SPHG_VECTOR ? b : tensor_index(shape, a, b, d);
-                sum += load(j + (c * d + b) * LANES);
-            }
-            store(div + a * LANES, sum);
+    const int32_t rows = shape == SPHG_VECTOR ? 1 : d;
+    for (int32_t a = 0; a < rows; ++a) {
+        vec sum = splat(R(0));
+        for (int32_t b = 0; b < d; ++b) {
+            const int32_t c = shape == SPHG_VECTOR ? b : tensor_index(shape, a, b, d);
+            sum += load(j + (c * d + b) * SPHGI_WIDTH);
         }
+        store(divergence + a * SPHGI_WIDTH, sum);
     }
-    if (rot && d == 2)
-        store(rot, load(j + 2 * LANES) - load(j + LANES));
-    for (int32_t a = 0; rot && d == 3 && a < 3; ++a) {
+}
+
+SPHGI_TEMPLATE void rotate_field(int32_t d, const real *j, real *curl)
+{
+    if (d == 2)
+        store(curl, load(j + 2 * SPHGI_WIDTH) - load(j + SPHGI_WIDTH));
+    for (int32_t a = 0; d == 3 && a < 3; ++a) {
         const int32_t b = (a + 1) % 3, c = (a + 2) % 3;
-        store(rot + a * LANES, load(j + (c * 3 + b) * LANES) - load(j + (b * 3 + c) * LANES));
+        store(curl + a * SPHGI_WIDTH,
+              load(j + (c * 3 + b) * SPHGI_WIDTH) - load(j + (b * 3 + c) * SPHGI_WIDTH));
+    }
+}
+
+/* Divergence, and curl of a vector. NULL: not wanted. */
+static void contract(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
+                     void *divergence, void *curl)
+{
+    for (int32_t l = 0; l < width; l += LANES) {
+        if (divergence)
+            diverge(dimension, shape, (const real *)jacobian + l, (real *)divergence + l);
+        if (curl)
+            rotate_field(dimension, (const real *)jacobian + l, (real *)curl + l);
     }
 }

@@ -132,7 +132,7 @@ static double largest_move(const void *then, const void *now, int64_t begin, int
     return __builtin_sqrt(largest) * (1 + 0x1p-50);
 }
 
-/* One target a lane: LANES items. Items of numbers that follow one another are moved four numbers
+/* What belongs to targets: items of numbers that follow one another are moved four numbers
  * at a time; the last four of an item may overlap the ones before. */
 SPHGI_TEMPLATE int32_t last_four(int32_t c, int32_t count)
 {
@@ -142,11 +142,12 @@ SPHGI_TEMPLATE int32_t last_four(int32_t c, int32_t count)
 SPHGI_TEMPLATE void put_four(struct four v, real *to)
 {
     store(to, v.x);
-    store(to + LANES, v.y);
-    store(to + 2 * LANES, v.z);
-    store(to + 3 * LANES, v.w);
+    store(to + SPHGI_WIDTH, v.y);
+    store(to + 2 * SPHGI_WIDTH, v.z);
+    store(to + 3 * SPHGI_WIDTH, v.w);
 }
 
+/* One vector of targets each. */
 SPHGI_TEMPLATE void load_three(const char *base, ptrdiff_t stride, const int32_t *items, real *to)
 {
     real rows[LANES * 4];
@@ -158,32 +159,38 @@ SPHGI_TEMPLATE void load_three(const char *base, ptrdiff_t stride, const int32_t
     }
     const struct four v = transpose(row);
     store(to, v.x);
-    store(to + LANES, v.y);
-    store(to + 2 * LANES, v.z);
+    store(to + SPHGI_WIDTH, v.y);
+    store(to + 2 * SPHGI_WIDTH, v.z);
 }
 
-static void load_lanes(const struct sphgi_columns *columns, const int32_t *items, void *out)
+SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int32_t *items,
+                                  real *to)
 {
     const int32_t count = columns->count;
-    real *to = out;
-    if (columns->stride == 0) {
-        for (int32_t c = 0; c < count; ++c)
-            store(to + c * LANES, splat(number_at(columns->at[c])));
-    } else if (columns->together && count >= 4) {
-        const real *row[LANES];
-        for (int32_t c = 0; c < count; c += 4) {
-            const int32_t first = last_four(c, count);
-            for (int32_t l = 0; l < LANES; ++l)
-                row[l] = (const real *)(columns->at[first] + items[l] * columns->stride);
-            put_four(transpose(row), to + first * LANES);
-        }
-    } else if (columns->together && count == 3) {
+    if (count == 3)
         load_three(columns->at[0], columns->stride, items, to);
-    } else {
+    for (int32_t c = 0; count > 3 && c < count; c += 4) {
+        const real *row[LANES];
+        const int32_t first = last_four(c, count);
         for (int32_t l = 0; l < LANES; ++l)
-            for (int32_t c = 0; c < count; ++c)
-                to[c * LANES + l] = number_at(columns->at[c] + items[l] * columns->stride);
+            row[l] = (const real *)(columns->at[first] + items[l] * columns->stride);
+        put_four(transpose(row), to + first * SPHGI_WIDTH);
     }
+}
+
+static void load_lanes(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
+                       void *out)
+{
+    real *to = out;
+    const int32_t count = columns->count;
+    if (columns->stride && columns->together && count >= 3) {
+        for (int32_t l = 0; l < width; l += LANES)
+            load_together(columns, items + l, to + l);
+        return;
+    }
+    for (int32_t c = 0; c < count; ++c)
+        for (int32_t l = 0; l < width; ++l)
+            to[c * SPHGI_WIDTH + l] = number_at(columns->at[c] + items[l] * columns->stride);
 }
 
 SPHGI_TEMPLATE real *number_of(const struct sphgi_columns *columns, int32_t c, int32_t item)
@@ -192,14 +199,14 @@ SPHGI_TEMPLATE real *number_of(const struct sphgi_columns *columns, int32_t c, i
 }
 
 SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_t *items,
-                               int32_t lanes, const real *from, int32_t first, int32_t numbers)
+                               int32_t targets, const real *from, int32_t first, int32_t numbers)
 {
     quad rows[LANES];
-    const real *in = from + first * LANES;
-    rows_of((struct four){load(in), load(in + LANES), load(in + 2 * LANES),
-                          load(in + (numbers - 1) * LANES)},
+    const real *in = from + first * SPHGI_WIDTH;
+    rows_of((struct four){load(in), load(in + SPHGI_WIDTH), load(in + 2 * SPHGI_WIDTH),
+                          load(in + (numbers - 1) * SPHGI_WIDTH)},
             rows);
-    for (int32_t l = 0; l < LANES && l < lanes; ++l) {
+    for (int32_t l = 0; l < LANES && l < targets; ++l) {
         real *to = number_of(columns, first, items[l]);
         if (numbers == 4)
             *(quad *)to = rows[l];
@@ -209,28 +216,29 @@ SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_
 }
 
 SPHGI_TEMPLATE void store_together(const struct sphgi_columns *columns, const int32_t *items,
-                                   int32_t lanes, const real *from)
+                                   int32_t targets, const real *from)
 {
     if (columns->count == 3)
-        store_rows(columns, items, lanes, from, 0, 3);
+        store_rows(columns, items, targets, from, 0, 3);
     for (int32_t c = 0; columns->count > 3 && c < columns->count; c += 4)
-        store_rows(columns, items, lanes, from, last_four(c, columns->count), 4);
+        store_rows(columns, items, targets, from, last_four(c, columns->count), 4);
 }
 
-static void store_lanes(const struct sphgi_columns *columns, const int32_t *items, int32_t lanes,
+static void store_lanes(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,
                         const void *in, bool accumulate)
 {
     const real *from = in;
     if (columns->together && columns->count > 2 && !accumulate) {
-        if (lanes == LANES)
-            store_together(columns, items, LANES, from);
-        else
-            store_together(columns, items, lanes, from);
+        int32_t l = 0;
+        for (; l + LANES <= targets; l += LANES)
+            store_together(columns, items + l, LANES, from + l);
+        if (l < targets)
+            store_together(columns, items + l, targets - l, from + l);
         return;
     }
-    for (int32_t l = 0; l < lanes; ++l)
+    for (int32_t l = 0; l < targets; ++l)
         for (int32_t c = 0; c < columns->count; ++c) {
             real *to = number_of(columns, c, items[l]);
-            *to = accumulate ? *to + from[c * LANES + l] : from[c * LANES + l];
+            *to = accumulate ? *to + from[c * SPHGI_WIDTH + l] : from[c * SPHGI_WIDTH + l];
         }
 }

@@ -77,7 +77,7 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_vectors
         const char *ids = piece->ids[p];
         vec sum[12], a[4];
         for (int32_t c = 0; c < count; ++c)
-            a[c] = splat(at_target[c * LANES + lane]);
+            a[c] = splat(at_target[c * SPHGI_WIDTH + lane]);
         for (int32_t c = 0; c < count * d; ++c)
             sum[c] = begin_sum(piece, p, partial, c);
         for (int32_t k = begin; k < piece->begin[p + 1];
@@ -219,9 +219,8 @@ static void clear_partial(void *partial, int32_t sums, int32_t lane)
 static void reduce(const void *partial, int32_t sums, void *reduced)
 {
     const vec *in = partial;
-    vec *out = reduced;
     for (int32_t c = 0; c < sums; ++c)
-        out[c] = sum_across(in + c * LANES);
+        store((real *)reduced + c * SPHGI_WIDTH, sum_across(in + c * LANES));
 }
 
 /* Minus the gradient seen from j, times a weight: T = weight C_j s_ij x_ij. weight_kind: see
