@@ -5,4 +5,5 @@
 /* argv[0] names the command, options follow. Return the exit status. */
 int command_table1(int argc, char **argv);
 int command_fields(int argc, char **argv);
+int command_limit(int argc, char **argv);
 #endif

@@ -18,6 +18,7 @@ static const struct command commands[] = {
      command_table1},
     {"fields", "error of plain and corrected derivatives on a square: tables, CSV, pictures",
      command_fields},
+    {"limit", "how near the library comes to the arithmetic limit of this machine", command_limit},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 

@@ -97,3 +97,11 @@ int option_choice(const char *name, const char *text, const char *const choices[
     join(choices, list, sizeof list);
     options_refuse("--%s: '%s' is none of %s", name, text, list);
 }
+
+void option_writable(const char *name, const char *path)
+{
+    FILE *file = fopen(path, "a");
+    if (!file)
+        options_refuse("--%s: cannot write %s: %s", name, path, strerror(errno));
+    fclose(file);
+}

@@ -19,5 +19,7 @@ __attribute__((format(printf, 1, 2), noreturn)) void options_refuse(const char *
 int32_t option_integer(const char *name, const char *text, int32_t least, int32_t most);
 double option_real(const char *name, const char *text, double least, double most);
 double option_positive(const char *name, const char *text);
+/* Opened before hours of measuring, not after. */
+void option_writable(const char *name, const char *path);
 int option_choice(const char *name, const char *text, const char *const choices[]);
 #endif

@@ -82,7 +82,7 @@ static void add_aggregate(struct report *report, const char *name, const struct 
                           const struct counter *aggregate, double cpu,
                           const struct counter *counters)
 {
-    char full_name[128];
+    char full_name[256];
     const int is_ratio = strcmp(aggregate->name, "cv") == 0;
     snprintf(full_name, sizeof full_name, "%s_%s", name, aggregate->name);
     cJSON *entry = add_entry(report, full_name, name, "aggregate");

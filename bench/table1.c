@@ -4,11 +4,9 @@
 #include "machine.h"
 #include "options.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
     OPTION_PARTICLES = 256,
@@ -124,15 +122,6 @@ static void check_combination(const struct command_line *line)
         options_refuse("--support: %g spacings are more than 50", options->support);
 }
 
-/* Opened before hours of measuring, not after. */
-static void check_writable(const char *path)
-{
-    FILE *file = fopen(path, "a");
-    if (!file)
-        options_refuse("--json: cannot write %s: %s", path, strerror(errno));
-    fclose(file);
-}
-
 static void read_options(struct table1_options *options, int argc, char **argv)
 {
     const struct argp argp = {
@@ -148,7 +137,7 @@ static void read_options(struct table1_options *options, int argc, char **argv)
         options->support = 2;
     options->source.side = (int32_t)lround(cbrt((double)options->wanted_particles));
     if (options->json)
-        check_writable(options->json);
+        option_writable("json", options->json);
 }
 
 static const struct column paper_columns[TABLE1_COLUMNS] = {

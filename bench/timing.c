@@ -29,12 +29,16 @@ void samples_destroy(struct samples *samples)
     *samples = (struct samples){0};
 }
 
+void samples_add(struct samples *samples, struct moment duration)
+{
+    if (samples->count < samples->capacity)
+        samples->values[samples->count++] = duration;
+}
+
 void samples_add_since(struct samples *samples, struct moment start)
 {
     const struct moment end = now();
-    if (samples->count < samples->capacity)
-        samples->values[samples->count++] =
-            (struct moment){end.wall - start.wall, end.cpu - start.cpu};
+    samples_add(samples, (struct moment){end.wall - start.wall, end.cpu - start.cpu});
 }
 
 static int compare_numbers(const void *left, const void *right)

@@ -20,6 +20,7 @@ struct moment now(void);
 
 struct samples samples_create(int32_t capacity);
 void samples_destroy(struct samples *samples);
+void samples_add(struct samples *samples, struct moment duration);    /* at most capacity */
 void samples_add_since(struct samples *samples, struct moment start); /* at most capacity */
 struct spread samples_wall(const struct samples *samples);            /* NaN if there are none */
 struct spread samples_cpu(const struct samples *samples);

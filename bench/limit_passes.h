@@ -1,0 +1,55 @@
+/* The pair arithmetic of KGC with the cubic spline, on a few targets whose pairs lie packed in the
+ * first-level cache: what an evaluation costs when lists, staging and memory cost nothing. One
+ * set of passes per instruction set and vector width. */
+#ifndef SPHGRAD_BENCH_LIMIT_PASSES_H
+#define SPHGRAD_BENCH_LIMIT_PASSES_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum limit_work { LIMIT_MATRICES, LIMIT_GRADIENT, LIMIT_FUSED, LIMIT_WORKS };
+
+enum {
+    LIMIT_TARGETS = 16,   /* a whole number of vectors in every set */
+    LIMIT_COMPONENTS = 7, /* of a pair: x y z (units of H), 6 sigma V/H^3, field a b c */
+    LIMIT_OWN = 6,        /* of a target: x y z, field a b c */
+    LIMIT_SUMS = 15,      /* xx xy xz yy yz zz, then the field's ax ay az bx by bz cx cy cz */
+    LIMIT_LANES_MOST = 16,
+    LIMIT_SLOTS_MOST = 2400 /* pairs of a target */
+};
+
+/* How the loop is arranged; the fastest counts. */
+struct limit_arrangement {
+    bool lanes_are_targets; /* else the lanes are pairs of one target, and sums need reduction */
+    bool by_newton; /* reciprocal root by estimate and Newton step, else sqrt and division */
+    bool in_passes; /* weights of a vector's worth of targets first, then their sums */
+};
+enum { LIMIT_ARRANGEMENTS = 8 };
+struct limit_arrangement limit_arrangement(int index);
+
+/* One thread's data. Pairs beyond a target's own have volume 0. */
+struct limit_data {
+    int32_t slots;      /* pairs of a target, a whole number of vectors */
+    float *by_target;   /* [target][component][slot] */
+    float *by_lane;     /* [group][slot][component][lane], group: as many targets as lanes */
+    float *own;         /* [target][own] */
+    float *own_by_lane; /* [group][own][lane] */
+    float *corrections; /* [group][6][lane] */
+    float *weights;     /* room for slots x LIMIT_LANES_MOST */
+    float *sums;        /* [target of a group][sum][lane], or in lanes [sum][lane] */
+    float *results;     /* [group][15][lane]: C, then J */
+};
+
+struct limit_set {
+    const char *name;
+    int32_t lanes;
+    /* Goes through so many targets, round and round. finished: sums are reduced, C inverted or
+     * J = B C formed, and left in results; else sums stay where they are. */
+    void (*run)(const struct limit_data *data, enum limit_work work, int arrangement, bool finished,
+                int32_t targets);
+};
+
+/* The sets that this processor can run, fastest last; the count is returned. */
+int limit_sets(const struct limit_set *sets[], int room);
+
+extern const struct limit_set limit_set_base, limit_set_v3, limit_set_v4_narrow, limit_set_v4;
+#endif

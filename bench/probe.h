@@ -1,0 +1,23 @@
+/* A fixed yardstick for machines: KGC matrices and the gradient of a vector field over int32 CSR
+ * lists of sorted 16-byte rows, with code that never changes with the library. */
+#ifndef SPHGRAD_BENCH_PROBE_H
+#define SPHGRAD_BENCH_PROBE_H
+#include "library.h"
+
+#include <stdbool.h>
+
+enum probe_work { PROBE_MATRICES, PROBE_GRADIENT, PROBE_WORKS };
+
+struct probe;
+
+/* A cube of side^3 particles, jittered. The lists are found with the library, untimed. */
+struct probe *probe_create(sphg_context *context, int32_t side, double support, double jitter);
+void probe_destroy(struct probe *probe);
+
+int32_t probe_count(const struct probe *probe);
+double probe_pairs(const struct probe *probe); /* a particle */
+void probe_run(struct probe *probe, enum probe_work work, int32_t threads);
+
+/* max |J_i - J|_F / |J|_F on v = (-y, x, 2z), after both works were run. */
+double probe_error(const struct probe *probe);
+#endif

@@ -1,0 +1,47 @@
+#include "text.h"
+#include "library.h"
+#include "machine.h"
+
+#include <stdio.h>
+
+const char *text_grouped(int64_t value, char text[TEXT_SIZE])
+{
+    char digits[TEXT_SIZE];
+    const int length = snprintf(digits, sizeof digits, "%lld", (long long)value);
+    int out = 0;
+    for (int k = 0; k < length; k++) {
+        if (k > 0 && (length - k) % 3 == 0)
+            text[out++] = ' ';
+        text[out++] = digits[k];
+    }
+    text[out] = '\0';
+    return text;
+}
+
+void text_time(double milliseconds, char text[TEXT_SIZE])
+{
+    const int decimals = milliseconds < 1 ? 3 : milliseconds < 100 ? 2 : milliseconds < 1000;
+    snprintf(text, TEXT_SIZE, "%.*f", decimals, milliseconds);
+}
+
+void text_median(const struct samples *samples, char text[TEXT_SIZE])
+{
+    char median[TEXT_SIZE], least[TEXT_SIZE], most[TEXT_SIZE];
+    if (samples->count == 0) {
+        snprintf(text, TEXT_SIZE, "-");
+        return;
+    }
+    const struct spread spread = samples_wall(samples);
+    text_time(spread.median, median);
+    text_time(spread.min, least);
+    text_time(spread.max, most);
+    snprintf(text, TEXT_SIZE, "%.16s (%.16s-%.16s)", median, least, most);
+}
+
+void text_print_machine(int32_t threads)
+{
+    printf("machine    %s, %d processor%s; %d thread%s, %s\n", machine_cpu(), machine_cpus(),
+           machine_cpus() > 1 ? "s" : "", threads, threads > 1 ? "s" : "", library_isa());
+    printf("program    sphgrad %s, %s, %s, %s\n", library_version(), machine_compiler(),
+           machine_build(), machine_date());
+}

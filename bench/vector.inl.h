@@ -1,0 +1,194 @@
+/* Vectors of float for loops of the benchmark's own, written apart from the library's so that a
+ * weakness there is not repeated here. Parameter: VECTOR_BYTES (16, 32 or 64). */
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+#include <stdint.h>
+
+#define LANES  (VECTOR_BYTES / 4)
+#define INLINE static inline __attribute__((always_inline))
+
+typedef float vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef int32_t mask __attribute__((vector_size(VECTOR_BYTES), may_alias));
+
+INLINE vec load(const float *p) /* aligned to a vector, as all arrays here */
+{
+    return *(const vec *)p;
+}
+
+INLINE void store(float *p, vec v)
+{
+    *(vec *)p = v;
+}
+
+INLINE vec splat(float x)
+{
+    return x - (vec){0};
+}
+
+#if VECTOR_BYTES == 64 && defined(__AVX512F__)
+INLINE vec square_root(vec v)
+{
+    return (vec)_mm512_sqrt_ps((__m512)v);
+}
+INLINE vec rough_reciprocal_root(vec v)
+{
+    return (vec)_mm512_rsqrt14_ps((__m512)v);
+}
+INLINE vec smaller(vec a, vec b)
+{
+    return (vec)_mm512_min_ps((__m512)a, (__m512)b);
+}
+INLINE vec choose_below(vec x, vec limit, vec below, vec other) /* x < limit ? below : other */
+{
+    const __mmask16 is_below = _mm512_cmp_ps_mask((__m512)x, (__m512)limit, _CMP_LT_OQ);
+    return (vec)_mm512_mask_blend_ps(is_below, (__m512)other, (__m512)below);
+}
+#elif VECTOR_BYTES == 32 && defined(__AVX2__)
+INLINE vec square_root(vec v)
+{
+    return (vec)_mm256_sqrt_ps((__m256)v);
+}
+INLINE vec rough_reciprocal_root(vec v)
+{
+    return (vec)_mm256_rsqrt_ps((__m256)v);
+}
+INLINE vec smaller(vec a, vec b)
+{
+    return (vec)_mm256_min_ps((__m256)a, (__m256)b);
+}
+INLINE vec choose_below(vec x, vec limit, vec below, vec other)
+{
+    const __m256 is_below = _mm256_cmp_ps((__m256)x, (__m256)limit, _CMP_LT_OQ);
+    return (vec)_mm256_blendv_ps((__m256)other, (__m256)below, is_below);
+}
+#elif VECTOR_BYTES == 16 && defined(__SSE2__)
+INLINE vec square_root(vec v)
+{
+    return (vec)_mm_sqrt_ps((__m128)v);
+}
+INLINE vec rough_reciprocal_root(vec v)
+{
+    return (vec)_mm_rsqrt_ps((__m128)v);
+}
+INLINE vec smaller(vec a, vec b)
+{
+    return (vec)_mm_min_ps((__m128)a, (__m128)b);
+}
+INLINE vec choose_below(vec x, vec limit, vec below, vec other)
+{
+    const mask is_below = x < limit;
+    return (vec)((is_below & (mask)below) | (~is_below & (mask)other));
+}
+#else
+INLINE vec square_root(vec v)
+{
+    for (int k = 0; k < LANES; k++)
+        v[k] = __builtin_sqrtf(v[k]);
+    return v;
+}
+INLINE vec rough_reciprocal_root(vec v)
+{
+    return 1 / square_root(v);
+}
+INLINE vec smaller(vec a, vec b)
+{
+    const mask is_less = a < b;
+    return (vec)((is_less & (mask)a) | (~is_less & (mask)b));
+}
+INLINE vec choose_below(vec x, vec limit, vec below, vec other)
+{
+    const mask is_below = x < limit;
+    return (vec)((is_below & (mask)below) | (~is_below & (mask)other));
+}
+#endif
+
+/* -W'(q)/q of the cubic spline over 6 sigma: 2 - 3 q up to 1/2, then (1 - q)^2 / q = 1/q + q - 2.
+ * q2 > 0; beyond 1 the result is 0. */
+INLINE vec spline_weight(vec q2, int by_newton)
+{
+    const vec inside = smaller(q2, splat(1));
+    vec q, reciprocal;
+    if (by_newton) { /* one step of Newton's doubles the bits of the rough root */
+        const vec rough = rough_reciprocal_root(inside), root = inside * rough;
+        const vec correction = 0.5f - root * (0.5f * rough);
+        q = root + root * correction;
+        reciprocal = rough + rough * correction;
+    } else {
+        q = square_root(inside);
+        reciprocal = 1 / q;
+    }
+    return choose_below(inside, splat(0.25f), 2 - 3 * q, reciprocal + (q - 2));
+}
+
+/* C = A^-1 of symmetric matrices xx xy xz yy yz zz, by cofactors. */
+INLINE void invert_symmetric(const vec a[6], vec c[6])
+{
+    c[0] = a[3] * a[5] - a[4] * a[4];
+    c[1] = a[2] * a[4] - a[1] * a[5];
+    c[2] = a[1] * a[4] - a[2] * a[3];
+    c[3] = a[0] * a[5] - a[2] * a[2];
+    c[4] = a[1] * a[2] - a[0] * a[4];
+    c[5] = a[0] * a[3] - a[1] * a[1];
+    const vec reciprocal = 1 / (a[0] * c[0] + a[1] * c[1] + a[2] * c[2]);
+    for (int k = 0; k < 6; k++)
+        c[k] *= reciprocal;
+}
+
+/* J = B C, both 3 x 3, C symmetric. */
+INLINE void apply_symmetric(const vec b[9], const vec c[6], vec jacobian[9])
+{
+    for (int row = 0; row < 9; row += 3) {
+        jacobian[row] = b[row] * c[0] + b[row + 1] * c[1] + b[row + 2] * c[2];
+        jacobian[row + 1] = b[row] * c[1] + b[row + 1] * c[3] + b[row + 2] * c[4];
+        jacobian[row + 2] = b[row] * c[2] + b[row + 1] * c[4] + b[row + 2] * c[5];
+    }
+}
+
+/* The lanes of v[k] summed into lane k, by halving: at each level a lane whose number has the
+ * level's bit takes over from the second of two vectors, the others from the first. */
+INLINE vec sum_lanes(const vec v[LANES])
+{
+#if VECTOR_BYTES == 64
+    vec e[8];
+    for (int k = 0; k < 8; k++)
+        e[k] = __builtin_shufflevector(v[k], v[k + 8], 0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28,
+                                       29, 30, 31) +
+               __builtin_shufflevector(v[k], v[k + 8], 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
+                                       20, 21, 22, 23);
+    vec f[4];
+    for (int k = 0; k < 4; k++)
+        f[k] = __builtin_shufflevector(e[k], e[k + 4], 0, 1, 2, 3, 20, 21, 22, 23, 8, 9, 10, 11, 28,
+                                       29, 30, 31) +
+               __builtin_shufflevector(e[k], e[k + 4], 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15,
+                                       24, 25, 26, 27);
+    vec g[2];
+    for (int k = 0; k < 2; k++)
+        g[k] = __builtin_shufflevector(f[k], f[k + 2], 0, 1, 18, 19, 4, 5, 22, 23, 8, 9, 26, 27, 12,
+                                       13, 30, 31) +
+               __builtin_shufflevector(f[k], f[k + 2], 2, 3, 16, 17, 6, 7, 20, 21, 10, 11, 24, 25,
+                                       14, 15, 28, 29);
+    return __builtin_shufflevector(g[0], g[1], 0, 17, 2, 19, 4, 21, 6, 23, 8, 25, 10, 27, 12, 29,
+                                   14, 31) +
+           __builtin_shufflevector(g[0], g[1], 1, 16, 3, 18, 5, 20, 7, 22, 9, 24, 11, 26, 13, 28,
+                                   15, 30);
+#elif VECTOR_BYTES == 32
+    vec f[4];
+    for (int k = 0; k < 4; k++)
+        f[k] = __builtin_shufflevector(v[k], v[k + 4], 0, 1, 2, 3, 12, 13, 14, 15) +
+               __builtin_shufflevector(v[k], v[k + 4], 4, 5, 6, 7, 8, 9, 10, 11);
+    vec g[2];
+    for (int k = 0; k < 2; k++)
+        g[k] = __builtin_shufflevector(f[k], f[k + 2], 0, 1, 10, 11, 4, 5, 14, 15) +
+               __builtin_shufflevector(f[k], f[k + 2], 2, 3, 8, 9, 6, 7, 12, 13);
+    return __builtin_shufflevector(g[0], g[1], 0, 9, 2, 11, 4, 13, 6, 15) +
+           __builtin_shufflevector(g[0], g[1], 1, 8, 3, 10, 5, 12, 7, 14);
+#else
+    vec g[2];
+    for (int k = 0; k < 2; k++)
+        g[k] = __builtin_shufflevector(v[k], v[k + 2], 0, 1, 6, 7) +
+               __builtin_shufflevector(v[k], v[k + 2], 2, 3, 4, 5);
+    return __builtin_shufflevector(g[0], g[1], 0, 5, 2, 7) +
+           __builtin_shufflevector(g[0], g[1], 1, 4, 3, 6);
+#endif
+}

@@ -1,0 +1,31 @@
+#!/bin/sh
+# bench_measures.sh PROGRAM CHECKER COMMAND: a small run of the command succeeds, says on which
+# machine, prints no NaN, and its report is sound.
+set -eu
+program=$1 checker=$2 command=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+measure() {
+    "$program" "$command" "$@" --json "$work/report.json" >"$work/output"
+    grep -q '^machine ' "$work/output"
+    if grep -iwE 'nan|-nan|inf|-inf' "$work/output" >&2; then
+        exit 1
+    fi
+}
+
+case $command in
+    limit)
+        measure --particles 4096 --repetitions 2
+        "$checker" "$work/report.json" results/ deviation 0 1e-5 probe/ error_max 0 1e-5 \
+            /library 'percent_of_limit, baseline, 4 lanes' 0.1 1000
+        measure --particles 1000 --repetitions 1 --support 2.5 --jitter 0 --threads 1
+        "$checker" "$work/report.json" results/ deviation 0 1e-5
+        measure --probe --particles 4096 --repetitions 2
+        "$checker" "$work/report.json" probe/matrices error_max 0 1e-5
+        ;;
+    *)
+        echo "no check of $command" >&2
+        exit 1
+        ;;
+esac
