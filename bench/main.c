@@ -19,6 +19,7 @@ static const struct command commands[] = {
     {"fields", "error of plain and corrected derivatives on a square: tables, CSV, pictures",
      command_fields},
     {"limit", "how near the library comes to the arithmetic limit of this machine", command_limit},
+    {"skip", "what it saves not to compute what a scene does not need", command_skip},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 

@@ -24,6 +24,17 @@ case $command in
         measure --probe --particles 4096 --repetitions 2
         "$checker" "$work/report.json" probe/matrices error_max 0 1e-5
         ;;
+    skip)
+        measure --particles 4096 --repetitions 2
+        "$checker" "$work/report.json" skip/ saved_percent -1e6 100 full/ real_time 0 1e6 \
+            skip/outputs targets_with_other_bits 0 0 skip/fields targets_with_other_bits 0 0 \
+            skip/active targets_with_other_bits 0 0 skip/reuse deviation 0 1e-4 \
+            'skip/reuse/neighbours' targets_with_other_bits 0 0 \
+            'skip/reuse/list-free' targets_with_other_bits 0 0 \
+            'skip/problem/one volume' targets_with_other_bits 0 0
+        grep -q '"skin_was_spent":[[:space:]]*0' "$work/report.json"
+        [ "$(grep -c 'same bits' "$work/output")" -ge 20 ]
+        ;;
     *)
         echo "no check of $command" >&2
         exit 1

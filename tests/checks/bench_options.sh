@@ -33,4 +33,6 @@ refuses limit --threads 0
 refuses limit --particles 1.5
 refuses limit --json /nonexistent/report.json
 refuses limit probe
+refuses skip --jitter 2
+refuses skip --nonsense
 exit $status
