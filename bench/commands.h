@@ -7,4 +7,5 @@ int command_table1(int argc, char **argv);
 int command_fields(int argc, char **argv);
 int command_limit(int argc, char **argv);
 int command_skip(int argc, char **argv);
+int command_frontier(int argc, char **argv);
 #endif

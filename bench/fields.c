@@ -4,12 +4,9 @@
 #include "commands.h"
 #include "options.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <sys/stat.h>
 
 const sphg_method fields_order[FIELDS_METHODS] = {SPHG_PLAIN, SPHG_KGC,  SPHG_MLS,
                                                   SPHG_RKPM,  SPHG_CMLS, SPHG_CRKPM};
@@ -148,17 +145,6 @@ static void print_lattice(const struct lattice_results *results)
     print_convergence(results);
 }
 
-static void make_folder(const char *path)
-{
-    struct stat status;
-    if (mkdir(path, 0777) == 0)
-        return;
-    if (errno != EEXIST)
-        options_refuse("--output: cannot make %s: %s", path, strerror(errno));
-    if (stat(path, &status) != 0 || !S_ISDIR(status.st_mode))
-        options_refuse("--output: %s is not a folder", path);
-}
-
 int command_fields(int argc, char **argv)
 {
     struct options options = {
@@ -171,7 +157,7 @@ int command_fields(int argc, char **argv)
         .doc = "Errors of plain and corrected derivatives of velocity fields on the square "
                "[-1, 1]^2: tables here, every particle as CSV and pictures in a folder."};
     options_parse(&argp, argc, argv, &options);
-    make_folder(options.output);
+    option_folder("output", options.output);
 
     printf("Velocity gradients on [-1, 1]^2, Figs. 2 and 4 of doi:10.1145/3606933\n"
            "difference form, %s, H = %g d, d = 2 / N, %s, V_j = 1 / sum_k W_jk (j included)\n"

@@ -20,6 +20,8 @@ static const struct command commands[] = {
      command_fields},
     {"limit", "how near the library comes to the arithmetic limit of this machine", command_limit},
     {"skip", "what it saves not to compute what a scene does not need", command_skip},
+    {"frontier", "run time against error of every way to a gradient: tables, CSV, picture",
+     command_frontier},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 void options_refuse(const char *format, ...)
 {
@@ -104,4 +105,15 @@ void option_writable(const char *name, const char *path)
     if (!file)
         options_refuse("--%s: cannot write %s: %s", name, path, strerror(errno));
     fclose(file);
+}
+
+void option_folder(const char *name, const char *path)
+{
+    struct stat status;
+    if (mkdir(path, 0777) == 0)
+        return;
+    if (errno != EEXIST)
+        options_refuse("--%s: cannot make %s: %s", name, path, strerror(errno));
+    if (stat(path, &status) != 0 || !S_ISDIR(status.st_mode))
+        options_refuse("--%s: %s is not a folder", name, path);
 }

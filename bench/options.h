@@ -21,5 +21,6 @@ double option_real(const char *name, const char *text, double least, double most
 double option_positive(const char *name, const char *text);
 /* Opened before hours of measuring, not after. */
 void option_writable(const char *name, const char *path);
+void option_folder(const char *name, const char *path); /* made where it is missing */
 int option_choice(const char *name, const char *text, const char *const choices[]);
 #endif

@@ -35,6 +35,20 @@ case $command in
         grep -q '"skin_was_spent":[[:space:]]*0' "$work/report.json"
         [ "$(grep -c 'same bits' "$work/output")" -ge 20 ]
         ;;
+    frontier)
+        measure --particles 512 --repetitions 1 --threads 1 --output "$work/frontier"
+        "$checker" "$work/report.json" frontier/ trigonometric_error_mean 1e-3 1 \
+            frontier/KGC/cubic/f32 linear_error_max 0 1e-5 \
+            frontier/CMLS/cubic/f64 linear_error_max 0 1e-13 \
+            frontier/SPH linear_error_mean 0.1 1 frontier/ ns_per_particle 0.1 1e9
+        [ "$(grep -c '^[A-Z]' "$work/frontier/frontier.csv")" -eq 693 ]
+        # each field has a frontier, with and without a search of the library's own
+        for side in 'kept lists\|list-free' "host's lists"; do
+            grep -q "$side.*,1,[01]$" "$work/frontier/frontier.csv"
+            grep -q "$side.*,1$" "$work/frontier/frontier.csv"
+        done
+        ! grep -q 'frontier.png' "$work/output" || [ -s "$work/frontier/frontier.png" ]
+        ;;
     *)
         echo "no check of $command" >&2
         exit 1

@@ -35,4 +35,6 @@ refuses limit --json /nonexistent/report.json
 refuses limit probe
 refuses skip --jitter 2
 refuses skip --nonsense
+refuses frontier --output /proc/nothing
+refuses frontier --particles 0
 exit $status
