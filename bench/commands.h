@@ -8,4 +8,5 @@ int command_fields(int argc, char **argv);
 int command_limit(int argc, char **argv);
 int command_skip(int argc, char **argv);
 int command_frontier(int argc, char **argv);
+int command_scaling(int argc, char **argv);
 #endif

@@ -11,6 +11,12 @@ static uint64_t next_random(uint64_t *state)
     return z ^ (z >> 31);
 }
 
+double lattice_random(int64_t number)
+{
+    uint64_t state = (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
+    return (double)(next_random(&state) >> 11) * 0x1p-53;
+}
+
 /* Uniform in [-1, 1]. Only 2^12 steps, so that jittered positions on a dyadic lattice, and linear
  * fields of them, stay exact in f32: what is measured is then the gradient, not rounding of A. */
 static double next_displacement(uint64_t *state)

@@ -19,6 +19,9 @@ int32_t lattice_count(const struct lattice *lattice);
 /* One row of `dimension` coordinates per particle; the same numbers on every run and machine. */
 void lattice_fill(const struct lattice *lattice, struct numbers *positions);
 
+/* In [0, 1), the same for the same number: random without a state. */
+double lattice_random(int64_t number);
+
 /* Reorders the rows of a table at random, the same way for every table of as many rows. */
 void shuffle_rows(struct numbers *table);
 #endif

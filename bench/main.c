@@ -22,6 +22,8 @@ static const struct command commands[] = {
     {"skip", "what it saves not to compute what a scene does not need", command_skip},
     {"frontier", "run time against error of every way to a gradient: tables, CSV, picture",
      command_frontier},
+    {"scaling", "time a particle over sizes, threads, neighbours, orders and clouds",
+     command_scaling},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 

@@ -7,15 +7,6 @@
 
 static const double shares[SKIP_PATTERNS / 2] = {0.5, 0.1, 0.01};
 
-/* A hash of the number: splitmix64's finish (Steele, Lea, Flood 2014). */
-static double scattered(int32_t i)
-{
-    uint64_t z = ((uint64_t)i + 1) * UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 /* Largest distance from the middle on any axis, over half the side. */
 static double off_centre(const struct numbers *positions, int32_t i, double middle)
 {
@@ -34,7 +25,7 @@ static struct pattern create_pattern(const struct numbers *positions, double mid
     pattern.indices = allocate_or_exit(count, sizeof *pattern.indices);
     for (int32_t i = 0; i < positions->count; i++) {
         pattern.mask[i] =
-            clustered ? off_centre(positions, i, middle) < cbrt(share) : scattered(i) < share;
+            clustered ? off_centre(positions, i, middle) < cbrt(share) : lattice_random(i) < share;
         if (pattern.mask[i])
             pattern.indices[pattern.count++] = i;
     }
@@ -80,7 +71,7 @@ static void move(struct cloud *cloud, double skin)
 {
     for (int32_t i = 0; i < cloud->positions.count; i++)
         for (int32_t axis = 0; axis < cloud->positions.width; axis++) {
-            const double shift = 0.25 * skin * (2 * scattered(3 * i + axis) - 1);
+            const double shift = 0.25 * skin * (2 * lattice_random(3 * (int64_t)i + axis) - 1);
             numbers_set(&cloud->moved, i, axis, numbers_get(&cloud->positions, i, axis) + shift);
         }
 }

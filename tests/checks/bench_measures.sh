@@ -49,6 +49,17 @@ case $command in
         done
         ! grep -q 'frontier.png' "$work/output" || [ -s "$work/frontier/frontier.png" ]
         ;;
+    scaling)
+        measure --particles 1000 --repetitions 1 --threads 2 --full --output "$work/scaling"
+        "$checker" "$work/report.json" scaling/ not_finite 0 0 scaling/ ns_per_particle 0.1 1e9 \
+            scaling/particles/ error_max 1e-9 1e-5 scaling/cloud/jittered error_max 1e-9 1e-5 \
+            'scaling/particles/30 000' deficient_share 0 0 \
+            scaling/threads/1/ case_threads 1 1 scaling/threads/2/ case_threads 2 2 \
+            'scaling/cloud/thin sheets' deficient_share 0.5 1 \
+            scaling/cloud/spray deficient_share 0.9 1 scaling/cloud/spray pairs_per_particle 1 3
+        [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 23 ]
+        ! grep -q 'scaling.png' "$work/output" || [ -s "$work/scaling/scaling.png" ]
+        ;;
     *)
         echo "no check of $command" >&2
         exit 1

@@ -37,4 +37,6 @@ refuses skip --jitter 2
 refuses skip --nonsense
 refuses frontier --output /proc/nothing
 refuses frontier --particles 0
+refuses scaling --full=yes
+refuses scaling --support 100
 exit $status
