@@ -47,5 +47,6 @@ const struct argp settings_argp = {.options = option_list, .parser = parse_optio
 
 int32_t settings_side(int32_t particles, int32_t dimension)
 {
-    return (int32_t)lround(pow((double)particles, 1.0 / dimension));
+    const int32_t side = (int32_t)lround(pow((double)particles, 1.0 / dimension));
+    return side > 1 ? side : 1;
 }

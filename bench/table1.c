@@ -153,6 +153,8 @@ static void create_columns(struct table1 *table)
 {
     const int32_t repetitions = table->options.repetitions;
     table->search = samples_create(repetitions);
+    for (int work = 0; work < PROBE_WORKS; work++)
+        table->probe[work] = samples_create(repetitions);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
         struct column *column = &table->columns[k];
         *column = paper_columns[k];
@@ -165,6 +167,8 @@ static void create_columns(struct table1 *table)
 static void destroy_columns(struct table1 *table)
 {
     samples_destroy(&table->search);
+    for (int work = 0; work < PROBE_WORKS; work++)
+        samples_destroy(&table->probe[work]);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
         samples_destroy(&table->columns[k].matrix);
         samples_destroy(&table->columns[k].gradient);

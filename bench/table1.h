@@ -2,6 +2,7 @@
 #ifndef SPHGRAD_BENCH_TABLE1_H
 #define SPHGRAD_BENCH_TABLE1_H
 #include "particles.h"
+#include "probe.h"
 #include "timing.h"
 
 enum { TABLE1_COLUMNS = 6 };
@@ -33,6 +34,8 @@ struct table1 {
     sphg_neighbors_info neighbors;
     double first_search; /* [ms], with all allocations */
     struct samples search;
+    struct samples probe[PROBE_WORKS]; /* for as many particles as its cube holds */
+    int32_t probe_count;
     struct column columns[TABLE1_COLUMNS];
 };
 

@@ -40,6 +40,9 @@ void table1_write_json(const struct table1 *table, const char *path, const char 
     describe(report, table);
     const struct counter none = {NULL, 0};
     report_benchmark(report, "table1/search", &table->search, &none);
+    const struct counter probe_size[] = {{"particles", table->probe_count}, {NULL, 0}};
+    report_benchmark(report, "probe/matrices", &table->probe[PROBE_MATRICES], probe_size);
+    report_benchmark(report, "probe/gradient", &table->probe[PROBE_GRADIENT], probe_size);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
         const struct column *column = &table->columns[k];
         report_part(report, column, "matrix", &column->matrix, NULL);

@@ -2,6 +2,7 @@
  * method's three calls. So a slow second of the machine hits all columns alike. */
 #include "library.h"
 #include "progress.h"
+#include "settings.h"
 #include "table1.h"
 
 #include <math.h>
@@ -12,6 +13,7 @@ struct bench {
     struct table1 *table;
     sphg_context *context;
     sphg_neighbors *neighbors;
+    struct probe *probe;
     struct numbers corrections; /* room for the widest; each method uses the start of it */
     struct numbers jacobians;
     uint8_t *ranks;
@@ -176,6 +178,27 @@ static void time_method(struct bench *bench, struct column *column)
     samples_add_since(&column->fused, fused_start);
 }
 
+/* A cube of as many particles, a million at most, whatever the table is about. */
+static void prepare_probe(struct bench *bench)
+{
+    const int32_t most = 1000000, count = bench->table->particles.count;
+    progress_show("warm-up: probe");
+    bench->probe =
+        probe_create(bench->context, settings_side(count < most ? count : most, 3), 2, 0.2);
+    bench->table->probe_count = probe_count(bench->probe);
+    for (int work = 0; work < PROBE_WORKS; work++)
+        probe_run(bench->probe, (enum probe_work)work, bench->table->options.threads);
+}
+
+static void time_probe(struct bench *bench)
+{
+    for (int work = 0; work < PROBE_WORKS; work++) {
+        const struct moment start = now();
+        probe_run(bench->probe, (enum probe_work)work, bench->table->options.threads);
+        samples_add_since(&bench->table->probe[work], start);
+    }
+}
+
 static void repeat(struct bench *bench)
 {
     struct table1 *table = bench->table;
@@ -186,6 +209,7 @@ static void repeat(struct bench *bench)
         samples_add_since(&table->search, start);
         for (int k = 0; k < TABLE1_COLUMNS; k++)
             time_method(bench, &table->columns[k]);
+        time_probe(bench);
     }
     progress_clear();
 }
@@ -223,8 +247,10 @@ void table1_measure(struct table1 *table)
     library_check(bench.context, sphg_neighbors_create(bench.context, &bench.neighbors));
     first_search(&bench);
     complete_volumes(&bench);
+    prepare_probe(&bench);
     warm_up(&bench);
     repeat(&bench);
+    probe_destroy(bench.probe);
     sphg_neighbors_destroy(bench.neighbors);
     sphg_context_destroy(bench.context);
     numbers_destroy(&bench.corrections);

@@ -2,42 +2,19 @@
 #include "library.h"
 #include "machine.h"
 #include "table1.h"
+#include "text.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { CELL_SIZE = 32 };
-
-/* 1234567 as "1 234 567". */
-static const char *grouped(int64_t value, char text[CELL_SIZE])
-{
-    char digits[CELL_SIZE];
-    const int length = snprintf(digits, sizeof digits, "%lld", (long long)value);
-    int out = 0;
-    for (int k = 0; k < length; k++) {
-        if (k > 0 && (length - k) % 3 == 0)
-            text[out++] = ' ';
-        text[out++] = digits[k];
-    }
-    text[out] = '\0';
-    return text;
-}
-
-/* As the paper prints them; four digits are more than two runs agree on. */
-static void format_time(double milliseconds, char text[CELL_SIZE])
-{
-    const int decimals = milliseconds < 1 ? 3 : milliseconds < 100 ? 2 : milliseconds < 1000;
-    snprintf(text, CELL_SIZE, "%.*f", decimals, milliseconds);
-}
-
-static void format_range(const struct samples *samples, char text[2 * CELL_SIZE])
+static void format_range(const struct samples *samples, char text[2 * TEXT_SIZE])
 {
     const struct spread spread = samples_wall(samples);
-    char least[CELL_SIZE], most[CELL_SIZE];
-    format_time(spread.min, least);
-    format_time(spread.max, most);
-    snprintf(text, 2 * CELL_SIZE, "%s-%s", least, most);
+    char least[TEXT_SIZE], most[TEXT_SIZE];
+    text_time(spread.min, least);
+    text_time(spread.max, most);
+    snprintf(text, 2 * TEXT_SIZE, "%s-%s", least, most);
 }
 
 static void print_label(const char *label)
@@ -59,10 +36,10 @@ static void print_medians(const struct table1 *table, const char *label, int whi
 {
     print_label(label);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        char text[CELL_SIZE] = "-";
+        char text[TEXT_SIZE] = "-";
         const struct samples *samples = samples_of(&table->columns[k], which);
         if (samples->count > 0)
-            format_time(samples_wall(samples).median, text);
+            text_time(samples_wall(samples).median, text);
         print_cell(text);
     }
     printf("\n");
@@ -72,7 +49,7 @@ static void print_ranges(const struct table1 *table, int which)
 {
     print_label("  min-max");
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        char text[2 * CELL_SIZE] = "";
+        char text[2 * TEXT_SIZE] = "";
         const struct samples *samples = samples_of(&table->columns[k], which);
         if (samples->count > 0)
             format_range(samples, text);
@@ -85,7 +62,7 @@ static void print_per_pair(const struct table1 *table, const char *label, int wh
 {
     print_label(label);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        char text[CELL_SIZE] = "-";
+        char text[TEXT_SIZE] = "-";
         const struct samples *samples = samples_of(&table->columns[k], which);
         if (samples->count > 0 && table->neighbors.pairs > 0)
             snprintf(text, sizeof text, "%.3f",
@@ -99,7 +76,7 @@ static void print_errors(const struct table1 *table, const char *label, int fuse
 {
     print_label(label);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        char text[CELL_SIZE] = "-";
+        char text[TEXT_SIZE] = "-";
         const struct column *column = &table->columns[k];
         const int none = column->method == SPHG_PLAIN ? fused : column->stats.rank[3] == 0;
         if (!none)
@@ -115,9 +92,9 @@ static void print_counts(const struct table1 *table, const char *label,
 {
     print_label(label);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        char text[CELL_SIZE] = "-";
+        char text[TEXT_SIZE] = "-";
         if (table->columns[k].method != SPHG_PLAIN)
-            grouped(count(&table->columns[k].stats, index), text);
+            text_grouped(count(&table->columns[k].stats, index), text);
         print_cell(text);
     }
     printf("\n");
@@ -138,7 +115,7 @@ static void print_paper(const struct table1 *table, const char *label, int gradi
 {
     print_label(label);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        char text[CELL_SIZE] = "-";
+        char text[TEXT_SIZE] = "-";
         const struct column *column = &table->columns[k];
         const double time = gradient ? column->paper_gradient : column->paper_matrix;
         if (time > 0)
@@ -152,11 +129,11 @@ static void print_lattice(const struct table1 *table)
 {
     const struct table1_options *options = &table->options;
     const int32_t side = options->source.side;
-    char count[CELL_SIZE], wanted[CELL_SIZE];
-    printf("particles  %s in a lattice of %d x %d x %d", grouped(table->particles.count, count),
-           side, side, side);
+    char count[TEXT_SIZE], wanted[TEXT_SIZE];
+    printf("particles  %s in a lattice of %d x %d x %d",
+           text_grouped(table->particles.count, count), side, side, side);
     if (table->particles.count != options->wanted_particles)
-        printf(" (the cube nearest to %s)", grouped(options->wanted_particles, wanted));
+        printf(" (the cube nearest to %s)", text_grouped(options->wanted_particles, wanted));
     printf(", spacing 1/128\n           ");
     if (options->source.jitter > 0)
         printf("each coordinate moved by up to %g spacings, ", options->source.jitter);
@@ -166,8 +143,8 @@ static void print_lattice(const struct table1 *table)
 
 static void print_input(const struct table1 *table)
 {
-    char count[CELL_SIZE];
-    printf("particles  %s of %s\n", grouped(table->particles.count, count),
+    char count[TEXT_SIZE];
+    printf("particles  %s of %s\n", text_grouped(table->particles.count, count),
            table->options.source.input);
     printf("           %s order, volume %s, timed field: %s\n",
            table->options.source.shuffled ? "shuffled" : "file's", table->particles.volume_origin,
@@ -195,19 +172,40 @@ static void print_set_up(const struct table1 *table)
 
 static void print_search(const struct table1 *table)
 {
-    char pairs[CELL_SIZE], median[CELL_SIZE], first[CELL_SIZE], range[2 * CELL_SIZE];
+    char pairs[TEXT_SIZE], median[TEXT_SIZE], first[TEXT_SIZE], range[2 * TEXT_SIZE];
     const double count = table->particles.count;
     printf("pairs      %s, %.2f a particle; %.1f bytes a particle held by the neighbours\n",
-           grouped(table->neighbors.pairs, pairs), (double)table->neighbors.pairs / count,
+           text_grouped(table->neighbors.pairs, pairs), (double)table->neighbors.pairs / count,
            (double)table->neighbors.bytes / count);
     const double search = samples_wall(&table->search).median;
-    format_time(search, median);
-    format_time(table->first_search, first);
+    text_time(search, median);
+    text_time(table->first_search, first);
     format_range(&table->search, range);
     printf("search     T_ns %s ms (%s)", median, range);
     if (table->neighbors.pairs > 0)
         printf(", %.3f ns a pair", 1e6 * search / (double)table->neighbors.pairs);
     printf("; the first, with allocation, %s ms\n", first);
+}
+
+/* How much longer a particle takes here than with the probe. */
+static double over_probe(const struct table1 *table, const struct samples *samples,
+                         enum probe_work work)
+{
+    return samples_wall(samples).median / table->particles.count /
+           (samples_wall(&table->probe[work]).median / table->probe_count);
+}
+
+static void print_probe(const struct table1 *table)
+{
+    char matrices[TEXT_SIZE], gradient[TEXT_SIZE], count[TEXT_SIZE];
+    const struct column *kgc = &table->columns[1];
+    text_time(samples_wall(&table->probe[PROBE_MATRICES]).median, matrices);
+    text_time(samples_wall(&table->probe[PROBE_GRADIENT]).median, gradient);
+    printf("yardstick  %s and %s ms for matrices and gradient of %s particles by `limit --probe`;\n"
+           "           a particle's T_mat and T_grad of KGC take %.2f and %.2f of its\n",
+           matrices, gradient, text_grouped(table->probe_count, count),
+           over_probe(table, &kgc->matrix, PROBE_MATRICES),
+           over_probe(table, &kgc->gradient, PROBE_GRADIENT));
 }
 
 static void print_header(const struct table1 *table)
@@ -274,6 +272,7 @@ void table1_print(const struct table1 *table)
     const int deficient = some_are_deficient(table);
     print_set_up(table);
     print_search(table);
+    print_probe(table);
     print_header(table);
     print_times(table);
     printf("\n");

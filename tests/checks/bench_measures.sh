@@ -15,6 +15,12 @@ measure() {
 }
 
 case $command in
+    table1)
+        measure --particles 4096 --repetitions 2
+        "$checker" "$work/report.json" table1/KGC/gradient error_max 0 1e-5 \
+            probe/ particles 4096 4096
+        grep -q '^yardstick ' "$work/output"
+        ;;
     limit)
         measure --particles 4096 --repetitions 2
         "$checker" "$work/report.json" results/ deviation 0 1e-5 probe/ error_max 0 1e-5 \

@@ -1,6 +1,7 @@
-/* bench_report FILE [NAME COUNTER LEAST MOST]...: the report parses, names its machine, and holds
- * nothing but finite numbers; every benchmark whose name contains NAME has the COUNTER, in
- * [LEAST, MOST], and there is at least one. */
+/* bench_report FILE [NAME COUNTER LEAST MOST | ratio PART WHOLE MOST]...: the report parses, names
+ * its machine, and holds nothing but finite numbers; every benchmark whose name contains NAME has
+ * the COUNTER, in [LEAST, MOST], and there is at least one; the least processor time of PART is at
+ * most MOST times that of WHOLE. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -78,6 +79,30 @@ static void check_counter(const cJSON *benchmarks, char *const wanted[4])
         complain("no such benchmark", wanted[0]);
 }
 
+/* The fastest of many repetitions: what a busy machine disturbs least. */
+static double least_time(const cJSON *benchmarks, const char *run_name)
+{
+    const cJSON *benchmark;
+    cJSON_ArrayForEach(benchmark, benchmarks)
+    {
+        const char *run = cJSON_GetStringValue(cJSON_GetObjectItem(benchmark, "run_name"));
+        const char *kind = cJSON_GetStringValue(cJSON_GetObjectItem(benchmark, "aggregate_name"));
+        if (run && kind && strcmp(run, run_name) == 0 && strcmp(kind, "min") == 0)
+            return cJSON_GetNumberValue(cJSON_GetObjectItem(benchmark, "cpu_time"));
+    }
+    complain("no such benchmark", run_name);
+    return NAN;
+}
+
+static void check_ratio(const cJSON *benchmarks, char *const wanted[4])
+{
+    const double part = least_time(benchmarks, wanted[1]),
+                 whole = least_time(benchmarks, wanted[2]), most = strtod(wanted[3], NULL);
+    printf("%-45s %.3f of %s, at most %s\n", wanted[1], part / whole, wanted[2], wanted[3]);
+    if (!(part <= most * whole))
+        complain("takes too large a share", wanted[1]);
+}
+
 int main(int argc, char **argv)
 {
     char *text = argc > 1 ? read_file(argv[1]) : NULL;
@@ -88,7 +113,10 @@ int main(int argc, char **argv)
     check_context(root);
     cJSON_ArrayForEach(benchmark, benchmarks) check_benchmark(benchmark);
     for (int k = 2; k + 4 <= argc; k += 4)
-        check_counter(benchmarks, argv + k);
+        if (strcmp(argv[k], "ratio") == 0)
+            check_ratio(benchmarks, argv + k);
+        else
+            check_counter(benchmarks, argv + k);
     cJSON_Delete(root);
     free(text);
     return failures > 0;

@@ -1,0 +1,26 @@
+#!/bin/sh
+# bench_ratios.sh PROGRAM CHECKER: leaving something out saves time. Ratios of processor times of
+# one thread, measured in turn, the least of many rounds, with room for a busy machine.
+set -eu
+program=$1 checker=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$program" skip --particles 27000 --threads 1 --repetitions 11 --json "$work/report.json" >/dev/null
+
+status=0
+takes_at_most() {
+    "$checker" "$work/report.json" ratio "skip/$2" "full/$2" "$1" || status=1
+}
+takes_at_most 1.1 'outputs/divergence alone'
+takes_at_most 1.1 'outputs/curl alone'
+takes_at_most 1.1 'outputs/Jacobian, matrices not kept'
+takes_at_most 0.95 'outputs/matrices alone'
+takes_at_most 0.8 'fields/4 vector fields in one call'
+takes_at_most 0.8 'fields/the same with matrices given'
+takes_at_most 0.5 'active/10 % clustered, list'
+takes_at_most 0.25 'active/1 % clustered, list'
+takes_at_most 0.85 'reuse/neighbours kept'
+takes_at_most 0.85 'reuse/neighbours and matrices kept'
+takes_at_most 1.15 'problem/one volume for all'
+exit $status
