@@ -26,7 +26,7 @@ struct limit {
     struct limit_times times[LIMIT_SETS_MOST][LIMIT_WORKS];
     struct samples library[LIMIT_WORKS];
     struct samples probe[PROBE_WORKS];
-    double probe_error, probe_pairs;
+    double probe_error, probe_deviation, probe_pairs;
     bool probe_only;
 };
 

@@ -202,6 +202,7 @@ void limit_measure(struct limit *limit)
     for (int work = 0; work < PROBE_WORKS; work++)
         probe_run(bench.probe, (enum probe_work)work, settings->threads);
     limit->probe_error = probe_error(bench.probe);
+    limit->probe_deviation = probe_matrix_deviation(bench.probe, bench.context);
     if (!limit->probe_only)
         open_library_side(&bench, side);
     create_samples(limit);

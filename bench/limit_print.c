@@ -107,8 +107,9 @@ static void print_probe(const struct limit *limit)
     text_median(&limit->probe[PROBE_MATRICES], matrices);
     text_median(&limit->probe[PROBE_GRADIENT], gradient);
     printf("probe      matrices %s ms, gradient %s ms\n"
-           "           (int32 CSR, sorted 16-byte rows, %.2f pairs; its error %.1e)\n",
-           matrices, gradient, limit->probe_pairs, limit->probe_error);
+           "           (int32 CSR, sorted 16-byte rows, %.2f pairs; error of its Jacobians %.1e, "
+           "its matrices\n           off the library's by %.1e)\n",
+           matrices, gradient, limit->probe_pairs, limit->probe_error, limit->probe_deviation);
 }
 
 void limit_print(const struct limit *limit)
@@ -178,7 +179,8 @@ void limit_write_json(const struct limit *limit, const char *path, const char *e
     report_number(report, "particles", limit->count);
     report_number(report, "support_spacings", limit->settings.support);
     report_number(report, "jitter", limit->settings.jitter);
-    const struct counter error[] = {{"error_max", limit->probe_error}, {NULL, 0}};
+    const struct counter error[] = {
+        {"error_max", limit->probe_error}, {"matrix_deviation", limit->probe_deviation}, {NULL, 0}};
     for (int work = 0; work < PROBE_WORKS; work++)
         report_benchmark(report, probe_names[work], &limit->probe[work], error);
     for (int work = 0; work < LIMIT_WORKS && !limit->probe_only; work++) {

@@ -67,27 +67,34 @@ static void set_fields(struct probe *probe)
     }
 }
 
-static void find_lists(struct probe *probe, sphg_context *context)
+static const sphg_scheme probe_scheme = {.support_radius = 1};
+
+static sphg_neighbors *search(const struct probe *probe, sphg_context *context)
 {
     sphg_neighbors *neighbors = NULL;
-    const sphg_scheme scheme = {.support_radius = 1};
     const sphg_geometry geometry = {
         .sources = sphg_view_f32(probe->positions[0], sizeof *probe->positions),
         .source_count = probe->count,
         .target_count = probe->count};
     library_check(context, sphg_neighbors_create(context, &neighbors));
-    library_check(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+    library_check(context, sphg_neighbors_search(context, neighbors, &probe_scheme, &geometry));
+    return neighbors;
+}
+
+static void find_lists(struct probe *probe, sphg_context *context)
+{
+    sphg_neighbors *neighbors = search(probe, context);
     const sphg_sources sources = {.neighbors = neighbors};
     sphg_pairs pairs = {.offsets = probe->offsets};
-    library_check(context,
-                  sphg_pair_gradients(context, &scheme, &sources, NULL, sphg_absent(), &pairs));
+    library_check(context, sphg_pair_gradients(context, &probe_scheme, &sources, NULL,
+                                               sphg_absent(), &pairs));
     probe->indices = allocate_lines(pairs.count + PADDING, sizeof *probe->indices);
     for (int32_t k = 0; k < PADDING; k++)
         probe->indices[pairs.count + k] = 0;
     pairs.indices = probe->indices;
     pairs.capacity = pairs.count;
-    library_check(context,
-                  sphg_pair_gradients(context, &scheme, &sources, NULL, sphg_absent(), &pairs));
+    library_check(context, sphg_pair_gradients(context, &probe_scheme, &sources, NULL,
+                                               sphg_absent(), &pairs));
     sphg_neighbors_destroy(neighbors);
 }
 
@@ -163,10 +170,50 @@ void probe_run(struct probe *probe, enum probe_work work, int32_t threads)
     team_run(threads, run_share, probe, probe->count, PROBE_LANES_MOST);
 }
 
+static int32_t lanes_of(const struct probe *probe)
+{
+    return probe->passes[PROBE_MATRICES] == probe_matrices_base ? 4 : 8;
+}
+
+static double matrix_deviation(const struct probe *probe, const float *expected, int32_t i)
+{
+    const int32_t lanes = lanes_of(probe);
+    const float *found = probe->corrections + (int64_t)(i / lanes) * 6 * lanes + i % lanes;
+    double difference = 0, size = 0;
+    for (int k = 0; k < 6; k++) { /* xx xy xz yy yz zz: what is off the diagonal stands twice */
+        const double times = k == 1 || k == 2 || k == 4 ? 2 : 1;
+        const double off = (double)found[k * lanes] - (double)expected[k];
+        difference += times * off * off;
+        size += times * (double)expected[k] * (double)expected[k];
+    }
+    return sqrt(difference / size);
+}
+
+double probe_matrix_deviation(const struct probe *probe, sphg_context *context)
+{
+    sphg_neighbors *neighbors = search(probe, context);
+    const float volume = probe->positions[0][3] * (float)(pi / 48); /* sigma is 8 / pi */
+    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_view_f32(&volume, 0)};
+    float(*corrections)[6] = allocate_or_exit((size_t)probe->count, sizeof *corrections);
+    uint8_t *ranks = allocate_or_exit((size_t)probe->count, 1);
+    double most = 0;
+    library_check(context, sphg_correction(context, &probe_scheme, &sources, NULL,
+                                           sphg_view_f32(corrections[0], sizeof *corrections),
+                                           sphg_view_u8(ranks, 1)));
+    for (int32_t i = 0; i < probe->count; i++) {
+        const double deviation = ranks[i] == 3 ? matrix_deviation(probe, corrections[i], i) : 0;
+        most = deviation <= most ? most : deviation;
+    }
+    sphg_neighbors_destroy(neighbors);
+    free(corrections);
+    free(ranks);
+    return most;
+}
+
 double probe_error(const struct probe *probe)
 {
     static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
-    const int32_t lanes = probe->passes[PROBE_MATRICES] == probe_matrices_base ? 4 : 8;
+    const int32_t lanes = lanes_of(probe);
     double most = 0;
     for (int32_t i = 0; i < probe->count; i++) {
         const float *jacobian = probe->jacobians + (int64_t)(i / lanes) * 9 * lanes + i % lanes;

@@ -18,6 +18,10 @@ int32_t probe_count(const struct probe *probe);
 double probe_pairs(const struct probe *probe); /* a particle */
 void probe_run(struct probe *probe, enum probe_work work, int32_t threads);
 
+/* After the matrices were run: largest |C_i - C|_F / |C|_F, C of the library, over particles that
+ * it corrects fully. Exactness on linear fields alone would forgive wrong pairs. */
+double probe_matrix_deviation(const struct probe *probe, sphg_context *context);
+
 /* max |J_i - J|_F / |J|_F on v = (-y, x, 2z), after both works were run. */
 double probe_error(const struct probe *probe);
 #endif

@@ -28,7 +28,8 @@ case $command in
         measure --particles 1000 --repetitions 1 --support 2.5 --jitter 0 --threads 1
         "$checker" "$work/report.json" results/ deviation 0 1e-5
         measure --probe --particles 4096 --repetitions 2
-        "$checker" "$work/report.json" probe/matrices error_max 0 1e-5
+        "$checker" "$work/report.json" probe/matrices error_max 0 1e-5 \
+            probe/matrices matrix_deviation 0 1e-5
         ;;
     skip)
         measure --particles 4096 --repetitions 2
