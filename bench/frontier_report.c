@@ -132,6 +132,7 @@ void frontier_print(const struct frontier *frontier)
            settings->repetitions, frontier->point_count);
     printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
            "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");
+    text_print_if_busy(&frontier->points[0].time, settings->threads);
     print_header("fastest way of each method and precision, whatever its error");
     for (int k = 0; k < FRONTIER_METHODS * FRONTIER_PRECISIONS * SIDES; k++)
         print_fastest(frontier, (sphg_method)(k / SIDES / FRONTIER_PRECISIONS),

@@ -125,6 +125,7 @@ void limit_print(const struct limit *limit)
     print_probe(limit);
     printf("times      median (min-max) of %d rounds, ms for %s targets\n", settings->repetitions,
            count);
+    text_print_if_busy(&limit->probe[PROBE_GRADIENT], settings->threads);
     if (limit->probe_only)
         return;
     printf("\n  %-30s%26s%26s%26s\n", "", limit_work_names[0], limit_work_names[1],

@@ -91,6 +91,7 @@ void scaling_print(const struct scaling *scaling)
            settings->repetitions);
     printf("errors     largest |J_i - J|_F / |J|_F of v = (-y, x, 2z), in 2D (-y, 2x), where rank "
            "is full\n");
+    text_print_if_busy(&scaling->cases[0].time[SCALING_FUSED], settings->threads);
     for (int k = 0; k < scaling->case_count; k++) {
         if (k == 0 || strcmp(scaling->cases[k].group, scaling->cases[k - 1].group) != 0)
             print_group_header(scaling->cases[k].group);

@@ -44,6 +44,7 @@ void skip_print(const struct skip *skip)
     text_print_machine(skip->settings.threads);
     printf("times      median (min-max) of %d rounds [ms]; exact: compared with the full result\n",
            skip->settings.repetitions);
+    text_print_if_busy(&skip->results[0].full, skip->settings.threads);
     printf("\n  %-32s%-37s%24s%24s%9s   %s\n", "what", "against", "full [ms]", "this [ms]",
            "saved %", "exact");
     for (int k = 0; k < skip_row_count; k++) {

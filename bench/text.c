@@ -45,3 +45,14 @@ void text_print_machine(int32_t threads)
     printf("program    sphgrad %s, %s, %s, %s\n", library_version(), machine_compiler(),
            machine_build(), machine_date());
 }
+
+void text_print_if_busy(const struct samples *samples, int32_t threads)
+{
+    const int32_t processors = machine_cpus() < threads ? machine_cpus() : threads;
+    const double had = samples_cpu(samples).median / (samples_wall(samples).median * processors);
+    if (had < 0.8)
+        printf(
+            "BUSY       others ran: the program had %.0f %% of its processors' time, and the times "
+            "are too long\n",
+            100 * had);
+}

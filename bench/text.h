@@ -15,4 +15,7 @@ void text_time(double milliseconds, char text[TEXT_SIZE]);
 void text_median(const struct samples *samples, char text[TEXT_SIZE]);
 
 void text_print_machine(int32_t threads);
+
+/* One line if others kept the processors from the program while these samples were taken. */
+void text_print_if_busy(const struct samples *samples, int32_t threads);
 #endif
