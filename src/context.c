@@ -34,6 +34,14 @@ static void fill_pack_order(uint64_t *order)
     }
 }
 
+/* b -> 2 b, 2 b + 1 */
+static void fill_pack_bytes(const uint64_t *order, uint8_t (*bytes)[16])
+{
+    for (uint32_t bits = 0; bits < 256; ++bits)
+        for (uint32_t k = 0; k < 16; ++k)
+            bytes[bits][k] = (uint8_t)(2 * (order[bits] >> (8 * (k / 2)) & 7) + k % 2);
+}
+
 static void report(const sphg_config *config, sphg_result result, const char *message)
 {
     if (config->log)
@@ -77,6 +85,7 @@ sphg_result sphg_context_create(int32_t version, const sphg_config *config, sphg
     atomic_flag_clear(&made->busy);
     choose_passes(made);
     fill_pack_order(made->pack_order);
+    fill_pack_bytes((const uint64_t *)made->pack_order, made->pack_bytes);
     *context = made;
     return SPHG_OK;
 }

@@ -14,6 +14,7 @@ struct sphg_context {
     sphg_isa isa;
     const struct sphgi_passes *passes_f32, *passes_f64;
     uint64_t pack_order[256]; /* of each byte: the positions of its set bits, a byte each */
+    _Alignas(16) uint8_t pack_bytes[256][16]; /* the same for items of two bytes */
     atomic_flag busy;
     char message[SPHGI_MESSAGE_LENGTH];
     /* Scratch that outlives a call only to spare the next one its allocation. */

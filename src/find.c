@@ -44,13 +44,22 @@ struct sphgi_finder sphgi_finder_at(const sphg_context *context, const sphg_neig
 {
     const struct layout layout = layout_of(neighbors, room);
     char *next = memory;
-    struct sphgi_finder finder = {.room = room, .pack_order = context->pack_order};
+    struct sphgi_finder finder = {.room = room};
     finder.passes = sphgi_passes_of(context, neighbors->position_type);
     finder.x = next;
     finder.y = next + layout.coordinates;
     finder.z = next + 2 * layout.coordinates;
     next += 3 * layout.coordinates;
-    finder.scratch = next;
+    finder.find = (struct sphgi_find){.x = finder.x,
+                                      .y = finder.y,
+                                      .z = finder.z,
+                                      .reach = neighbors->radius + neighbors->skin,
+                                      .slack = neighbors->sources.lattice.slack,
+                                      .periodic = neighbors->periodic,
+                                      .scratch = next,
+                                      .pack_order = context->pack_order,
+                                      .pack_bytes = context->pack_bytes};
+    memcpy(finder.find.period, neighbors->period, sizeof finder.find.period);
     finder.ids = (uint16_t *)(void *)(next += layout.scratch);
     finder.lengths = (uint16_t *)(void *)(next + layout.ids);
     return finder;
@@ -76,43 +85,15 @@ void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neigh
         stage_rows(finder, neighbors, around->begin[r], around->count[r], at);
 }
 
-static struct sphgi_find find_of(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
-                                 int32_t begin, int32_t end)
+/* Staged number of a target of that cell, if it is a source, or -1. Targets that are part of the
+ * sources come first among them: in a cell, both stand in the order of their numbers. */
+static int32_t staged_self(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around,
+                           const struct sphgi_runs *runs, int32_t cell, int32_t target)
 {
-    struct sphgi_find find = {.x = finder->x,
-                              .y = finder->y,
-                              .z = finder->z,
-                              .targets = sphgi_target_row(neighbors, begin),
-                              .target_count = end - begin,
-                              .reach = neighbors->radius + neighbors->skin,
-                              .slack = neighbors->sources.lattice.slack,
-                              .periodic = neighbors->periodic,
-                              .dimension = neighbors->dimension,
-                              .scratch = finder->scratch,
-                              .pack_order = finder->pack_order};
-    memcpy(find.period, neighbors->period, sizeof find.period);
-    return find;
-}
-
-/* Row of the source that target `place` is; -1: it is none. */
-static int32_t own_row(const sphg_neighbors *neighbors, int32_t place)
-{
-    if (neighbors->same)
-        return place;
-    if (!neighbors->part_of)
-        return -1;
-    const int32_t target = ((const int32_t *)neighbors->targets.order.data)[place];
-    return ((const int32_t *)neighbors->source_place.data)[target];
-}
-
-/* First row of the sources' cell that the targets' cell `cell` coincides with. */
-static int32_t first_row_staged(const struct sphgi_surroundings *around, int32_t number)
-{
-    int32_t at = 1;
-    for (int32_t r = 0; r < around->ranges; at += around->count[r++])
-        if (number < at + around->count[r])
-            return around->begin[r] + number - at;
-    return -1;
+    const struct sphgi_grid *grid = sphgi_target_grid(neighbors);
+    const int32_t *start =
+        (const int32_t *)grid->cell_start.data + (ptrdiff_t)around->block * grid->cells;
+    return neighbors->part_of ? runs->own + target - start[cell] : -1;
 }
 
 int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
@@ -120,40 +101,36 @@ int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbo
                            int32_t cell, int32_t begin, int32_t end, uint16_t *ids,
                            uint16_t *lengths)
 {
-    const struct sphgi_lattice *lattice = &neighbors->sources.lattice;
-    struct sphgi_find find = find_of(finder, neighbors, begin, end);
-    int32_t self[SPHGI_FIND_MOST];
-    const int32_t staged = sphgi_staged_cell(lattice, around, cell);
-    const int32_t first = neighbors->part_of ? first_row_staged(around, staged) : 0;
-    for (int32_t k = begin; k < end; ++k) {
-        const int32_t own = own_row(neighbors, k);
-        self[k - begin] = own < 0 ? -1 : SPHGI_ID_STEP * (staged + own - first);
-    }
-    find.self = self;
-    find.runs = runs->count;
-    memcpy(find.run_begin, runs->begin, sizeof find.run_begin);
-    memcpy(find.run_length, runs->length, sizeof find.run_length);
-    return finder->passes->find(&find, ids, lengths);
+    return finder->passes->find(&finder->find, runs, sphgi_target_row(neighbors, begin),
+                                end - begin, staged_self(neighbors, around, runs, cell, begin), ids,
+                                lengths);
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
 
-/* Hands on what was found in the slice of `count` rows from row `begin`, staged from number 1 on.
- */
-static void take_slice(const struct sphgi_finder *finder, struct sphgi_find *find, int32_t begin,
-                       int32_t count, int32_t own, sphgi_take *take, void *data)
+/* A target of a clump, and the staged numbers of a slice of its candidates. */
+struct slice {
+    const char *target;
+    int32_t row;   /* of the first one */
+    int32_t begin; /* its staged number among all; in the slice it is 1 */
+    int32_t count;
+    int32_t self; /* among all, or -1 */
+};
+
+/* Hands on what is found in a slice. */
+static void take_slice(const struct sphgi_finder *finder, const struct slice *slice,
+                       sphgi_take *take, void *data)
 {
-    const int32_t self =
-        own >= begin && own < begin + count ? SPHGI_ID_STEP * (own - begin + 1) : -1;
-    find->self = &self;
-    find->runs = 1;
-    find->run_begin[0] = 1;
-    find->run_length[0] = count;
+    const bool inside = slice->self >= slice->begin && slice->self < slice->begin + slice->count;
+    const struct sphgi_runs runs = {
+        .count = 1, .candidates = slice->count, .own = 1, .begin = {1}, .length = {slice->count}};
     uint32_t *rows = (uint32_t *)(void *)finder->ids;
-    finder->passes->find(find, finder->ids, finder->lengths);
+    finder->passes->find(&finder->find, &runs, slice->target, 1,
+                         inside ? slice->self - slice->begin + 1 : -1, finder->ids,
+                         finder->lengths);
     const int32_t found = finder->lengths[0];
     for (int32_t k = found - 1; k >= 0; --k) /* in place: widening from behind */
-        rows[k] = (uint32_t)(begin + finder->ids[k] / SPHGI_ID_STEP - 1);
+        rows[k] = (uint32_t)(slice->row + finder->ids[k] / SPHGI_ID_STEP - 1);
     take(data, rows, found);
 }
 
@@ -162,21 +139,20 @@ void sphgi_find_wide(const struct sphgi_finder *finder, const sphg_neighbors *ne
                      const struct sphgi_surroundings *around, int32_t cell, int32_t target,
                      sphgi_take *take, void *data)
 {
-    struct sphgi_find find = find_of(finder, neighbors, target, target + 1);
-    const int32_t own = own_row(neighbors, target);
     const struct sphgi_runs runs = sphgi_candidate_runs(&neighbors->sources.lattice, around, cell);
+    struct slice slice = {.target = sphgi_target_row(neighbors, target),
+                          .self = staged_self(neighbors, around, &runs, cell, target)};
     for (int32_t run = 0; run < runs.count; ++run) {
         int32_t at = 1;
         for (int32_t r = 0; r < around->ranges; at += around->count[r++]) {
-            int32_t from = sphgi_max32(at, runs.begin[run]);
             const int32_t end =
                 sphgi_min32(at + around->count[r], runs.begin[run] + runs.length[run]);
-            while (from < end) {
-                const int32_t count = sphgi_min32(end - from, finder->room - 1);
-                const int32_t row = around->begin[r] + from - at;
-                stage_rows(finder, neighbors, row, count, 1);
-                take_slice(finder, &find, row, count, own, take, data);
-                from += count;
+            slice.begin = sphgi_max32(at, runs.begin[run]);
+            for (; slice.begin < end; slice.begin += slice.count) {
+                slice.count = sphgi_min32(end - slice.begin, finder->room - 1);
+                slice.row = around->begin[r] + slice.begin - at;
+                stage_rows(finder, neighbors, slice.row, slice.count, 1);
+                take_slice(finder, &slice, take, data);
             }
         }
     }

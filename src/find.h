@@ -11,9 +11,8 @@ enum {
 /* Scratch of one worker. */
 struct sphgi_finder {
     const struct sphgi_passes *passes; /* for the positions */
-    const uint64_t *pack_order;
+    struct sphgi_find find;
     void *x, *y, *z; /* staged coordinates */
-    void *scratch;   /* of the search pass */
     uint16_t *ids;   /* SPHGI_UNITS_MOST + room for one more batch */
     uint16_t *lengths;
     int32_t room; /* staged numbers that fit */

@@ -430,7 +430,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     const size_t n = (size_t)count, row_size = SPHGI_ROW * sphgi_size_of_type(type);
     if (!sphgi_reserve(&context->allocator, &context->sort,
                        scratch_size(count, chunk_count, per_chunk), 1) ||
-        !sphgi_reserve(allocator, &grid->rows, n + 1, row_size) ||
+        !sphgi_reserve(allocator, &grid->rows, n + SPHGI_LANES_MOST, row_size) ||
         !sphgi_reserve(allocator, &grid->order, n, sizeof(int32_t)))
         return SPHG_ERROR_MEMORY;
     struct carver carver = {context->sort.data};
@@ -462,7 +462,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     place_blocks(&sort, chunk_count, cursor);
     sphgi_parallel_for(context, scatter_task, &sort, chunk_count, 1);
     sphgi_parallel_for(context, cells_task, &sort, grid->block_count, 16);
-    memset((char *)grid->rows.data + n * row_size, 0, row_size);
+    memset((char *)grid->rows.data + n * row_size, 0, SPHGI_LANES_MOST * row_size);
     grid->fullest = (int32_t)atomic_load(&sort.fullest);
     return SPHG_OK;
 }

@@ -42,7 +42,7 @@ struct sphgi_grid {
     struct sphgi_buffer blocks;     /* struct sphgi_block */
     struct sphgi_buffer cell_start; /* int32_t, block_count * cells + 1 */
     struct sphgi_buffer hash;       /* int32_t, block + 1, 0: empty */
-    struct sphgi_buffer rows;       /* positions in grid order, and one row of 0 behind them */
+    struct sphgi_buffer rows;       /* positions in grid order, and SPHGI_LANES_MOST rows of 0 */
     struct sphgi_buffer order;      /* int32_t: the particle behind each row */
 };
 
@@ -63,6 +63,7 @@ void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allo
 /* The sources around one block, in the order in which they are staged: along x through rows of
  * cells. Number 0 is a dummy; offset[row][x] is the first number of a staged cell. */
 struct sphgi_surroundings {
+    int32_t block; /* of the targets */
     int32_t ranges;
     int32_t begin[SPHGI_STAGED_CELLS_MOST], count[SPHGI_STAGED_CELLS_MOST];
     int32_t staged; /* dummy included */
@@ -77,16 +78,8 @@ void sphgi_find_around(const struct sphgi_grid *sources, const int64_t *block, i
 void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
                            const int32_t *blocks, struct sphgi_surroundings *around);
 
-/* Staged runs that hold the candidates of a cell. */
-struct sphgi_runs {
-    int32_t count, candidates;
-    int32_t begin[9], length[9];
-};
+/* Where the candidates of a cell are staged. */
 struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,
                                        const struct sphgi_surroundings *around, int32_t cell);
-
-/* Staged number of the first source of that cell itself. */
-int32_t sphgi_staged_cell(const struct sphgi_lattice *lattice,
-                          const struct sphgi_surroundings *around, int32_t cell);
 
 #endif

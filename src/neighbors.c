@@ -34,14 +34,14 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
 }
 
 struct buffers {
-    struct sphgi_buffer *list[10];
+    struct sphgi_buffer *list[9];
 };
 
 static struct buffers own_buffers(sphg_neighbors *n)
 {
-    return (struct buffers){{&n->source_place, &n->target_place, &n->found.block_list,
-                             &n->found.cell_offset, &n->found.lengths, &n->found.wide,
-                             &n->found.ids, &n->sources_then, &n->targets_then, &n->around}};
+    return (struct buffers){{&n->target_place, &n->found.block_list, &n->found.cell_offset,
+                             &n->found.lengths, &n->found.wide, &n->found.ids, &n->sources_then,
+                             &n->targets_then, &n->around}};
 }
 
 void sphg_neighbors_destroy(sphg_neighbors *neighbors)
@@ -238,9 +238,6 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
     if (!result && !n->same)
         result = sphgi_grid_build(context, &n->targets, &n->allocator, &lattice, n->position_type,
                                   g->target_rows, n->target_count);
-    if (!result && !n->same && n->part_of &&
-        !invert_order(context, n, &n->sources, &n->source_place))
-        result = SPHG_ERROR_MEMORY;
     if (!result && (!invert_order(context, n, sphgi_target_grid(n), &n->target_place) ||
                     !look_around(context, n)))
         result = SPHG_ERROR_MEMORY;
@@ -354,9 +351,9 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
     if (!result) {
         const sphg_neighbors *n = neighbors;
         const struct sphgi_buffer *own[] = {
-            &n->source_place,  &n->target_place, &n->found.block_list, &n->found.cell_offset,
-            &n->found.lengths, &n->found.wide,   &n->found.ids,        &n->sources_then,
-            &n->targets_then,  &n->around};
+            &n->target_place,  &n->found.block_list, &n->found.cell_offset,
+            &n->found.lengths, &n->found.wide,       &n->found.ids,
+            &n->sources_then,  &n->targets_then,     &n->around};
         *info = (sphg_neighbors_info){.pairs = n->kind ? n->found.pairs : 0,
                                       .target_count = n->kind ? n->target_count : 0,
                                       .source_count = n->kind ? n->source_count : 0,

@@ -33,7 +33,6 @@ struct sphg_neighbors {
     int32_t source_count, target_count;
 
     struct sphgi_grid sources, targets; /* targets: unused if same */
-    struct sphgi_buffer source_place;   /* int32_t: row of each source; where needed */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
     struct sphgi_buffer around;         /* int32_t, SPHGI_AROUND per block of the targets' grid */
     struct sphgi_found found;
@@ -55,6 +54,7 @@ static inline void sphgi_block_surroundings(const sphg_neighbors *neighbors, int
                                             struct sphgi_surroundings *around)
 {
     const struct sphgi_grid *grid = sphgi_target_grid(neighbors);
+    around->block = block;
     sphgi_surroundings_of(
         &neighbors->sources, ((const struct sphgi_block *)grid->blocks.data)[block].at,
         (const int32_t *)neighbors->around.data + (ptrdiff_t)block * SPHGI_AROUND, around);

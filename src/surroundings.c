@@ -125,28 +125,27 @@ static int32_t staged_row(const struct sphgi_lattice *lattice, int32_t y, int32_
 struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,
                                        const struct sphgi_surroundings *around, int32_t cell)
 {
-    int32_t at[3];
-    struct sphgi_runs runs;
+    int32_t at[3], count = 1;
     const struct sphgi_axis *axis = lattice->axis;
-    runs.count = runs.candidates = 0;
     staged_position(lattice, cell, at);
-    for (int32_t z = at[2] + axis[2].low; z <= at[2] + axis[2].high; ++z)
-        for (int32_t y = at[1] + axis[1].low; y <= at[1] + axis[1].high; ++y) {
-            const int32_t *offset = around->offset[staged_row(lattice, y, z)];
-            const int32_t begin = offset[at[0] + axis[0].low];
-            const int32_t length = offset[at[0] + axis[0].high + 1] - begin;
-            runs.begin[runs.count] = begin;
-            runs.length[runs.count] = length;
-            runs.count += length > 0;
-            runs.candidates += length;
+    const int32_t low = at[0] + axis[0].low, behind = at[0] + axis[0].high + 1;
+    const int32_t *own = around->offset[staged_row(lattice, at[1], at[2])];
+    struct sphgi_runs runs = {
+        .own = own[at[0]], .begin = {own[low]}, .length = {own[behind] - own[low]}};
+    int32_t candidates = runs.length[0];
+    for (int32_t z = at[2] + axis[2].low; z <= at[2] + axis[2].high; ++z) {
+        const int32_t *offset = around->offset[staged_row(lattice, at[1] + axis[1].low, z)];
+        for (int32_t y = axis[1].low; y <= axis[1].high; ++y) {
+            const int32_t begin = offset[low], length = offset[behind] - begin;
+            if (offset != own && length) {
+                runs.begin[count] = begin;
+                runs.length[count++] = length;
+                candidates += length;
+            }
+            offset += SPHGI_STAGED_WIDTH_MOST + 1;
         }
+    }
+    runs.count = count;
+    runs.candidates = candidates;
     return runs;
-}
-
-int32_t sphgi_staged_cell(const struct sphgi_lattice *lattice,
-                          const struct sphgi_surroundings *around, int32_t cell)
-{
-    int32_t at[3];
-    staged_position(lattice, cell, at);
-    return around->offset[staged_row(lattice, at[1], at[2])][at[0]];
 }

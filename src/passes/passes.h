@@ -127,20 +127,23 @@ struct sphgi_verdict {
     double lambda_min[SPHGI_WIDTH]; /* of the decomposed lanes */
 };
 
-/* Candidates of up to SPHGI_FIND_MOST targets: runs of staged sources. */
+/* Staged runs that hold the candidates of a cell; the first one holds the cell itself, from staged
+ * number `own` on. */
+struct sphgi_runs {
+    int32_t count, candidates, own;
+    int32_t begin[9], length[9];
+};
+
+/* A search among staged sources. */
 struct sphgi_find {
     const void *x, *y, *z; /* staged coordinates, readable 8 items past each run */
-    int32_t run_begin[9], run_length[9], runs;
-    const void *targets; /* rows */
-    int32_t target_count;
-    const int32_t *self; /* per target: its own id, or -1 */
     double reach;
     double slack; /* rounding of differences between images far apart [L] */
     double period[3];
     bool periodic;
-    int32_t dimension;
-    void *scratch;              /* 64 + 27 bytes per candidate */
-    const uint64_t *pack_order; /* [256]: the positions of the set bits, a byte each */
+    void *scratch;                   /* 64 + 27 bytes per candidate */
+    const uint64_t *pack_order;      /* [256]: the positions of the set bits, a byte each */
+    const uint8_t (*pack_bytes)[16]; /* [256]: the same for items of two bytes */
 };
 
 struct sphgi_passes {
@@ -155,11 +158,16 @@ struct sphgi_passes {
      * number. [0]: volumes are f32, [1]: f64. False: a volume is negative or not finite. */
     bool (*stage[2])(const void *positions, const struct sphgi_columns *volume, double factor,
                      const int32_t *order, int64_t begin, int64_t count, void *rows);
+    /* x, y, z of rows; up to SPHGI_LANES_MOST - 1 items more are read and written. */
     void (*transpose_rows)(const void *rows, int32_t count, void *x, void *y, void *z);
     double (*largest_move)(const void *then, const void *now, int64_t begin, int64_t end);
 
-    /* Search. Returns the number of ids written, padding included. */
-    int64_t (*find)(const struct sphgi_find *find, uint16_t *ids, uint16_t *lengths);
+    /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: staged number
+     * of the first, if it is a source, those of the others follow; else -1. Returns the number of
+     * ids written, padding included. */
+    int64_t (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                    const void *targets, int32_t count, int32_t self, uint16_t *ids,
+                    uint16_t *lengths);
     bool (*is_neighbor)(const void *a, const void *b, double reach, const double *period,
                         int32_t dimension);
 

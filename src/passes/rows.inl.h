@@ -106,15 +106,6 @@ static bool stage_f64(const void *positions, const struct sphgi_columns *volume,
 }
 #endif
 
-static void transpose_rows(const void *rows, int32_t count, void *x, void *y, void *z)
-{
-    const real *row = rows;
-    real *to[3] = {x, y, z};
-    for (int32_t k = 0; k < count; ++k, row += SPHGI_ROW)
-        for (int a = 0; a < 3; ++a)
-            to[a][k] = row[a];
-}
-
 /* Largest |x - x'| of two sets of rows, rounded up; NaN if one is. */
 static double largest_move(const void *then, const void *now, int64_t begin, int64_t end)
 {

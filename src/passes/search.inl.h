@@ -1,43 +1,78 @@
 /* Search: which staged sources are neighbours of a few targets that lie close together. Candidates
- * within reach of the targets' enclosing ball are packed once; each target then tests the packed
- * ones with the exact predicate. Testing first and packing in a second loop over the stored bits is
- * a fifth faster than both in one loop (docs/design.md). */
+ * within reach of the targets' bounding box are packed once; each target then tests the packed ones
+ * with the exact predicate. Testing first and packing in a second loop over the stored bits is a
+ * fifth faster than both in one loop (docs/design.md). */
 
-/* Moves the numbers (ids) of the set bits to the front; writes a whole vector. order: the positions
- * of the set bits of each byte, a byte each. */
-#if defined(__AVX2__)
-SPHGI_TEMPLATE __m128i byte_pairs(uint64_t order) /* b -> 2 b, 2 b + 1 */
+/* Coordinates of rows; whole vectors are read and written. */
+static void transpose_rows(const void *rows, int32_t count, void *x, void *y, void *z)
 {
-    const __m128i twice = _mm_cvtsi64_si128((long long)(order + order));
-    return _mm_unpacklo_epi8(twice, _mm_add_epi8(twice, _mm_set1_epi8(1)));
+    const real *from = rows;
+    real *to[3] = {x, y, z};
+    for (int32_t k = 0; k < count; k += LANES) {
+        const real *row[LANES];
+        for (int l = 0; l < LANES; ++l)
+            row[l] = from + SPHGI_ROW * (ptrdiff_t)(k + l);
+        const struct four four = transpose(row);
+        store(to[0] + k, four.x);
+        store(to[1] + k, four.y);
+        store(to[2] + k, four.z);
+    }
+}
+
+/* ---- Packing -------------------------------------------------------------------------------- */
+
+/* Each of these moves what belongs to the set bits to the front, and writes a whole vector. order:
+ * the positions of the set bits, a byte each. pack_numbers moves numbers, pack_ids SPHGI_PAD ids;
+ * number_ids makes the ids of staged numbers, of which `first` holds the first one's. */
+#if defined(__AVX2__)
+typedef __m128i id_base;
+SPHGI_TEMPLATE id_base ids_from(int32_t number)
+{
+    return _mm_set1_epi16((short)(SPHGI_ID_STEP * number));
 }
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
 {
 #if REAL_IS_F64
-    const __m256i lanes = _mm256_cvtepu8_epi32(byte_pairs(order));
-    store(to, (vec)_mm256_permutevar8x32_ps((__m256)v, lanes));
+    const __m256i pairs = _mm256_cvtepu8_epi64(_mm_cvtsi64_si128((long long)(order + order)));
+    const __m256i halves = _mm256_or_si256(pairs, _mm256_slli_epi64(pairs, 32));
+    const __m256i lanes = _mm256_add_epi32(halves, _mm256_set1_epi64x((long long)1 << 32));
 #else
     const __m256i lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)order));
-    store(to, (vec)_mm256_permutevar8x32_ps((__m256)v, lanes));
 #endif
+    store(to, (vec)_mm256_permutevar8x32_ps((__m256)v, lanes));
 }
-SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits, uint64_t order)
+SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, uint64_t order)
 {
-    (void)bits;
+    const __m128i places = _mm_cvtepu8_epi16(_mm_cvtsi64_si128((long long)order));
+    _mm_storeu_si128((__m128i *)(void *)to, _mm_add_epi16(first, _mm_add_epi16(places, places)));
+}
+SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits,
+                             const uint8_t (*pack_bytes)[16])
+{
     const __m128i eight = _mm_loadu_si128((const __m128i *)(const void *)ids);
-    _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(eight, byte_pairs(order)));
+    const __m128i order = _mm_load_si128((const __m128i *)(const void *)pack_bytes[bits]);
+    _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(eight, order));
 }
 #else
+typedef int32_t id_base;
+SPHGI_TEMPLATE id_base ids_from(int32_t number)
+{
+    return SPHGI_ID_STEP * number;
+}
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
 {
-    vec packed;
     for (int k = 0; k < LANES; ++k)
-        packed[k] = v[order >> (8 * k) & (unsigned)(LANES - 1)];
-    store(to, packed);
+        to[k] = v[order >> (8 * k) & (unsigned)(LANES - 1)];
 }
-SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits, uint64_t order)
+SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, uint64_t order)
 {
-    (void)order;
+    for (int k = 0; k < LANES; ++k)
+        to[k] = (uint16_t)(first + SPHGI_ID_STEP * (int32_t)(order >> (8 * k) & 255));
+}
+SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits,
+                             const uint8_t (*pack_bytes)[16])
+{
+    (void)pack_bytes;
     for (int k = 0; k < SPHGI_PAD; ++k) { /* branch-free: a wrong one is overwritten */
         *to = ids[k];
         to += bits >> k & 1;
@@ -45,160 +80,191 @@ SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits, u
 }
 #endif
 
+/* ---- Candidates ----------------------------------------------------------------------------- */
+
+enum { TESTED = 2 * SPHGI_PAD }; /* candidates that are tested at a time */
+
+/* The packed candidates of a few targets. If these are sources, they come first. */
 struct candidates {
     real *x, *y, *z;
     uint16_t *ids;
-    uint8_t *bits;
-    int32_t run_begin[10];
-    int32_t count; /* rounded up to SPHGI_PAD with NaN */
+    uint8_t *bits; /* of the target in hand */
+    int32_t count; /* rounded up to TESTED with NaN */
 };
 
-SPHGI_TEMPLATE struct candidates carve(const struct sphgi_find *find)
+SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most)
 {
-    int64_t most = 2 * SPHGI_PAD;
-    for (int32_t k = 0; k < find->runs; ++k)
-        most += find->run_length[k];
-    most = (int64_t)sphgi_round_up((size_t)most, SPHGI_ALIGNMENT);
-    struct candidates c = {.x = find->scratch};
-    c.y = c.x + most;
-    c.z = c.y + most;
-    c.ids = (uint16_t *)(void *)(c.z + most);
-    c.bits = (uint8_t *)(void *)(c.ids + most);
+    const size_t room = sphgi_round_up((size_t)most + 2 * TESTED, SPHGI_ALIGNMENT);
+    struct candidates c = {.x = scratch};
+    c.y = c.x + room;
+    c.z = c.y + room;
+    c.ids = (uint16_t *)(void *)(c.z + room);
+    c.bits = (uint8_t *)(void *)(c.ids + room);
     return c;
 }
 
-struct ball {
-    vec x, y, z, square; /* the centre, and the square of radius + reach, rounded up */
+struct box {
+    vec low[3], high[3], middle[3], half[3];
+    vec square_reach; /* rounded up */
 };
 
-SPHGI_TEMPLATE struct ball enclosing_ball(const struct sphgi_find *find)
+/* Margins: rounding of the predicate, of distances to the box and of the box itself is relative, a
+ * few units in 2^-24, against 2^-16 here; between periodic images it is absolute: the slack. */
+SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real *targets,
+                                       int32_t count)
 {
-    const real *t = find->targets;
-    real low[3], high[3], centre[3];
-    for (int a = 0; a < 3; ++a)
-        low[a] = high[a] = t[a];
-    for (int32_t k = 1; k < find->target_count; ++k)
-        for (int a = 0; a < 3; ++a) {
-            const real x = t[SPHGI_ROW * k + a];
-            low[a] = x < low[a] ? x : low[a];
-            high[a] = x > high[a] ? x : high[a];
+    struct box box;
+    for (int a = 0; a < 3; ++a) {
+        real low = targets[a], high = low;
+        for (int32_t k = 1; k < count; ++k) {
+            const real x = targets[SPHGI_ROW * k + a];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
         }
-    for (int a = 0; a < 3; ++a)
-        centre[a] = low[a] / 2 + high[a] / 2;
-    double largest = 0;
-    for (int32_t k = 0; k < find->target_count; ++k) {
-        double square = 0;
-        for (int a = 0; a < 3; ++a) {
-            const double d = (double)t[SPHGI_ROW * k + a] - (double)centre[a];
-            square += d * d;
-        }
-        largest = square > largest ? square : largest;
+        const real middle = low / 2 + high / 2;
+        const real below = middle - low, above = high - middle;
+        box.low[a] = splat(low);
+        box.high[a] = splat(high);
+        box.middle[a] = splat(middle);
+        box.half[a] = splat((below > above ? below : above) * R(1 + 0x1p-20));
     }
-    /* Rounding of the predicate and of this bound: a few units in 2^-24, against 2^-16. */
-    const double reach = (find->reach + __builtin_sqrt(largest)) * (1 + 0x1p-16) + find->slack;
-    return (struct ball){splat(centre[0]), splat(centre[1]), splat(centre[2]),
-                         splat(R(reach * reach))};
+    const double reach = find->reach * (1 + 0x1p-16) + 2 * find->slack;
+    box.square_reach = splat(R(reach * reach));
+    return box;
 }
 
-SPHGI_TEMPLATE vec distance_to(vec x, vec y, vec z, vec cx, vec cy, vec cz, const struct wraps *w,
-                               bool periodic)
+/* Which of LANES sources lie within reach of the box, and perhaps a few beyond it. */
+SPHGI_TEMPLATE unsigned bits_near(const struct box *box, const vec *at, const struct wraps *w,
+                                  bool periodic)
 {
-    vec dx = cx - x, dy = cy - y, dz = cz - z;
-    if (periodic) {
-        dx = wrapped(dx, w->axis[0]);
-        dy = wrapped(dy, w->axis[1]);
-        dz = wrapped(dz, w->axis[2]);
+    vec square = {0};
+    for (int a = 0; a < 3; ++a) {
+        vec d;
+        if (periodic) { /* in this order, for infinity - infinity must give 0 */
+            d = wrapped(box->middle[a] - at[a], w->axis[a]);
+            d = vmax(vabs(d) - box->half[a], (vec){0});
+        } else
+            d = at[a] - vmin(vmax(at[a], box->low[a]), box->high[a]);
+        square += d * d;
     }
-    return square_distance(dx, dy, dz);
+    return bits_of((mask)(square <= box->square_reach)); /* both may be infinite */
 }
 
-SPHGI_TEMPLATE void collect(const struct sphgi_find *find, struct candidates *c,
-                            const struct wraps *w, bool periodic)
+/* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
+SPHGI_TEMPLATE int32_t collect_run(const struct sphgi_find *find, const struct candidates *c,
+                                   const struct box *box, int32_t begin, int32_t end, int32_t n,
+                                   const struct wraps *w, bool periodic)
 {
-    const struct ball ball = enclosing_ball(find);
-    const real *sx = find->x, *sy = find->y, *sz = find->z;
-    uint16_t own[SPHGI_PAD];
+    const real *x = find->x, *y = find->y, *z = find->z;
+    const uint64_t *pack_order = find->pack_order;
+    unsigned bits = 0;
+    int32_t k = begin;
+    id_base first = ids_from(begin);
+    for (; k < end; k += LANES) {
+        const vec at[3] = {load(x + k), load(y + k), load(z + k)};
+        bits = bits_near(box, at, w, periodic);
+        const uint64_t order = pack_order[bits];
+        pack_numbers(c->x + n, at[0], order);
+        pack_numbers(c->y + n, at[1], order);
+        pack_numbers(c->z + n, at[2], order);
+        number_ids(c->ids + n, first, order);
+        first += ids_from(LANES);
+        n += __builtin_popcount(bits);
+    }
+    return n - __builtin_popcount(bits >> (LANES - (k - end))); /* read beyond the end */
+}
+
+SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
+                                         const struct sphgi_runs *runs, const struct box *box,
+                                         int32_t self, const struct wraps *w, bool periodic)
+{
+    struct candidates c = carve(find->scratch, runs->candidates);
+    const int32_t cut = self < 0 ? runs->begin[0] : self; /* the first run goes from here ... */
     int32_t n = 0;
-    for (int32_t run = 0; run < find->runs; ++run) {
-        const int32_t end = find->run_begin[run] + find->run_length[run];
-        c->run_begin[run] = n;
-        for (int32_t k = find->run_begin[run]; k < end; k += LANES) {
-            const vec x = load(sx + k), y = load(sy + k), z = load(sz + k);
-            const vec square = distance_to(x, y, z, ball.x, ball.y, ball.z, w, periodic);
-            unsigned bits = bits_of((mask)(square <= ball.square)); /* both may be infinite */
-            bits &= end - k >= LANES ? (1u << LANES) - 1 : (1u << (end - k)) - 1;
-            const uint64_t order = find->pack_order[bits];
-            pack_numbers(c->x + n, x, order);
-            pack_numbers(c->y + n, y, order);
-            pack_numbers(c->z + n, z, order);
-            for (int l = 0; l < SPHGI_PAD; ++l)
-                own[l] = (uint16_t)(SPHGI_ID_STEP * (k + l));
-            pack_ids(c->ids + n, own, bits, order);
-            n += __builtin_popcount(bits);
-        }
+    for (int32_t run = 0; run <= runs->count; ++run) {
+        const bool rest = run == runs->count; /* ... and up to here it comes last */
+        const int32_t begin = rest ? runs->begin[0] : run ? runs->begin[run] : cut;
+        const int32_t end = rest ? cut : runs->begin[run] + runs->length[run];
+        n = collect_run(find, &c, box, begin, end, n, w, periodic);
     }
-    c->run_begin[find->runs] = n;
-    c->count = (int32_t)sphgi_round_up((size_t)n, SPHGI_PAD);
-    for (int32_t k = n; k < c->count; ++k) {
-        c->x[k] = (real)__builtin_nan("");
-        c->y[k] = c->z[k] = R(0);
-        c->ids[k] = 0;
-    }
+    c.count = (int32_t)sphgi_round_up((size_t)n, TESTED);
+    for (int l = 0; l < TESTED; l += LANES)
+        store(c.x + n + l, splat((real)__builtin_nan("")));
+    return c;
 }
 
-/* Where a target itself stands among the packed candidates, or -1. It is in the run of its own
- * cell, and targets come in the order of their numbers. */
-SPHGI_TEMPLATE int32_t own_candidate(const struct sphgi_find *find, const struct candidates *c,
-                                     int32_t self)
+/* ---- Neighbours ----------------------------------------------------------------------------- */
+
+SPHGI_TEMPLATE unsigned bits_within(const struct candidates *c, int32_t k, const vec *x,
+                                    vec square_reach, const struct wraps *w, bool periodic)
 {
-    for (int32_t run = 0; self >= 0 && run < find->runs; ++run) {
-        const int32_t offset = self / SPHGI_ID_STEP - find->run_begin[run];
-        if (offset < 0 || offset >= find->run_length[run])
-            continue;
-        for (int32_t k = c->run_begin[run]; k < c->run_begin[run + 1]; ++k)
-            if (c->ids[k] == self)
-                return k;
+    unsigned bits = 0;
+    for (int l = 0; l < SPHGI_PAD; l += LANES) {
+        vec dx = x[0] - load(c->x + k + l);
+        vec dy = x[1] - load(c->y + k + l);
+        vec dz = x[2] - load(c->z + k + l);
+        if (periodic) {
+            dx = wrapped(dx, w->axis[0]);
+            dy = wrapped(dy, w->axis[1]);
+            dz = wrapped(dz, w->axis[2]);
+        }
+        bits |= bits_of(less(square_distance(dx, dy, dz), square_reach)) << l;
     }
-    return -1;
+    return bits;
 }
 
-SPHGI_TEMPLATE int64_t find_as(const struct sphgi_find *find, uint16_t *ids, uint16_t *lengths,
-                               bool periodic)
+SPHGI_TEMPLATE void test(const struct candidates *c, const vec *x, vec square_reach,
+                         const struct wraps *w, bool periodic)
+{
+    uint8_t *bits = c->bits;
+    for (int32_t k = 0; k < c->count; k += TESTED) {
+        *bits++ = (uint8_t)bits_within(c, k, x, square_reach, w, periodic);
+        *bits++ = (uint8_t)bits_within(c, k + SPHGI_PAD, x, square_reach, w, periodic);
+    }
+}
+
+SPHGI_TEMPLATE uint16_t *pack(const struct candidates *c, const uint8_t (*pack_bytes)[16],
+                              uint16_t *to)
+{
+    const uint16_t *ids = c->ids;
+    for (const uint8_t *bits = c->bits, *end = bits + c->count / SPHGI_PAD; bits < end; bits += 2) {
+        const unsigned low = bits[0], high = bits[1];
+        pack_ids(to, ids, low, pack_bytes);
+        to += __builtin_popcount(low);
+        pack_ids(to, ids + SPHGI_PAD, high, pack_bytes);
+        to += __builtin_popcount(high);
+        ids += TESTED;
+    }
+    __builtin_memset(to, 0, SPHGI_PAD * sizeof *to);
+    return to;
+}
+
+SPHGI_TEMPLATE int64_t find_as(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                               const real *targets, int32_t count, int32_t self, uint16_t *ids,
+                               uint16_t *lengths, bool periodic)
 {
     const struct wraps w = wraps_of(find->period);
     const vec square_reach = square_of(find->reach);
-    struct candidates c = carve(find);
-    collect(find, &c, &w, periodic);
+    const uint8_t(*pack_bytes)[16] = find->pack_bytes;
+    const struct box box = bounding_box(find, targets, count);
+    const struct candidates c = collect(find, runs, &box, self, &w, periodic);
     uint16_t *out = ids;
-    for (int32_t t = 0; t < find->target_count; ++t) {
-        const real *row = (const real *)find->targets + SPHGI_ROW * t;
-        const vec x = splat(row[0]), y = splat(row[1]), z = splat(row[2]);
-        for (int32_t k = 0; k < c.count; k += SPHGI_PAD) {
-            unsigned bits = 0;
-            for (int32_t l = 0; l < SPHGI_PAD; l += LANES) {
-                const vec square = distance_to(load(c.x + k + l), load(c.y + k + l),
-                                               load(c.z + k + l), x, y, z, &w, periodic);
-                bits |= bits_of(less(square, square_reach)) << l;
-            }
-            c.bits[k / SPHGI_PAD] = (uint8_t)bits;
-        }
-        const int32_t own = own_candidate(find, &c, find->self[t]);
-        if (own >= 0)
-            c.bits[own / SPHGI_PAD] &= (uint8_t) ~(1u << own % SPHGI_PAD);
-        uint16_t *to = out;
-        for (int32_t k = 0; k < c.count; k += SPHGI_PAD) {
-            const unsigned bits = c.bits[k / SPHGI_PAD];
-            pack_ids(to, c.ids + k, bits, find->pack_order[bits]);
-            to += __builtin_popcount(bits);
-        }
-        __builtin_memset(to, 0, SPHGI_PAD * sizeof *to);
-        lengths[t] = (uint16_t)(to - out);
-        out += sphgi_round_up((size_t)(to - out), SPHGI_PAD);
+    for (int32_t t = 0; t < count; ++t, targets += SPHGI_ROW) {
+        const vec x[3] = {splat(targets[0]), splat(targets[1]), splat(targets[2])};
+        test(&c, x, square_reach, &w, periodic);
+        if (self >= 0)
+            c.bits[t / SPHGI_PAD] &= (uint8_t) ~(1u << t % SPHGI_PAD);
+        const uint16_t *end = pack(&c, pack_bytes, out);
+        lengths[t] = (uint16_t)(end - out);
+        out += sphgi_round_up((size_t)(end - out), SPHGI_PAD);
     }
     return out - ids;
 }
 
-static int64_t find(const struct sphgi_find *find, uint16_t *ids, uint16_t *lengths)
+static int64_t find(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                    const void *targets, int32_t count, int32_t self, uint16_t *ids,
+                    uint16_t *lengths)
 {
-    return find->periodic ? find_as(find, ids, lengths, true) : find_as(find, ids, lengths, false);
+    return find->periodic ? find_as(find, runs, targets, count, self, ids, lengths, true)
+                          : find_as(find, runs, targets, count, self, ids, lengths, false);
 }

@@ -137,7 +137,17 @@ SPHGI_TEMPLATE unsigned bits_of(mask m)
 
 SPHGI_TEMPLATE vec vmin(vec a, vec b)
 {
+#if defined(__AVX2__) && REAL_IS_F64
+    return (vec)_mm256_min_pd((__m256d)a, (__m256d)b);
+#elif defined(__AVX2__)
+    return (vec)_mm256_min_ps((__m256)a, (__m256)b);
+#elif defined(__SSE2__) && REAL_IS_F64
+    return (vec)_mm_min_pd((__m128d)a, (__m128d)b);
+#elif defined(__SSE2__)
+    return (vec)_mm_min_ps((__m128)a, (__m128)b);
+#else
     return -vmax(-a, -b);
+#endif
 }
 
 SPHGI_TEMPLATE mask less(vec a, vec b)
