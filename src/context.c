@@ -100,7 +100,7 @@ void sphg_context_destroy(sphg_context *context)
                                       &context->plan,         &context->input};
     for (size_t k = 0; k < sizeof buffers / sizeof *buffers; ++k)
         sphgi_free(&allocator, buffers[k]);
-    for (size_t k = 0; k < 5; ++k)
+    for (size_t k = 0; k < 4; ++k)
         sphgi_free(&allocator, &context->order_grid[k]);
     sphgi_release(&allocator, context, sizeof *context);
 }

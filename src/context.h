@@ -26,7 +26,7 @@ struct sphg_context {
     struct sphgi_buffer input;         /* positions as rows, in the order of the host */
     struct sphgi_buffer sort;          /* of the grid */
     struct sphgi_buffer plan;          /* of a request */
-    struct sphgi_buffer order_grid[5]; /* of sphg_neighbors_get_order() for the host's lists */
+    struct sphgi_buffer order_grid[4]; /* of sphg_neighbors_get_order() for the host's lists */
 };
 
 const struct sphgi_passes *sphgi_passes_of(const sphg_context *context, sphg_type type);

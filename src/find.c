@@ -3,16 +3,12 @@
 
 /* ---- Scratch -------------------------------------------------------------------------------- */
 
-/* The most that can be staged around any block: every staged cell as full as the fullest, rounded
- * up to a power of two so that scratch does not grow with each particle that joins a cell. */
+/* Scratch depends on the number of sources alone, not on how crowded they are: memory that is not
+ * needed is not touched. A short period stages sources several times. */
 int32_t sphgi_finder_room(const sphg_neighbors *neighbors)
 {
-    const int64_t cells = neighbors->dimension == 3 ? 6 * 6 * 4 : 10 * 6;
-    int64_t fullest = 16;
-    while (fullest < neighbors->sources.fullest)
-        fullest *= 2;
-    const int64_t most = cells * fullest + 1;
-    return most < SPHGI_STAGED_MOST ? (int32_t)most : SPHGI_STAGED_MOST;
+    const int32_t most = SPHGI_STAGED_MOST - 1;
+    return 1 + (neighbors->periodic ? most : sphgi_min32(neighbors->source_count, most));
 }
 
 struct layout {
@@ -26,9 +22,11 @@ static struct layout layout_of(const sphg_neighbors *neighbors, int32_t room)
     struct layout layout = {.coordinates = padded * size};
     const size_t candidates = padded + 2 * SPHGI_ALIGNMENT;
     layout.scratch = sphgi_round_up(candidates * (3 * size + 2 + 1), SPHGI_ALIGNMENT);
-    const size_t batch = (size_t)SPHGI_FIND_MOST * (padded + SPHGI_PAD) + SPHGI_PAD;
+    const size_t targets = (size_t)sphgi_min32(SPHGI_FIND_MOST, neighbors->target_count);
+    const size_t batch = targets * (padded + SPHGI_PAD) + SPHGI_PAD;
     const size_t units = SPHGI_UNITS_MOST > batch ? SPHGI_UNITS_MOST + SPHGI_PAD : batch;
-    layout.ids = sphgi_round_up(units * sizeof(uint32_t), SPHGI_ALIGNMENT);
+    const size_t wide = padded * sizeof(uint32_t), narrow = units * sizeof(uint16_t);
+    layout.ids = sphgi_round_up(wide > narrow ? wide : narrow, SPHGI_ALIGNMENT);
     layout.lengths = SPHGI_ALIGNMENT;
     layout.total = 3 * layout.coordinates + layout.scratch + layout.ids + layout.lengths;
     return layout;
@@ -85,15 +83,27 @@ void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neigh
         stage_rows(finder, neighbors, around->begin[r], around->count[r], at);
 }
 
+bool sphgi_is_crowded(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around)
+{
+    const int32_t cells = neighbors->sources.cells;
+    const int32_t *start = around->start;
+    int64_t units = (int64_t)(start[cells] - start[0]) * (around->staged + SPHGI_PAD);
+    if (around->staged > SPHGI_STAGED_MOST || units <= SPHGI_UNITS_MOST)
+        return around->staged > SPHGI_STAGED_MOST;
+    units = 0;
+    for (int32_t c = 0; c < cells; ++c)
+        units +=
+            (int64_t)(start[c + 1] - start[c]) *
+            (sphgi_candidate_runs(&neighbors->sources.lattice, around, c).candidates + SPHGI_PAD);
+    return units > SPHGI_UNITS_MOST;
+}
+
 /* Staged number of a target of that cell, if it is a source, or -1. Targets that are part of the
  * sources come first among them: in a cell, both stand in the order of their numbers. */
 static int32_t staged_self(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around,
                            const struct sphgi_runs *runs, int32_t cell, int32_t target)
 {
-    const struct sphgi_grid *grid = sphgi_target_grid(neighbors);
-    const int32_t *start =
-        (const int32_t *)grid->cell_start.data + (ptrdiff_t)around->block * grid->cells;
-    return neighbors->part_of ? runs->own + target - start[cell] : -1;
+    return neighbors->part_of ? runs->own + target - around->start[cell] : -1;
 }
 
 int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,

@@ -5,7 +5,7 @@
 
 enum {
     SPHGI_STAGED_MOST = 32000, /* what 16-bit ids can tell apart; more take the wide way */
-    SPHGI_UNITS_MOST = 1 << 18 /* ids of a block that are collected before they are stored */
+    SPHGI_UNITS_MOST = 1 << 19 /* ids of a block that are collected before they are stored */
 };
 
 /* Scratch of one worker. */
@@ -27,6 +27,9 @@ int32_t sphgi_finder_room(const sphg_neighbors *neighbors);
 /* Coordinates of the surroundings into x, y, z. */
 void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
                              const struct sphgi_surroundings *around);
+
+/* Is the block too crowded for 16-bit ids, or for being collected at once? */
+bool sphgi_is_crowded(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around);
 
 /* Pairs of targets [begin, end) in grid order, all of cell `cell` of the staged block, at most
  * SPHGI_FIND_MOST. Returns the ids written, padding included. */

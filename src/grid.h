@@ -12,6 +12,8 @@ enum {
     SPHGI_STAGED_WIDTH_MOST = 10
 };
 
+/* ---- Lattice -------------------------------------------------------------------------------- */
+
 struct sphgi_axis {
     double inverse;    /* open: 1 / cell width */
     double length;     /* of the period; 0: open */
@@ -25,40 +27,93 @@ struct sphgi_axis {
 struct sphgi_lattice {
     struct sphgi_axis axis[3];
     int32_t dimension;
+    bool periodic;
     double slack; /* rounding of differences between periodic images [L] */
 };
 
-struct sphgi_block {
-    int64_t at[3];
+/* period[a] 0: open. largest[a]: the largest |coordinate| along a periodic axis. */
+struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
+                                      const double *largest, sphg_type type);
+struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice);
+int32_t sphgi_cells_per_block(const struct sphgi_lattice *lattice);
+void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell);
+/* Its number in its block. */
+int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell);
+
+/* ---- Grid ----------------------------------------------------------------------------------- */
+
+/* Three coordinates of a block, 42 bits each: cells reach to 3 2^40 on either side. */
+struct sphgi_key {
+    uint64_t low, high;
 };
 
+struct sphgi_block {
+    struct sphgi_key key;
+    int32_t first;     /* particle */
+    uint32_t occupied; /* a bit per cell that holds somebody */
+};
+
+/* Blocks may be as many as particles: what there is per block must be small. The starts of a
+ * block's occupied cells, and the end of the last one, stand in cell_start from the number of its
+ * first particle on. */
 struct sphgi_grid {
     struct sphgi_lattice lattice;
     int32_t count; /* particles */
     int32_t block_count;
     int32_t cells;   /* per block */
     int32_t fullest; /* particles in the fullest cell */
-    uint32_t hash_mask;
-    struct sphgi_buffer blocks;     /* struct sphgi_block */
-    struct sphgi_buffer cell_start; /* int32_t, block_count * cells + 1 */
-    struct sphgi_buffer hash;       /* int32_t, block + 1, 0: empty */
+    uint32_t slots;
+    struct sphgi_block *blocks;     /* and one behind the last, with `first` only */
+    int32_t *hash;                  /* slots: block + 1, 0: empty */
+    struct sphgi_buffer cell_start; /* int32_t, count + 1 */
     struct sphgi_buffer rows;       /* positions in grid order, and SPHGI_LANES_MOST rows of 0 */
     struct sphgi_buffer order;      /* int32_t: the particle behind each row */
 };
 
-/* period[a] 0: open. largest[a]: the largest |coordinate| along a periodic axis. */
-struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
-                                      const double *largest, sphg_type type);
+/* Of the hash: two thirds are taken. */
+static inline size_t sphgi_slots_for(size_t blocks)
+{
+    return blocks + blocks / 2 + 2;
+}
 
-/* Sorts the rows (x y z 0, finite) of count particles; type is that of the positions. Gives OK or
- * MEMORY. Cost: O(count), and O(blocks log blocks) for the curve. */
+/* Bytes of `blocks` and `hash` of that many blocks; a grid has at most as many as particles. */
+size_t sphgi_grid_tables(int32_t blocks);
+
+/* The tables stand there. */
+void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);
+
+/* Sorts the rows (x y z 0, finite; SPHGI_LANES_MOST - 1 more are read) of count particles; type is
+ * that of the positions. tables: memory for the tables of as many blocks as particles, which is
+ * used from its beginning on. Gives OK or MEMORY. Cost: O(count), O(blocks log blocks) for the
+ * curve. */
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
                              const struct sphgi_lattice *lattice, sphg_type type, const void *rows,
-                             int32_t count);
+                             int32_t count, void *tables);
+void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allocator);
+
+struct sphgi_key sphgi_key_of(const int64_t *at);
+void sphgi_key_open(struct sphgi_key key, int64_t *at);
+static inline bool sphgi_same_key(struct sphgi_key a, struct sphgi_key b)
+{
+    return a.low == b.low && a.high == b.high;
+}
+
+/* A number in [0, slots). */
+static inline uint32_t sphgi_slot_of(struct sphgi_key key, uint32_t slots)
+{
+    uint64_t h = (key.low ^ key.high << 29 ^ key.high >> 35) * 0x9E3779B97F4A7C15u;
+    h = (h ^ h >> 32) * 0xD6E8FEB86659FD93u;
+    return (uint32_t)((h >> 32) * slots >> 32);
+}
+
 /* The block's number, -1: no particle is there. */
 int32_t sphgi_find_block(const struct sphgi_grid *grid, const int64_t *at);
-void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allocator);
+
+/* Numbers of the first particles of all cells of a block, and the number behind the last. */
+void sphgi_cell_starts(const struct sphgi_grid *grid, int32_t block, int32_t *start);
+
+/* ---- Surroundings --------------------------------------------------------------------------- */
 
 /* The sources around one block, in the order in which they are staged: along x through rows of
  * cells. Number 0 is a dummy; offset[row][x] is the first number of a staged cell. */
@@ -68,15 +123,11 @@ struct sphgi_surroundings {
     int32_t begin[SPHGI_STAGED_CELLS_MOST], count[SPHGI_STAGED_CELLS_MOST];
     int32_t staged; /* dummy included */
     int32_t offset[SPHGI_STAGED_ROWS_MOST][SPHGI_STAGED_WIDTH_MOST + 1];
+    int32_t start[SPHGI_BLOCK_CELLS_MOST + 1]; /* first targets of the block's cells */
 };
 
-/* The up to 3 x 3 x 3 blocks of sources that the staged cells of a block lie in, -1 where nobody
- * is: looked up once per search. */
-enum { SPHGI_AROUND = 27 };
-void sphgi_find_around(const struct sphgi_grid *sources, const int64_t *block, int32_t *blocks);
-
-void sphgi_surroundings_of(const struct sphgi_grid *sources, const int64_t *block,
-                           const int32_t *blocks, struct sphgi_surroundings *around);
+void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key block,
+                           struct sphgi_surroundings *around);
 
 /* Where the candidates of a cell are staged. */
 struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,

@@ -4,9 +4,10 @@
 #include <string.h>
 
 enum {
-    WIDE_HEADER = 8,  /* numbers in front of a wide row: its length, then nothing */
-    FIRST_GUESS = 40, /* ids a target, padding included, before anything is known */
-    GRAIN = 4         /* blocks */
+    WIDE_HEADER = 8, /* numbers in front of a wide row: its length, then nothing */
+    GRAIN = 4,       /* blocks */
+    MARGIN = 512,    /* units */
+    SAMPLE = 64      /* one block of so many is looked at for a first guess */
 };
 
 struct build {
@@ -15,53 +16,45 @@ struct build {
     char *memory; /* of the workers */
     size_t memory_each;
     int32_t room;
-    int64_t capacity; /* units */
+    int32_t step; /* blocks: every one, or a sample */
     atomic_int_least64_t units, pairs;
 };
 
-/* A place for that many units, or -1; counts them in any case. */
-static int64_t claim(struct build *build, int64_t units)
+/* A place for the block's units, if they fit; counts them in any case. */
+static int64_t claim(struct build *build, int32_t block, int64_t units, bool wide)
 {
+    struct sphgi_found *found = &build->neighbors->found;
     const int64_t place = atomic_fetch_add(&build->units, units);
-    return place + units <= build->capacity ? place : -1;
+    const bool fits = place + units <= found->room;
+    found->lists[block] = fits ? 2 * place + wide : -1;
+    return fits ? place : -1;
 }
 
-static uint32_t *cell_offsets(const struct build *build, int32_t block)
-{
-    const sphg_neighbors *n = build->neighbors;
-    return (uint32_t *)n->found.cell_offset.data + (ptrdiff_t)block * sphgi_target_grid(n)->cells;
-}
-
-/* False: the pairs may be more than the scratch holds; nothing was claimed then. */
-static bool build_block(struct build *build, const struct sphgi_finder *finder,
-                        const struct sphgi_surroundings *around, int32_t block)
+static void build_block(struct build *build, const struct sphgi_finder *finder,
+                        const struct sphgi_surroundings *around)
 {
     sphg_neighbors *n = build->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    const int32_t *start = around->start;
     uint16_t *lengths = n->found.lengths.data;
     int64_t used = 0, pairs = 0;
     sphgi_stage_coordinates(finder, n, around);
     for (int32_t c = 0; c < grid->cells; ++c) {
-        const int32_t targets = start[c + 1] - start[c];
+        if (start[c] == start[c + 1])
+            continue;
         const struct sphgi_runs runs = sphgi_candidate_runs(&grid->lattice, around, c);
-        if (used + (int64_t)targets * (runs.candidates + SPHGI_PAD) > SPHGI_UNITS_MOST)
-            return false;
-        cell_offsets(build, block)[c] = (uint32_t)(used / SPHGI_PAD);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
             used += sphgi_find_targets(finder, n, around, &runs, c, t, end, finder->ids + used,
                                        lengths + t);
-            for (int32_t k = t; k < end; ++k)
-                pairs += lengths[k];
         }
     }
-    const int64_t place = claim(build, used);
-    ((int64_t *)n->found.block_list.data)[block] = place;
-    if (place >= 0)
-        memcpy((uint16_t *)n->found.ids.data + place, finder->ids, (size_t)used * sizeof(uint16_t));
+    for (int32_t t = start[0]; t < start[grid->cells]; ++t)
+        pairs += lengths[t];
     atomic_fetch_add(&build->pairs, pairs);
-    return true;
+    const int64_t place = claim(build, around->block, used, false);
+    if (place >= 0)
+        memcpy(n->found.ids + place, finder->ids, (size_t)used * sizeof(uint16_t));
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
@@ -84,61 +77,49 @@ static void append_rows(void *data, const uint32_t *rows, int32_t count)
     row->count += count;
 }
 
-static void write_wide_cell(const struct build *build, const struct sphgi_finder *finder,
-                            const struct sphgi_surroundings *around, int32_t block, int32_t cell,
-                            int64_t place)
+/* Returns where the next row goes. */
+static uint32_t *write_wide_row(const struct build *build, const struct sphgi_finder *finder,
+                                const struct sphgi_surroundings *around, int32_t cell,
+                                int32_t target, uint32_t *to)
 {
     const sphg_neighbors *n = build->neighbors;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t *start =
-        (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells + cell;
-    uint32_t *next = (uint32_t *)(void *)((uint16_t *)n->found.ids.data + place);
-    for (int32_t t = start[0]; t < start[1]; ++t) {
-        struct wide_row row = {next + WIDE_HEADER, 0};
-        sphgi_find_wide(finder, n, around, cell, t, append_rows, &row);
-        memset(next, 0, WIDE_HEADER * sizeof *next);
-        next[0] = (uint32_t)row.count;
-        const int64_t padded = (int64_t)sphgi_round_up((size_t)row.count, SPHGI_PAD);
-        for (int64_t k = row.count; k < padded; ++k)
-            row.to[k] = (uint32_t)n->source_count; /* the row of zeros */
-        next = row.to + padded;
-    }
+    struct wide_row row = {to + WIDE_HEADER, 0};
+    sphgi_find_wide(finder, n, around, cell, target, append_rows, &row);
+    memset(to, 0, WIDE_HEADER * sizeof *to);
+    to[0] = (uint32_t)row.count;
+    const int64_t padded = (int64_t)sphgi_round_up((size_t)row.count, SPHGI_PAD);
+    for (int64_t k = row.count; k < padded; ++k)
+        row.to[k] = (uint32_t)n->source_count; /* the row of zeros */
+    return row.to + padded;
 }
 
-/* Units that the pairs of one cell take, and how many pairs they are. */
-static int64_t measure_wide_cell(const struct build *build, const struct sphgi_finder *finder,
-                                 const struct sphgi_surroundings *around, const int32_t *start,
-                                 int32_t cell, int64_t *pairs)
+/* Units that the row takes; adds to the number of pairs. */
+static int64_t measure_wide_row(const struct build *build, const struct sphgi_finder *finder,
+                                const struct sphgi_surroundings *around, int32_t cell,
+                                int32_t target, int64_t *pairs)
 {
-    int64_t units = 0;
-    for (int32_t t = start[0]; t < start[1]; ++t) {
-        int64_t count = 0;
-        sphgi_find_wide(finder, build->neighbors, around, cell, t, count_rows, &count);
-        *pairs += count;
-        units += 2 * (WIDE_HEADER + (int64_t)sphgi_round_up((size_t)count, SPHGI_PAD));
-    }
-    return units;
+    int64_t count = 0;
+    sphgi_find_wide(finder, build->neighbors, around, cell, target, count_rows, &count);
+    *pairs += count;
+    return 2 * (WIDE_HEADER + (int64_t)sphgi_round_up((size_t)count, SPHGI_PAD));
 }
 
 /* Twice through: a block's place must be known before it can be filled. */
 static void build_wide_block(struct build *build, const struct sphgi_finder *finder,
-                             const struct sphgi_surroundings *around, int32_t block)
+                             const struct sphgi_surroundings *around)
 {
     sphg_neighbors *n = build->neighbors;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
-    uint32_t *offsets = cell_offsets(build, block);
+    const int32_t cells = sphgi_target_grid(n)->cells, *start = around->start;
     int64_t units = 0, pairs = 0;
-    for (int32_t c = 0; c < grid->cells; ++c) {
-        offsets[c] = (uint32_t)(units / SPHGI_PAD);
-        units += measure_wide_cell(build, finder, around, start + c, c, &pairs);
-    }
-    const bool too_many = units / SPHGI_PAD > UINT32_MAX;
-    const int64_t place = claim(build, too_many ? (int64_t)1 << 52 : units);
-    ((int64_t *)n->found.block_list.data)[block] = place;
-    for (int32_t c = 0; c < grid->cells && place >= 0; ++c)
-        write_wide_cell(build, finder, around, block, c, place + (int64_t)offsets[c] * SPHGI_PAD);
+    for (int32_t c = 0; c < cells; ++c)
+        for (int32_t t = start[c]; t < start[c + 1]; ++t)
+            units += measure_wide_row(build, finder, around, c, t, &pairs);
     atomic_fetch_add(&build->pairs, pairs);
+    const int64_t place = claim(build, around->block, units, true);
+    uint32_t *next = (uint32_t *)(void *)(n->found.ids + (place < 0 ? 0 : place));
+    for (int32_t c = 0; c < cells && place >= 0; ++c)
+        for (int32_t t = start[c]; t < start[c + 1]; ++t)
+            next = write_wide_row(build, finder, around, c, t, next);
 }
 
 /* ---- All blocks ----------------------------------------------------------------------------- */
@@ -151,59 +132,115 @@ static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
         build->context, n, build->room, build->memory + (size_t)worker * build->memory_each);
     struct sphgi_surroundings around;
     for (int32_t b = begin; b < end; ++b) {
-        sphgi_block_surroundings(n, b, &around);
-        const bool narrow =
-            around.staged <= SPHGI_STAGED_MOST && build_block(build, &finder, &around, b);
-        ((uint8_t *)n->found.wide.data)[b] = !narrow;
-        if (!narrow)
-            build_wide_block(build, &finder, &around, b);
+        sphgi_block_surroundings(n, b * build->step, &around);
+        if (sphgi_is_crowded(n, &around))
+            build_wide_block(build, &finder, &around);
+        else
+            build_block(build, &finder, &around);
     }
 }
 
-/* All pairs if they fit; found->units and ->pairs tell what is needed in any case. */
-static bool find_all(sphg_context *context, struct build *build)
+/* Every step-th block, keeping what fits. */
+static void find_blocks(sphg_context *context, struct build *build, int32_t step)
 {
     struct sphgi_found *found = &build->neighbors->found;
-    build->capacity = (int64_t)(found->ids.size / sizeof(uint16_t));
+    const int32_t blocks = sphgi_target_grid(build->neighbors)->block_count;
+    build->step = step;
     atomic_store(&build->units, 0);
     atomic_store(&build->pairs, 0);
-    sphgi_parallel_for(context, build_task, build, sphgi_target_grid(build->neighbors)->block_count,
-                       GRAIN);
+    sphgi_parallel_for(context, build_task, build, (blocks + step - 1) / step, GRAIN);
     found->units = atomic_load(&build->units);
     found->pairs = atomic_load(&build->pairs);
-    return found->units <= build->capacity;
+}
+
+/* ---- Memory --------------------------------------------------------------------------------- */
+
+/* Puts lists and ids behind the tables, with room for that many units: first what the memory holds
+ * already, else more. The tables move along. */
+static bool place_lists(sphg_neighbors *n, int64_t units)
+{
+    struct sphgi_buffer *shared = &n->shared;
+    struct sphgi_grid *grids[] = {&n->sources, &n->targets};
+    size_t used = 0, at[2];
+    for (int g = 0; g < (n->same ? 1 : 2); ++g) {
+        at[g] = used;
+        used += sphgi_round_up(sphgi_grid_tables(grids[g]->block_count), SPHGI_ALIGNMENT);
+    }
+    const size_t lists = used;
+    const size_t blocks = (size_t)sphgi_target_grid(n)->block_count;
+    used += sphgi_round_up(blocks * sizeof(int64_t), SPHGI_ALIGNMENT);
+    if (units > 0 && used + (size_t)units * sizeof(uint16_t) > shared->size) {
+        struct sphgi_buffer more = {NULL, 0};
+        if (!sphgi_reserve(&n->allocator, &more, used + (size_t)units * sizeof(uint16_t), 1))
+            return false;
+        memcpy(more.data, shared->data, lists);
+        sphgi_free(&n->allocator, shared);
+        *shared = more;
+    }
+    char *base = shared->data;
+    for (int g = 0; g < (n->same ? 1 : 2); ++g)
+        sphgi_grid_use_tables(grids[g], base + at[g]);
+    n->found.lists = (int64_t *)(void *)(base + lists);
+    n->found.ids = (uint16_t *)(void *)(base + used);
+    n->found.room = (int64_t)((shared->size - used) / sizeof(uint16_t));
+    return true;
+}
+
+/* A little more than needed: pairs come and go from step to step. */
+static int64_t with_margin(int64_t units)
+{
+    return units + units / 64 + MARGIN;
+}
+
+/* Before anything is known: as many as a sample of the blocks suggests. */
+static bool guess(sphg_context *context, struct build *build)
+{
+    sphg_neighbors *n = build->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t step = sphgi_min32(SAMPLE, sphgi_max32(1, grid->block_count / SAMPLE));
+    n->found.room = 0; /* only count */
+    find_blocks(context, build, step);
+    int64_t sampled = 0;
+    for (int32_t b = 0; b < grid->block_count; b += step)
+        sampled += grid->blocks[b + 1].first - grid->blocks[b].first;
+    const double each = sampled ? (double)n->found.units / (double)sampled : 0;
+    return place_lists(n, with_margin((int64_t)(each * n->target_count)));
+}
+
+static bool are_more_than_ever(const sphg_neighbors *n)
+{
+    const struct sphgi_found *found = &n->found;
+    return found->pairs > found->most_pairs || n->target_count > found->most_targets ||
+           n->source_count > found->most_sources;
+}
+
+static void remember_most(sphg_neighbors *n)
+{
+    struct sphgi_found *found = &n->found;
+    found->most_pairs = found->pairs > found->most_pairs ? found->pairs : found->most_pairs;
+    found->most_targets = sphgi_max32(found->most_targets, n->target_count);
+    found->most_sources = sphgi_max32(found->most_sources, n->source_count);
 }
 
 sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
 {
     struct sphgi_found *found = &n->found;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const size_t targets = (size_t)n->target_count;
-    /* as many as the grid has room for: no other reason to allocate than the grid's own */
-    const size_t blocks_of_grid = grid->blocks.size / sizeof(struct sphgi_block);
-    const size_t cells_of_grid = grid->cell_start.size / sizeof(int32_t);
     struct build build = {.context = context, .neighbors = n, .room = sphgi_finder_room(n)};
     build.memory_each = sphgi_finder_size(n, build.room);
     if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
                        build.memory_each) ||
-        !sphgi_reserve(&n->allocator, &found->lengths, targets, sizeof(uint16_t)) ||
-        !sphgi_reserve(&n->allocator, &found->wide, blocks_of_grid, 1) ||
-        !sphgi_reserve(&n->allocator, &found->block_list, blocks_of_grid, sizeof(int64_t)) ||
-        !sphgi_reserve(&n->allocator, &found->cell_offset, cells_of_grid, sizeof(uint32_t)))
-        return SPHG_ERROR_MEMORY;
-    if (!found->ids.size &&
-        !sphgi_reserve(&n->allocator, &found->ids, targets * FIRST_GUESS + 1, sizeof(uint16_t)))
+        !sphgi_reserve(&n->allocator, &found->lengths, (size_t)n->target_count, sizeof(uint16_t)) ||
+        !place_lists(n, 0))
         return SPHG_ERROR_MEMORY;
     build.memory = context->workers.data;
-    const bool all = find_all(context, &build);
-    /* The same number of pairs may need this much when they fall differently onto the targets:
-     * having it now, later searches allocate nothing. */
-    const int64_t clumps = found->units - found->pairs;
-    const int64_t padding = (SPHGI_PAD - 1) * (int64_t)n->target_count;
-    const int64_t needed = found->pairs + (clumps > padding ? clumps : padding);
-    if (all && needed <= build.capacity)
-        return SPHG_OK;
-    if (!sphgi_reserve(&n->allocator, &found->ids, (size_t)needed, sizeof(uint16_t)))
+    if (found->most_pairs < 0 && !guess(context, &build))
         return SPHG_ERROR_MEMORY;
-    return find_all(context, &build) ? SPHG_OK : SPHG_ERROR_MEMORY;
+    find_blocks(context, &build, 1);
+    if (found->units > found->room && are_more_than_ever(n)) {
+        if (!place_lists(n, with_margin(found->units)))
+            return SPHG_ERROR_MEMORY;
+        find_blocks(context, &build, 1);
+    }
+    remember_most(n);
+    return SPHG_OK;
 }

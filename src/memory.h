@@ -25,14 +25,6 @@ void sphgi_release(const struct sphgi_allocator *allocator, void *memory, size_t
  * out of memory, the buffer is empty. */
 bool sphgi_reserve(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer,
                    size_t count, size_t item_size);
-/* Room for twice the count, but never more than most: for what is counted inside (occupied blocks)
- * and moves while the host's counts stay as they are. */
-static inline size_t sphgi_generous(size_t count, size_t most)
-{
-    const size_t twice = 2 * count + 64;
-    return twice < most ? twice : most;
-}
-
 void sphgi_free(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer);
 
 #endif

@@ -25,6 +25,7 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
         sphg_neighbors *made = sphgi_allocate(&context->allocator, sizeof *made);
         if (made) {
             memset(made, 0, sizeof *made);
+            made->found.most_pairs = -1;
             made->allocator = context->allocator;
             *neighbors = made;
         } else
@@ -34,14 +35,13 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
 }
 
 struct buffers {
-    struct sphgi_buffer *list[9];
+    struct sphgi_buffer *list[5];
 };
 
 static struct buffers own_buffers(sphg_neighbors *n)
 {
-    return (struct buffers){{&n->target_place, &n->found.block_list, &n->found.cell_offset,
-                             &n->found.lengths, &n->found.wide, &n->found.ids, &n->sources_then,
-                             &n->targets_then, &n->around}};
+    return (struct buffers){
+        {&n->target_place, &n->found.lengths, &n->shared, &n->sources_then, &n->targets_then}};
 }
 
 void sphg_neighbors_destroy(sphg_neighbors *neighbors)
@@ -72,16 +72,14 @@ static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     struct reading *reading = data;
     (void)worker;
-    const int64_t bad =
-        reading->trusted ? -1 : reading->passes->first_not_finite(&reading->columns, begin, end);
-    if (bad >= 0) {
-        int_least64_t first = atomic_load(&reading->bad);
-        while (bad < first && !atomic_compare_exchange_weak(&reading->bad, &first, bad))
-            ;
+    const bool finite = reading->passes->read_positions(
+        &reading->columns, begin, end, reading->rows + (size_t)begin * reading->row_size);
+    if (finite || reading->trusted)
         return;
-    }
-    reading->passes->load_rows(&reading->columns, NULL, begin, end, 0, reading->columns.count,
-                               reading->rows + (size_t)begin * reading->row_size);
+    const int64_t bad = reading->passes->first_not_finite(&reading->columns, begin, end);
+    int_least64_t first = atomic_load(&reading->bad);
+    while (bad < first && !atomic_compare_exchange_weak(&reading->bad, &first, bad))
+        ;
 }
 
 static sphg_result read_positions(struct sphgi_checker checker, const sphg_view *view,
@@ -119,8 +117,8 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
 {
     sphg_context *context = checker.context;
     const size_t own_targets = g->part_of ? 0 : (size_t)g->target_count;
-    if (!sphgi_reserve(&context->allocator, &context->input, (size_t)g->source_count + own_targets,
-                       g->row_size))
+    if (!sphgi_reserve(&context->allocator, &context->input,
+                       (size_t)g->source_count + own_targets + SPHGI_LANES_MOST, g->row_size))
         return sphgi_fail_memory(context, checker.function);
     g->source_rows = context->input.data;
     g->target_rows = g->source_rows + (size_t)g->source_count * g->row_size;
@@ -205,24 +203,16 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     memset(&n->lists, 0, sizeof n->lists);
 }
 
-static void look_around_task(void *data, int32_t begin, int32_t end, int32_t worker)
+/* What the tables of the grids can take at most; those of the lists too, which keep a number per
+ * block of the targets. */
+static size_t tables_most(const sphg_neighbors *n)
 {
-    sphg_neighbors *n = data;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    (void)worker;
-    for (int32_t b = begin; b < end; ++b)
-        sphgi_find_around(&n->sources, ((const struct sphgi_block *)grid->blocks.data)[b].at,
-                          (int32_t *)n->around.data + (ptrdiff_t)b * SPHGI_AROUND);
-}
-
-static bool look_around(sphg_context *context, sphg_neighbors *n)
-{
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const size_t room = grid->blocks.size / sizeof(struct sphgi_block);
-    if (!sphgi_reserve(&n->allocator, &n->around, room, SPHGI_AROUND * sizeof(int32_t)))
-        return false;
-    sphgi_parallel_for(context, look_around_task, n, grid->block_count, 16);
-    return true;
+    size_t bytes = sphgi_grid_tables(n->source_count) + SPHGI_ALIGNMENT;
+    if (!n->same)
+        bytes += sphgi_grid_tables(n->target_count) + SPHGI_ALIGNMENT;
+    if (!n->list_free)
+        bytes += (size_t)n->target_count * sizeof(int64_t) + SPHGI_ALIGNMENT;
+    return bytes;
 }
 
 static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
@@ -233,13 +223,18 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
         largest_coordinates(g, largest);
     const struct sphgi_lattice lattice =
         sphgi_lattice_of(n->dimension, n->radius + n->skin, n->period, largest, n->position_type);
-    sphg_result result = sphgi_grid_build(context, &n->sources, &n->allocator, &lattice,
-                                          n->position_type, g->source_rows, n->source_count);
-    if (!result && !n->same)
+    if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
+        return SPHG_ERROR_MEMORY;
+    char *tables = n->shared.data;
+    sphg_result result =
+        sphgi_grid_build(context, &n->sources, &n->allocator, &lattice, n->position_type,
+                         g->source_rows, n->source_count, tables);
+    if (!result && !n->same) {
+        tables += sphgi_round_up(sphgi_grid_tables(n->sources.block_count), SPHGI_ALIGNMENT);
         result = sphgi_grid_build(context, &n->targets, &n->allocator, &lattice, n->position_type,
-                                  g->target_rows, n->target_count);
-    if (!result && (!invert_order(context, n, sphgi_target_grid(n), &n->target_place) ||
-                    !look_around(context, n)))
+                                  g->target_rows, n->target_count, tables);
+    }
+    if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
         result = SPHG_ERROR_MEMORY;
     return result;
 }
@@ -334,8 +329,7 @@ sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neig
 
 static int64_t grid_bytes(const struct sphgi_grid *grid)
 {
-    return (int64_t)(grid->blocks.size + grid->cell_start.size + grid->hash.size + grid->rows.size +
-                     grid->order.size);
+    return (int64_t)(grid->cell_start.size + grid->rows.size + grid->order.size);
 }
 
 sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors *neighbors,
@@ -350,10 +344,8 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
         result = sphgi_check_pointer(checker, info, "info");
     if (!result) {
         const sphg_neighbors *n = neighbors;
-        const struct sphgi_buffer *own[] = {
-            &n->target_place,  &n->found.block_list, &n->found.cell_offset,
-            &n->found.lengths, &n->found.wide,       &n->found.ids,
-            &n->sources_then,  &n->targets_then,     &n->around};
+        const struct sphgi_buffer *own[] = {&n->target_place, &n->found.lengths, &n->shared,
+                                            &n->sources_then, &n->targets_then};
         *info = (sphg_neighbors_info){.pairs = n->kind ? n->found.pairs : 0,
                                       .target_count = n->kind ? n->target_count : 0,
                                       .source_count = n->kind ? n->source_count : 0,
@@ -374,16 +366,17 @@ static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n
     struct sphgi_grid grid = {.count = 0};
     const struct sphgi_lattice lattice =
         sphgi_lattice_of(n->dimension, n->radius, none, none, n->position_type);
-    struct sphgi_buffer *own[] = {&grid.blocks, &grid.cell_start, &grid.hash, &grid.rows,
-                                  &grid.order};
-    for (int k = 0; k < 5; ++k)
+    struct sphgi_buffer *own[] = {&grid.cell_start, &grid.rows, &grid.order};
+    for (int k = 0; k < 3; ++k)
         *own[k] = context->order_grid[k];
-    const sphg_result result =
-        sphgi_grid_build(context, &grid, &context->allocator, &lattice, n->position_type,
-                         n->sources.rows.data, n->source_count);
+    struct sphgi_buffer *tables = &context->order_grid[3];
+    sphg_result result = SPHG_ERROR_MEMORY;
+    if (sphgi_reserve(&context->allocator, tables, sphgi_grid_tables(n->source_count), 1))
+        result = sphgi_grid_build(context, &grid, &context->allocator, &lattice, n->position_type,
+                                  n->sources.rows.data, n->source_count, tables->data);
     if (!result)
         memcpy(order, grid.order.data, (size_t)n->source_count * sizeof *order);
-    for (int k = 0; k < 5; ++k)
+    for (int k = 0; k < 3; ++k)
         context->order_grid[k] = *own[k];
     return result ? sphgi_fail_memory(context, "sphg_neighbors_get_order") : SPHG_OK;
 }

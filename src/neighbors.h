@@ -7,14 +7,20 @@
  * with 0. Normally they are staged numbers (struct sphgi_surroundings) times SPHGI_ID_STEP in 16
  * bits; in a clump too dense for that ("wide" block) they are 32-bit numbers of rows, and behind
  * each target's length.
- */
+ *
+ * Lists share one piece of memory with the tables of the grids: these are large where lists are
+ * small, in clouds so thin that many particles have a block of their own. Memory grows only when
+ * there are more particles or pairs than ever before. What does not fit although there are not,
+ * because pairs fall onto the targets in another way or lie in many more blocks, is not kept: such
+ * blocks are searched when they are evaluated, like those of a list-free object. */
 struct sphgi_found {
-    struct sphgi_buffer block_list;  /* int64_t per block of the targets: place in ids, in units */
-    struct sphgi_buffer cell_offset; /* uint32_t per cell: from there on, in SPHGI_PAD units */
-    struct sphgi_buffer lengths;     /* uint16_t per target; unused in wide blocks */
-    struct sphgi_buffer wide;        /* uint8_t per block */
-    struct sphgi_buffer ids;         /* uint16_t units */
-    int64_t pairs, units;
+    int64_t *lists; /* per block of the targets: place in ids * 2 + wide; < 0: not kept */
+    uint16_t *ids;  /* units */
+    struct sphgi_buffer lengths; /* uint16_t per target; unused in wide blocks */
+    int64_t room;                /* units that ids can hold */
+    int64_t pairs, units;        /* of the last search, whether they were kept or not */
+    int64_t most_pairs;          /* of any search; < 0: none yet */
+    int32_t most_targets, most_sources;
 };
 
 enum sphgi_neighbors_kind { SPHGI_NEVER_BUILT, SPHGI_SEARCHED, SPHGI_HOST_LISTS };
@@ -34,7 +40,7 @@ struct sphg_neighbors {
 
     struct sphgi_grid sources, targets; /* targets: unused if same */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
-    struct sphgi_buffer around;         /* int32_t, SPHGI_AROUND per block of the targets' grid */
+    struct sphgi_buffer shared;         /* tables of the grids, then lists */
     struct sphgi_found found;
     struct sphgi_buffer sources_then, targets_then; /* rows at the last search, with a skin */
     bool rebuilt;
@@ -49,15 +55,30 @@ static inline const struct sphgi_grid *sphgi_target_grid(const sphg_neighbors *n
     return neighbors->same ? &neighbors->sources : &neighbors->targets;
 }
 
-/* What is staged for one block of the targets. */
+/* What is staged for one block of the targets, and where the targets of its cells begin. */
 static inline void sphgi_block_surroundings(const sphg_neighbors *neighbors, int32_t block,
                                             struct sphgi_surroundings *around)
 {
     const struct sphgi_grid *grid = sphgi_target_grid(neighbors);
     around->block = block;
-    sphgi_surroundings_of(
-        &neighbors->sources, ((const struct sphgi_block *)grid->blocks.data)[block].at,
-        (const int32_t *)neighbors->around.data + (ptrdiff_t)block * SPHGI_AROUND, around);
+    sphgi_cell_starts(grid, block, around->start);
+    sphgi_surroundings_of(&neighbors->sources, grid->blocks[block].key, around);
+}
+
+static inline bool sphgi_is_kept(const sphg_neighbors *neighbors, int32_t block)
+{
+    return !neighbors->list_free && neighbors->found.lists[block] >= 0;
+}
+
+/* Of a block that is kept. */
+static inline bool sphgi_is_kept_wide(const sphg_neighbors *neighbors, int32_t block)
+{
+    return neighbors->found.lists[block] & 1;
+}
+
+static inline const uint16_t *sphgi_kept_ids(const sphg_neighbors *neighbors, int32_t block)
+{
+    return neighbors->found.ids + (neighbors->found.lists[block] >> 1);
 }
 
 /* Row (x y z .) of a target; place: in grid order, with the host's lists the target itself. */

@@ -11,11 +11,10 @@ struct sphgi_selection sphgi_selection_of(const sphg_subset *subset, int32_t tar
 
 static int32_t block_of_place(const struct sphgi_grid *grid, int32_t place)
 {
-    const int32_t *start = grid->cell_start.data;
     int32_t low = 0, high = grid->block_count;
     while (high - low > 1) {
         const int32_t middle = low + (high - low) / 2;
-        if (start[(ptrdiff_t)middle * grid->cells] <= place)
+        if (grid->blocks[middle].first <= place)
             low = middle;
         else
             high = middle;
@@ -28,8 +27,7 @@ bool sphgi_selection_mark(sphg_context *context, struct sphgi_selection *selecti
 {
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const size_t targets = sphgi_round_up((size_t)n->target_count + 1, SPHGI_ALIGNMENT);
-    const size_t room = grid->blocks.size / sizeof(struct sphgi_block); /* >= block_count */
-    const size_t blocks = sphgi_round_up(room + 1, SPHGI_ALIGNMENT);
+    const size_t blocks = targets; /* at most as many */
     const size_t before = context->selection.size;
     if (!sphgi_reserve(&context->allocator, &context->selection,
                        targets + blocks * (1 + sizeof(int32_t)), 1))

@@ -95,8 +95,8 @@ static void prefetch_ahead(const struct sphgi_worker *w, int32_t place)
         sphgi_group_prefetch(w, target_at(n, place + AHEAD));
 }
 
-static void sweep_cell(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
-                       int32_t end, const uint16_t *ids, const uint16_t *lengths)
+static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
+                      int32_t end, const uint16_t *ids, const uint16_t *lengths)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     for (int32_t t = begin; t < end; ++t, ++lengths) {
@@ -111,27 +111,21 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const ptrdiff_t first = (ptrdiff_t)block * grid->cells;
-    const int32_t *start = (const int32_t *)grid->cell_start.data + first;
-    const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
-    const uint16_t *list =
-        (const uint16_t *)n->found.ids.data + ((const int64_t *)n->found.block_list.data)[block];
     const uint16_t *lengths = n->found.lengths.data;
-    for (int32_t c = 0; c < grid->cells; ++c)
-        sweep_cell(task, w, start[c], start[c + 1], list + (size_t)offset[c] * SPHGI_PAD,
-                   lengths + start[c]);
+    const int32_t first = grid->blocks[block].first, end = grid->blocks[block + 1].first;
+    sweep_run(task, w, first, end, sphgi_kept_ids(n, block), lengths + first);
     run_narrow(w);
 }
 
 /* Nothing is kept: pairs are found cell by cell and used at once; they only have to stay until the
  * group that they belong to is full. */
-static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker *w,
                               const struct sphgi_finder *finder,
                               const struct sphgi_surroundings *around)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    const int32_t *start = around->start;
     int64_t used = 0;
     sphgi_stage_coordinates(finder, n, around);
     for (int32_t c = 0; c < grid->cells; ++c) {
@@ -149,7 +143,7 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
             }
             uint16_t *ids = finder->ids + used;
             used += sphgi_find_targets(finder, n, around, &runs, c, t, end, ids, finder->lengths);
-            sweep_cell(task, w, t, end, ids, finder->lengths);
+            sweep_run(task, w, t, end, ids, finder->lengths);
         }
     }
     run_narrow(w);
@@ -161,22 +155,14 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     enum { HEADER = 8 };
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const ptrdiff_t first = (ptrdiff_t)block * grid->cells;
-    const int32_t *start = (const int32_t *)grid->cell_start.data + first;
-    const uint32_t *offset = (const uint32_t *)n->found.cell_offset.data + first;
-    const uint16_t *list =
-        (const uint16_t *)n->found.ids.data + ((const int64_t *)n->found.block_list.data)[block];
+    const uint32_t *row = (const uint32_t *)(const void *)sphgi_kept_ids(n, block);
     struct supply supply;
-    for (int32_t c = 0; c < grid->cells; ++c) {
-        const uint32_t *row =
-            (const uint32_t *)(const void *)(list + (size_t)offset[c] * SPHGI_PAD);
-        for (int32_t t = start[c]; t < start[c + 1]; ++t) {
-            const size_t count = row[0];
-            if (is_active(task, t))
-                add_wide(w, &supply, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER,
-                         (int64_t)count);
-            row += HEADER + sphgi_round_up(count, SPHGI_PAD);
-        }
+    for (int32_t t = grid->blocks[block].first; t < grid->blocks[block + 1].first; ++t) {
+        const size_t count = row[0];
+        if (is_active(task, t))
+            add_wide(w, &supply, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER,
+                     (int64_t)count);
+        row += HEADER + sphgi_round_up(count, SPHGI_PAD);
     }
     run_wide(w, &supply);
 }
@@ -187,12 +173,12 @@ static void take_wide(void *data, const uint32_t *rows, int32_t count)
 }
 
 static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
-                                   int32_t block, const struct sphgi_finder *finder,
+                                   const struct sphgi_finder *finder,
                                    const struct sphgi_surroundings *around)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const int32_t *start = (const int32_t *)grid->cell_start.data + (ptrdiff_t)block * grid->cells;
+    const int32_t *start = around->start;
     for (int32_t c = 0; c < grid->cells; ++c)
         for (int32_t t = start[c]; t < start[c + 1]; ++t) {
             if (!is_active(task, t))
@@ -216,16 +202,16 @@ static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, i
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_surroundings around;
     sphgi_block_surroundings(n, block, &around);
-    const bool wide = n->list_free ? around.staged > SPHGI_STAGED_MOST
-                                   : ((const uint8_t *)n->found.wide.data)[block];
+    const bool kept = sphgi_is_kept(n, block);
+    const bool wide = kept ? sphgi_is_kept_wide(n, block) : sphgi_is_crowded(n, &around);
     if (wide)
         sphgi_use_local_rows(w);
     else
         sphgi_stage_block(w, &around);
-    if (n->list_free && wide)
-        sweep_found_wide_block(task, w, block, finder, &around);
-    else if (n->list_free)
-        sweep_found_block(task, w, block, finder, &around);
+    if (!kept && wide)
+        sweep_found_wide_block(task, w, finder, &around);
+    else if (!kept)
+        sweep_found_block(task, w, finder, &around);
     else if (wide)
         sweep_kept_wide_block(task, w, block);
     else

@@ -365,11 +365,59 @@ static void warm_calls_allocate_nothing(const test_case *test)
     }
 }
 
+/* Clouds of the same number of particles and no more pairs than the compact one has: everybody
+ * alone in a block, near and very far; as many pairs as ever, but all of them in one place. */
+enum { COMPACT, THIN, VAST, CLUMP, CLOUDS };
+
+static void spread(world *own, const double *rest, int which, int64_t pairs)
+{
+    static const double steps[CLOUDS] = {0, 100, 0x1p90, 100};
+    const int d = own->particles.dimension, count = own->particles.source_count;
+    const int clump = which == CLUMP ? (int)sqrt((double)pairs) : 0;
+    for (int i = 0; i < count; i++)
+        for (int a = 0; a < d; a++) {
+            const double shift = i < count - clump ? steps[which] * (i - 7 * a) : -steps[which];
+            const double own_part = which == CLUMP || which == VAST ? 0 : rest[i * d + a];
+            const double x = shift + own_part;
+            own->particles.sources[i * d + a] = own->particles.is_double ? x : (double)(float)x;
+        }
+    own->geometry = scene_geometry(&own->particles);
+}
+
+/* However the particles spread: memory was there for as many particles and pairs. And what is found
+ * there, kept or not, is what brute force finds. */
+static void spreading_clouds_allocate_nothing(const test_case *test)
+{
+    world *own = world_create(test);
+    const size_t bytes = (size_t)(own->particles.source_count * test->dimension) * sizeof(double);
+    double *rest = memcpy(test_memory(bytes), own->particles.sources, bytes);
+    const int64_t pairs = own->pairs.offsets[own->pairs.count];
+    const call kinds[] = {SEARCH, SEARCH_WITH_SKIN, SEARCH_LIST_FREE};
+    const int order[] = {COMPACT, THIN, CLUMP, VAST, COMPACT, CLUMP};
+    for (int kind = 0; kind < 3; kind++) {
+        prepare(own, kinds[kind]);
+        for (int step = 0; step < 6; step++) {
+            spread(own, rest, order[step], pairs);
+            const char *where = test_text("%s, step %d", call_names[kinds[kind]], step);
+            hooks_fail(own->host, 0, 0);
+            FIXTURE_OK(own->context, perform(own, kinds[kind]));
+            work(own);
+            const rows found = rows_listed(own->context, own->neighbors, &own->scheme, NULL);
+            TEST_REQUIRE(step == 0 || own->host->allocations == 0, "%s: %lld allocations", where,
+                         (long long)own->host->allocations);
+            const rows expected = rows_by_brute_force(&own->particles, 0.5);
+            rows_require_equal(&found, &expected, where);
+        }
+        require_clean(own, "spreading clouds");
+    }
+}
+
 #define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)
 
 static const test_entry entries[] = {
     TEST_ENTRY(any_allocation_may_fail, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     EACH(failed_build_must_be_repeated),
+    EACH(spreading_clouds_allocate_nothing),
     TEST_ENTRY(warm_calls_allocate_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
 };

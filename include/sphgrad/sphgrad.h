@@ -20,8 +20,8 @@
  * Memory    views are borrowed for the call, lists until the next build (sphg_neighbors_use_lists);
  *           the library owns contexts and neighbours only. Inputs are never written. An output
  *           must not overlap an input or another output (ERROR_ARGUMENT). Once warm, no call
- *           allocates while counts, pairs included, stay within the largest seen; the grid
- *           has room for twice the blocks of cells that it met.
+ *           allocates while counts, pairs included, stay within the largest seen, wherever the
+ *           particles are by then.
  * Threads   one call at a time per context, any number of contexts at once; what a call takes
  *           as const may be shared by concurrent calls. Same input, same bits: for any number
  *           of threads, any executor, any split into subsets.

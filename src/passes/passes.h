@@ -127,6 +127,15 @@ struct sphgi_verdict {
     double lambda_min[SPHGI_WIDTH]; /* of the decomposed lanes */
 };
 
+/* How the cells of an open lattice are numbered; cells beyond SPHGI_CUT_MOST are not cut by passes.
+ */
+#define SPHGI_CUT_MOST 0x1p30
+struct sphgi_cutting {
+    double inverse[3];      /* 1 / cell width; 0: an axis that is not used */
+    int32_t shift[3];       /* a block is 2^shift cells long */
+    int32_t local_shift[3]; /* where the axis stands in the number of a cell in its block */
+};
+
 /* Staged runs that hold the candidates of a cell; the first one holds the cell itself, from staged
  * number `own` on. */
 struct sphgi_runs {
@@ -152,6 +161,12 @@ struct sphgi_passes {
     /* Rows. order NULL: item k itself. */
     void (*load_rows)(const struct sphgi_columns *columns, const int32_t *order, int64_t begin,
                       int64_t end, int32_t first, int32_t count, void *rows);
+    /* Rows x y z 0 of positions [begin, end); false: one is not finite. */
+    bool (*read_positions)(const struct sphgi_columns *columns, int64_t begin, int64_t end,
+                           void *rows);
+    /* Block, and cell in it, of each row; false: one is too far away, and all are undefined. */
+    bool (*cut)(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
+                int32_t (*block)[4], uint8_t *local);
     /* x y z from load_rows' columns; the first item that is not finite, or -1. */
     int64_t (*first_not_finite)(const struct sphgi_columns *columns, int64_t begin, int64_t end);
     /* Rows [begin, begin + count) of positions with the volumes, times factor, written into the 4th

@@ -22,6 +22,7 @@
 #undef OUT
 #undef OUT_NAME
 #endif
+#include "cells.inl.h"
 #include "search.inl.h"
 #include "shape.inl.h"
 #include "sums.inl.h"
@@ -36,6 +37,8 @@
 const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .lanes = LANES,
     .load_rows = load_rows,
+    .read_positions = read_positions,
+    .cut = cut,
     .first_not_finite = first_not_finite,
 #if REAL_IS_F64
     .stage = {stage_f32, stage_f64},

@@ -7,7 +7,7 @@ layer_of() {
     case $1 in
         evaluate.c | pairs.c | neighbors.c | small_matrices.c) echo 4 ;;
         plan.* | plan_sums.* | selection.* | tally.* | worker.* | finish.* | sums.* | stage.* | traverse.* | sweep.* | svd.*) echo 3 ;;
-        neighbors.h | skin.* | find.* | lists.* | grid.* | surroundings.c) echo 3 ;;
+        neighbors.h | skin.* | find.* | lists.* | grid.* | lattice.c | sort.c | surroundings.c) echo 3 ;;
         context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.*) echo 2 ;;
         passes/*) echo 1 ;;
         internal.h) echo 0 ;;

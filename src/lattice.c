@@ -1,0 +1,111 @@
+/* How space is cut into cells and blocks. */
+#include "grid.h"
+#include <string.h>
+
+/* Particles closer than the reach must lie in the same or in adjacent cells, for every finite
+ * coordinate. t is the coordinate in cells, with a relative error of 2^-52.
+ *   |t| < 2^30   t - 1/2 rounded to a whole number, as the pass that cuts rows does it: cells are
+ *                wider than the reach by 2^-9, and the error is far below that
+ *   |t| < 2^40   floor(t), the same but for whole t: the error is below 2^-11 cells
+ *   |t| < 2^54   2^14 times coarser beyond 2^40: monotone, slope at most 1, and the error stays
+ * small beyond       neighbouring coordinates there are more than a reach apart, so that neighbours
+ * have equal coordinates: any monotone map will do, the bits themselves serve. */
+static double far_cell(double a)
+{
+    const double first = 0x1p40, second = 0x1p54;
+    if (a < second)
+        return first + (a - first) * 0x1p-14;
+    uint64_t bits, base;
+    memcpy(&bits, &a, sizeof bits);
+    memcpy(&base, &second, sizeof base);
+    return 2 * first + (double)((bits - base) >> 22);
+}
+
+static int64_t floor_to_int(double t)
+{
+    const int64_t whole = (int64_t)t;
+    return whole - (t < (double)whole);
+}
+
+static int64_t open_cell(double t)
+{
+    const double magic = 0x1.8p52, centred = t - 0.5;
+    if (centred < SPHGI_CUT_MOST && centred > -SPHGI_CUT_MOST)
+        return (int64_t)((centred + magic) - magic);
+    if (t < 0x1p40 && t > -0x1p40)
+        return floor_to_int(t);
+    return t > 0 ? floor_to_int(far_cell(t)) : floor_to_int(-far_cell(-t));
+}
+
+static int64_t periodic_cell(const struct sphgi_axis *axis, double x)
+{
+    double turns = x / axis->length;
+    turns -= __builtin_floor(turns);
+    const int64_t cell = (int64_t)(turns * (double)axis->cells);
+    return cell < axis->cells ? cell : axis->cells - 1;
+}
+
+void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell)
+{
+    for (int32_t a = 0; a < 3; ++a) {
+        const struct sphgi_axis *axis = &lattice->axis[a];
+        cell[a] = a >= lattice->dimension ? 0
+                  : axis->cells           ? periodic_cell(axis, x[a])
+                                          : open_cell(x[a] * axis->inverse);
+    }
+}
+
+struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
+                                      const double *largest, sphg_type type)
+{
+    static const int32_t shift[2][3] = {{3, 2, 0}, {2, 2, 1}};
+    struct sphgi_lattice lattice = {.dimension = dimension};
+    const double unit = type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
+    const double wide = reach * (1 + 0x1p-9);
+    for (int32_t a = 0; a < 3; ++a) {
+        struct sphgi_axis *axis = &lattice.axis[a];
+        *axis = (struct sphgi_axis){.inverse = 1 / wide, .low = -1, .high = 1};
+        axis->shift = shift[dimension == 3][a];
+        if (a >= dimension)
+            *axis = (struct sphgi_axis){.shift = 0};
+        else if (period[a] > 0) {
+            const double slack = 16 * unit * largest[a];
+            const double cells = period[a] / (wide + slack);
+            lattice.slack = slack > lattice.slack ? slack : lattice.slack;
+            lattice.periodic = true;
+            axis->length = period[a];
+            axis->cells = cells < 1 ? 1 : cells < 0x1p40 ? (int64_t)cells : (int64_t)1 << 40;
+            axis->low = axis->cells >= 3 ? -1 : 0;
+            axis->high = axis->cells >= 2 ? 1 : 0;
+        }
+    }
+    return lattice;
+}
+
+struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice)
+{
+    struct sphgi_cutting cutting = {.inverse = {0}};
+    int32_t local = 0;
+    for (int32_t a = 0; a < 3; ++a) {
+        cutting.inverse[a] = lattice->axis[a].inverse;
+        cutting.shift[a] = lattice->axis[a].shift;
+        cutting.local_shift[a] = local;
+        local += lattice->axis[a].shift;
+    }
+    return cutting;
+}
+
+int32_t sphgi_cells_per_block(const struct sphgi_lattice *lattice)
+{
+    return 1 << (lattice->axis[0].shift + lattice->axis[1].shift + lattice->axis[2].shift);
+}
+
+int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell)
+{
+    int32_t local = 0;
+    for (int32_t a = 2; a >= 0; --a) {
+        const int32_t shift = lattice->axis[a].shift;
+        local = local << shift | (int32_t)(cell[a] & ((1 << shift) - 1));
+    }
+    return local;
+}

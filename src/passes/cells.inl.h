@@ -1,0 +1,63 @@
+/* Positions into rows, and rows into cells. */
+
+/* x y z 0 of a view of `count` components; false: one is not finite. */
+SPHGI_TEMPLATE bool read_as(const struct sphgi_columns *columns, int64_t begin, int64_t end,
+                            real *row, int32_t count)
+{
+    real difference = R(0); /* of x - x: 0, or NaN */
+    for (int64_t k = begin; k < end; ++k, row += SPHGI_ROW) {
+        const ptrdiff_t offset = k * columns->stride;
+        row[2] = row[3] = R(0);
+        for (int32_t c = 0; c < count; ++c) {
+            const real x = number_at(columns->at[c] + offset);
+            difference += x - x;
+            row[c] = x;
+        }
+    }
+    return difference == R(0);
+}
+
+static bool read_positions(const struct sphgi_columns *columns, int64_t begin, int64_t end,
+                           void *rows)
+{
+    return columns->count == 3 ? read_as(columns, begin, end, rows, 3)
+                               : read_as(columns, begin, end, rows, 2);
+}
+
+typedef double four_doubles __attribute__((vector_size(32), may_alias));
+typedef int64_t four_longs __attribute__((vector_size(32), may_alias));
+typedef int32_t four_ints __attribute__((vector_size(16), may_alias));
+typedef real four_reals
+    __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
+
+/* Block and local cell of each row, all axes at once. Products are rounded on their own: the same
+ * cell must come out wherever it is computed (lattice.c). False: a row is too far away. */
+static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
+                int32_t (*block)[4], uint8_t *local)
+{
+    const double *inverse = cutting->inverse;
+    const four_doubles scale = {inverse[0], inverse[1], inverse[2], 0};
+    const int32_t *s = cutting->shift, *l = cutting->local_shift;
+    const four_ints shift = {s[0], s[1], s[2], 0}, local_shift = {l[0], l[1], l[2], 0};
+    const four_ints inside = {(1 << s[0]) - 1, (1 << s[1]) - 1, (1 << s[2]) - 1, 0};
+    const four_doubles magic = (four_doubles){0} + 0x1.8p52;
+    four_longs far = {0};
+    for (int32_t k = 0; k < count; ++k) {
+        const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
+        four_doubles t = __builtin_convertvector(row, four_doubles) * scale;
+#if defined(__AVX2__)
+        __asm__("" : "+x"(t)); /* no fused multiply-add with what follows */
+#elif !defined(__SSE2__)
+        __asm__("" : "+m"(t));
+#endif
+        const four_doubles centred = t - 0.5;
+        far |= (four_longs)(centred >= SPHGI_CUT_MOST) | (four_longs)(centred <= -SPHGI_CUT_MOST);
+        /* the whole number stands in the lowest bits */
+        const four_longs bits = (four_longs)(centred + magic);
+        const four_ints cell = __builtin_convertvector(bits, four_ints);
+        *(four_ints *)block[k] = cell >> shift;
+        const four_ints parts = (cell & inside) << local_shift;
+        local[k] = (uint8_t)(parts[0] | parts[1] | parts[2]);
+    }
+    return !(far[0] | far[1] | far[2] | far[3]);
+}

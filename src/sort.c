@@ -1,0 +1,421 @@
+/* Sorting particles into the blocks and cells of a grid. */
+#include "grid.h"
+#include "parallel.h"
+#include <string.h>
+
+enum {
+    CHUNK_LEAST = 4096, /* particles */
+    SLOTS_LEAST = 1024,
+    BATCH = 256,
+    BLOCK_GRAIN = 16
+};
+
+/* Each chunk of particles collects the blocks it meets on its own; the results are merged in order,
+ * so that nothing depends on the number of chunks. */
+struct chunk {
+    int32_t begin, end;
+    int32_t block_count;
+    uint32_t slots;
+    struct sphgi_key *keys; /* of the blocks, in order of appearance */
+    int32_t *hash;          /* block + 1; grows inside its share */
+    int32_t *counts;        /* particles per block; later: where the next one goes */
+    int32_t *global;        /* number in the grid */
+};
+
+struct sort {
+    const struct sphgi_lattice *lattice;
+    struct sphgi_cutting cutting;
+    const struct sphgi_passes *passes;
+    sphg_type type;
+    const void *rows;
+    struct chunk *chunks;
+    int32_t chunk_count;
+    int32_t *block; /* per particle: block of its chunk */
+    uint8_t *cell;  /* per particle */
+    int32_t *order; /* particles by block */
+    uint8_t *sorted_cell;
+    struct sphgi_key *keys; /* of all blocks, in order of appearance */
+    int32_t *numbers, *scratch;
+    struct sphgi_grid *grid;
+    atomic_int_least32_t fullest;
+};
+
+/* ---- Blocks of a chunk ---------------------------------------------------------------------- */
+
+/* The slot that holds the key, or the free one where it belongs. */
+static uint32_t find_slot(const int32_t *hash, uint32_t slots, const struct sphgi_key *keys,
+                          struct sphgi_key key)
+{
+    uint32_t slot = sphgi_slot_of(key, slots);
+    while (hash[slot] && !sphgi_same_key(keys[hash[slot] - 1], key))
+        slot = slot + 1 < slots ? slot + 1 : 0;
+    return slot;
+}
+
+static void rehash(struct chunk *chunk, uint32_t slots)
+{
+    chunk->slots = slots;
+    memset(chunk->hash, 0, slots * sizeof *chunk->hash);
+    for (int32_t b = 0; b < chunk->block_count; ++b)
+        chunk->hash[find_slot(chunk->hash, slots, chunk->keys, chunk->keys[b])] = b + 1;
+}
+
+static int32_t block_in_chunk(struct chunk *chunk, struct sphgi_key key)
+{
+    const uint32_t slot = find_slot(chunk->hash, chunk->slots, chunk->keys, key);
+    if (chunk->hash[slot])
+        return chunk->hash[slot] - 1;
+    const int32_t b = chunk->block_count++;
+    chunk->keys[b] = key;
+    chunk->counts[b] = 0;
+    chunk->hash[slot] = b + 1;
+    if ((uint32_t)chunk->block_count > chunk->slots / 2)
+        rehash(chunk, 2 * chunk->slots);
+    return b;
+}
+
+/* Particles [begin, begin + count) of the chunk, whose blocks and cells the pass has found. */
+static void collect_cut(const struct sort *sort, struct chunk *chunk, int32_t begin, int32_t count,
+                        int32_t (*block)[4])
+{
+    int32_t b = -1;
+    for (int32_t k = 0; k < count; ++k) {
+        if (!k || memcmp(block[k], block[k - 1], sizeof block[k])) {
+            const int64_t at[3] = {block[k][0], block[k][1], block[k][2]};
+            b = block_in_chunk(chunk, sphgi_key_of(at));
+        }
+        sort->block[begin + k] = b;
+        ++chunk->counts[b];
+    }
+}
+
+/* The same for particles of any coordinates. */
+static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t begin, int32_t count)
+{
+    const struct sphgi_axis *axis = sort->lattice->axis;
+    for (int32_t i = begin; i < begin + count; ++i) {
+        double x[3];
+        int64_t cell[3];
+        for (int32_t a = 0; a < 3; ++a) {
+            const size_t k = SPHGI_ROW * (size_t)i + (size_t)a;
+            x[a] = sort->type == SPHG_F64 ? ((const double *)sort->rows)[k]
+                                          : (double)((const float *)sort->rows)[k];
+        }
+        sphgi_cell_of(sort->lattice, x, cell);
+        sort->cell[i] = (uint8_t)sphgi_local_cell(sort->lattice, cell);
+        for (int32_t a = 0; a < 3; ++a)
+            cell[a] >>= axis[a].shift;
+        sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
+        ++chunk->counts[sort->block[i]];
+    }
+}
+
+static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct sort *sort = data;
+    const size_t row_size = SPHGI_ROW * sphgi_size_of_type(sort->type);
+    int32_t block[BATCH][4];
+    (void)worker;
+    for (int32_t c = begin; c < end; ++c) {
+        struct chunk *chunk = &sort->chunks[c];
+        rehash(chunk, SLOTS_LEAST);
+        for (int32_t i = chunk->begin; i < chunk->end; i += BATCH) {
+            const int32_t count = sphgi_min32(BATCH, chunk->end - i);
+            const char *rows = (const char *)sort->rows + (size_t)i * row_size;
+            if (!sort->lattice->periodic &&
+                sort->passes->cut(&sort->cutting, rows, count, block, sort->cell + i))
+                collect_cut(sort, chunk, i, count, block);
+            else
+                collect_any(sort, chunk, i, count);
+        }
+    }
+}
+
+/* ---- Blocks of the grid --------------------------------------------------------------------- */
+
+/* Along the Morton curve: the axis with the highest differing bit decides. */
+static bool before_on_curve(struct sphgi_key a, struct sphgi_key b, const int64_t *low)
+{
+    int64_t at[3], other[3];
+    sphgi_key_open(a, at);
+    sphgi_key_open(b, other);
+    int32_t axis = 2;
+    uint64_t highest = 0;
+    for (int32_t k = 2; k >= 0; --k) {
+        const uint64_t difference = (uint64_t)(at[k] - low[k]) ^ (uint64_t)(other[k] - low[k]);
+        if (highest < difference && highest < (highest ^ difference)) {
+            axis = k;
+            highest = difference;
+        }
+    }
+    return at[axis] < other[axis];
+}
+
+static void merge_runs(const struct sphgi_key *keys, const int64_t *low, const int32_t *from,
+                       int32_t *to, int32_t begin, int32_t middle, int32_t end)
+{
+    int32_t a = begin, b = middle;
+    for (int32_t k = begin; k < end; ++k) {
+        const bool take_b =
+            a >= middle || (b < end && before_on_curve(keys[from[b]], keys[from[a]], low));
+        to[k] = take_b ? from[b++] : from[a++];
+    }
+}
+
+/* Numbers of the blocks in curve order, by merging; scratch holds as many. */
+static int32_t *sort_blocks(const struct sphgi_key *keys, int32_t count, int32_t *numbers,
+                            int32_t *scratch)
+{
+    int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX};
+    for (int32_t b = 0; b < count; ++b) {
+        int64_t at[3];
+        numbers[b] = b;
+        sphgi_key_open(keys[b], at);
+        for (int32_t a = 0; a < 3; ++a)
+            low[a] = at[a] < low[a] ? at[a] : low[a];
+    }
+    for (int64_t width = 1; width < count; width *= 2) {
+        for (int64_t begin = 0; begin < count; begin += 2 * width) {
+            const int64_t middle = begin + width < count ? begin + width : count;
+            const int64_t end = middle + width < count ? middle + width : count;
+            merge_runs(keys, low, numbers, scratch, (int32_t)begin, (int32_t)middle, (int32_t)end);
+        }
+        int32_t *swap = numbers;
+        numbers = scratch;
+        scratch = swap;
+    }
+    return numbers;
+}
+
+/* Keys of all chunks without repetitions, and their numbers in chunk->global. */
+static int32_t merge_keys(struct sort *sort, int32_t *hash)
+{
+    int32_t count = 0;
+    size_t total = 0;
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        total += (size_t)sort->chunks[c].block_count;
+    const uint32_t slots = (uint32_t)sphgi_slots_for(total);
+    memset(hash, 0, slots * sizeof *hash);
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        for (int32_t b = 0; b < sort->chunks[c].block_count; ++b) {
+            const struct sphgi_key key = sort->chunks[c].keys[b];
+            const uint32_t slot = find_slot(hash, slots, sort->keys, key);
+            if (!hash[slot]) {
+                sort->keys[count++] = key;
+                hash[slot] = count;
+            }
+            sort->chunks[c].global[b] = hash[slot] - 1;
+        }
+    return count;
+}
+
+/* Blocks along the curve; chunk->global becomes their number there. */
+static void number_blocks(struct sort *sort, int32_t count, void *tables)
+{
+    struct sphgi_grid *grid = sort->grid;
+    grid->block_count = count;
+    grid->cells = sphgi_cells_per_block(sort->lattice);
+    grid->slots = (uint32_t)sphgi_slots_for((size_t)count);
+    sphgi_grid_use_tables(grid, tables);
+    const int32_t *sorted = sort_blocks(sort->keys, count, sort->numbers, sort->scratch);
+    int32_t *rank = sorted == sort->numbers ? sort->scratch : sort->numbers;
+    memset(grid->hash, 0, grid->slots * sizeof *grid->hash);
+    for (int32_t k = 0; k < count; ++k) {
+        const struct sphgi_key key = sort->keys[sorted[k]];
+        grid->blocks[k] = (struct sphgi_block){.key = key};
+        rank[sorted[k]] = k;
+        uint32_t slot = sphgi_slot_of(key, grid->slots);
+        while (grid->hash[slot])
+            slot = slot + 1 < grid->slots ? slot + 1 : 0;
+        grid->hash[slot] = k + 1;
+    }
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        for (int32_t b = 0; b < sort->chunks[c].block_count; ++b)
+            sort->chunks[c].global[b] = rank[sort->chunks[c].global[b]];
+}
+
+/* First particle of each block and, in chunk->counts, of each chunk's share of it. */
+static void place_blocks(struct sort *sort)
+{
+    struct sphgi_block *blocks = sort->grid->blocks;
+    int32_t *cursor = sort->scratch, next = 0;
+    memset(cursor, 0, (size_t)sort->grid->block_count * sizeof *cursor);
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        for (int32_t b = 0; b < sort->chunks[c].block_count; ++b)
+            cursor[sort->chunks[c].global[b]] += sort->chunks[c].counts[b];
+    for (int32_t b = 0; b < sort->grid->block_count; ++b) {
+        blocks[b].first = next;
+        next += cursor[b];
+        cursor[b] = blocks[b].first;
+    }
+    blocks[sort->grid->block_count].first = next;
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        for (int32_t b = 0; b < sort->chunks[c].block_count; ++b) {
+            int32_t *place = &cursor[sort->chunks[c].global[b]];
+            const int32_t size = sort->chunks[c].counts[b];
+            sort->chunks[c].counts[b] = *place;
+            *place += size;
+        }
+}
+
+/* ---- Particles ------------------------------------------------------------------------------ */
+
+static void scatter_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct sort *sort = data;
+    (void)worker;
+    for (int32_t c = begin; c < end; ++c) {
+        const struct chunk *chunk = &sort->chunks[c];
+        for (int32_t i = chunk->begin; i < chunk->end; ++i) {
+            const int32_t place = chunk->counts[sort->block[i]]++;
+            sort->order[place] = i;
+            sort->sorted_cell[place] = sort->cell[i];
+        }
+    }
+}
+
+/* Starts of the block's cells, of which place[] holds the sizes; these become places. Returns the
+ * size of the fullest. */
+static int32_t place_cells(struct sphgi_block *block, int32_t cells, int32_t *place,
+                           int32_t *cell_start)
+{
+    int32_t next = block->first, fullest = 0;
+    int32_t *start = cell_start + next;
+    block->occupied = 0;
+    for (int32_t c = 0; c < cells; ++c) {
+        const int32_t size = place[c];
+        place[c] = next;
+        if (!size)
+            continue;
+        *start++ = next;
+        next += size;
+        block->occupied |= 1u << c;
+        fullest = sphgi_max32(size, fullest);
+    }
+    if (start < cell_start + next) /* else the next block's first start is the same number */
+        *start = next;
+    return fullest;
+}
+
+/* A counting sort by cell, and the rows follow. */
+SPHGI_TEMPLATE int32_t sort_block(const struct sort *sort, int32_t b, size_t row_size)
+{
+    struct sphgi_grid *grid = sort->grid;
+    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS_MOST] = {0};
+    char *rows = grid->rows.data;
+    const int32_t first = grid->blocks[b].first, last = grid->blocks[b + 1].first;
+    for (int32_t k = first; k < last; ++k)
+        ++place[sort->sorted_cell[k]];
+    const int32_t fullest =
+        place_cells(&grid->blocks[b], grid->cells, place, grid->cell_start.data);
+    for (int32_t k = first; k < last; ++k) {
+        const int32_t to = place[sort->sorted_cell[k]]++, i = sort->order[k];
+        order[to] = i;
+        memcpy(rows + (size_t)to * row_size, (const char *)sort->rows + (size_t)i * row_size,
+               row_size);
+    }
+    return fullest;
+}
+
+static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    struct sort *sort = data;
+    int32_t fullest = 0;
+    (void)worker;
+    for (int32_t b = begin; b < end; ++b)
+        fullest = sphgi_max32(fullest, sort->type == SPHG_F64
+                                           ? sort_block(sort, b, SPHGI_ROW * sizeof(double))
+                                           : sort_block(sort, b, SPHGI_ROW * sizeof(float)));
+    int_least32_t seen = atomic_load(&sort->fullest);
+    while (seen < fullest && !atomic_compare_exchange_weak(&sort->fullest, &seen, fullest))
+        ;
+}
+
+/* ---- Memory --------------------------------------------------------------------------------- */
+
+/* Scratch is carved from one buffer; base NULL: only measured. */
+struct carver {
+    char *base;
+    size_t used;
+};
+
+static void *carve(struct carver *carver, size_t count, size_t size)
+{
+    void *here = carver->base ? carver->base + carver->used : NULL;
+    carver->used += sphgi_round_up(count * size, SPHGI_ALIGNMENT);
+    return here;
+}
+
+/* Enough for a table that doubles as soon as half of it is taken. */
+static size_t chunk_slots(int32_t particles)
+{
+    size_t slots = SLOTS_LEAST;
+    while (slots / 2 < (size_t)particles)
+        slots *= 2;
+    return slots;
+}
+
+static void carve_chunk(struct chunk *chunk, struct carver *carver, int32_t particles)
+{
+    chunk->keys = carve(carver, (size_t)particles, sizeof *chunk->keys);
+    chunk->hash = carve(carver, chunk_slots(particles), sizeof *chunk->hash);
+    chunk->counts = carve(carver, (size_t)particles, sizeof *chunk->counts);
+    chunk->global = carve(carver, (size_t)particles, sizeof *chunk->global);
+}
+
+/* Returns the bytes. */
+static size_t carve_sort(struct sort *sort, char *base, int32_t count)
+{
+    struct carver carver = {base, 0};
+    const size_t n = (size_t)count;
+    const int32_t each = (count + sort->chunk_count - 1) / sort->chunk_count;
+    sort->chunks = carve(&carver, (size_t)sort->chunk_count, sizeof *sort->chunks);
+    sort->block = carve(&carver, n, sizeof *sort->block);
+    sort->order = carve(&carver, n, sizeof *sort->order);
+    sort->cell = carve(&carver, n, 1);
+    sort->sorted_cell = carve(&carver, n, 1);
+    sort->keys = carve(&carver, n, sizeof *sort->keys);
+    sort->numbers = carve(&carver, n, sizeof *sort->numbers);
+    sort->scratch = carve(&carver, n, sizeof *sort->scratch);
+    for (int32_t c = 0; c < sort->chunk_count; ++c) {
+        const int64_t begin = (int64_t)c * each, end = begin + each;
+        struct chunk chunk = {.begin = begin < count ? (int32_t)begin : count,
+                              .end = end < count ? (int32_t)end : count};
+        carve_chunk(&chunk, &carver, each);
+        if (base)
+            sort->chunks[c] = chunk;
+    }
+    return carver.used;
+}
+
+sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
+                             const struct sphgi_allocator *allocator,
+                             const struct sphgi_lattice *lattice, sphg_type type, const void *rows,
+                             int32_t count, void *tables)
+{
+    const size_t n = (size_t)count, row_size = SPHGI_ROW * sphgi_size_of_type(type);
+    struct sort sort = {.lattice = lattice,
+                        .cutting = sphgi_cutting_of(lattice),
+                        .passes = sphgi_passes_of(context, type),
+                        .type = type,
+                        .rows = rows,
+                        .grid = grid};
+    sort.chunk_count = sphgi_max32(1, sphgi_min32(context->threads, count / CHUNK_LEAST));
+    if (!sphgi_reserve(&context->allocator, &context->sort, carve_sort(&sort, NULL, count), 1) ||
+        !sphgi_reserve(allocator, &grid->rows, n + SPHGI_LANES_MOST, row_size) ||
+        !sphgi_reserve(allocator, &grid->cell_start, n + 1, sizeof(int32_t)) ||
+        !sphgi_reserve(allocator, &grid->order, n, sizeof(int32_t)))
+        return SPHG_ERROR_MEMORY;
+    carve_sort(&sort, context->sort.data, count);
+    grid->lattice = *lattice;
+    grid->count = count;
+    sphgi_parallel_for(context, collect_task, &sort, sort.chunk_count, 1);
+    number_blocks(&sort, merge_keys(&sort, tables), tables); /* the tables are scratch at first */
+    place_blocks(&sort);
+    sphgi_parallel_for(context, scatter_task, &sort, sort.chunk_count, 1);
+    ((int32_t *)grid->cell_start.data)[count] = count;
+    sphgi_parallel_for(context, cells_task, &sort, grid->block_count, BLOCK_GRAIN);
+    memset((char *)grid->rows.data + n * row_size, 0, SPHGI_LANES_MOST * row_size);
+    grid->fullest = (int32_t)atomic_load(&sort.fullest);
+    return SPHG_OK;
+}
