@@ -296,7 +296,7 @@ static sphg_result use_lists(struct sphgi_checker checker, sphg_neighbors *n,
         (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g.row_size)))
         return sphgi_fail_memory(checker.context, checker.function);
     memcpy(n->sources.rows.data, g.source_rows, sources * g.row_size);
-    memset((char *)n->sources.rows.data + sources * g.row_size, 0, g.row_size);
+    memset((char *)n->sources.rows.data + sources * g.row_size, 0xff, g.row_size); /* NaN */
     if (!n->part_of)
         memcpy(n->targets.rows.data, g.target_rows, targets * g.row_size);
     n->lists = *lists;

@@ -130,7 +130,8 @@ void sphgi_use_packed_rows(struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const size_t rows = (size_t)sweep->set->neighbors->source_count + 1;
     const size_t size = row_size(sweep->plan->type);
-    w->gather.rows = sweep->packed_positions;
+    w->gather.rows =
+        sweep->volumes ? sweep->packed_positions : sweep->set->neighbors->sources.rows.data;
     w->gather.dummy = (uint32_t)(rows - 1);
     w->gather.guarded = true;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
@@ -174,7 +175,7 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
     const sphg_neighbors *n = sweep->set->neighbors;
     const sphg_type type = sweep->plan->type;
     const size_t rows = (size_t)n->source_count + 1, streams = (size_t)sweep->plan->stream_count;
-    const bool positions = sweep->volumes || n->kind == SPHGI_HOST_LISTS;
+    const bool positions = sweep->volumes;
     const size_t positions_size =
         positions ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
     if (!positions && !streams)
@@ -191,8 +192,8 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
     for (size_t s = 0; s < streams; ++s) /* the dummy rows */
         memset(packing.rows + ((s + 1) * rows - 1) * row_size(type), 0, row_size(type));
-    if (positions)
-        memset(memory + (rows - 1) * row_size(n->position_type), 0, row_size(n->position_type));
+    if (positions) /* NaN: no target is near the dummy */
+        memset(memory + (rows - 1) * row_size(n->position_type), 0xff, row_size(n->position_type));
     sweep->packed_positions = packing.positions;
     sweep->packed_rows = packing.rows;
     *bad_volume |= atomic_load(&packing.bad_volume);

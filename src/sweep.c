@@ -7,9 +7,10 @@
 #include <string.h>
 
 enum {
-    BLOCK_GRAIN = 2,
-    LIST_GRAIN = 64, /* targets of the host's lists */
-    PACK_WORTH = 4   /* fields are packed when at least a 4th of the targets is selected */
+    SHARES = 32, /* that each thread gets at least, so that they end together */
+    BLOCK_GRAIN_MOST = 8,
+    LIST_GRAIN_MOST = 1024, /* targets of the host's lists */
+    PACK_WORTH = 4          /* fields are packed when at least a 4th of the targets is selected */
 };
 
 /* ---- One sweep ------------------------------------------------------------------------------ */
@@ -60,27 +61,35 @@ static void look_at_volumes(struct sphgi_sweep *sweep, struct sphgi_tally *tally
         sweep->plan->type == SPHG_F64 ? value * unit : (double)((float)value * (float)unit);
 }
 
+static int32_t grain_of(const sphg_context *context, int32_t items, int32_t most)
+{
+    return sphgi_max32(1, sphgi_min32(items / (SHARES * context->threads), most));
+}
+
 static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *selection,
                              struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
     sphg_context *context = sweep->context;
     const sphg_neighbors *n = sweep->set->neighbors;
-    const int64_t items = selection->end - selection->begin;
+    const int32_t items = selection->end - selection->begin;
     sweep->position_passes = sphgi_passes_of(context, n->position_type);
-    sweep->packed = items * PACK_WORTH >= n->source_count;
+    sweep->packed = (int64_t)items * PACK_WORTH >= n->source_count;
     look_at_volumes(sweep, tally);
     const bool searched = n->kind == SPHGI_SEARCHED;
     const bool marks = searched && selection->subset;
     if ((sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) || !open_workers(sweep) ||
         (marks && !sphgi_selection_mark(context, selection, n)))
         return SPHG_ERROR_MEMORY;
+    const int32_t blocks = marks      ? selection->block_count
+                           : searched ? sphgi_target_grid(n)->block_count
+                                      : 0;
     if (searched)
-        sphgi_parallel_for(context, sphgi_block_task, task,
-                           marks ? selection->block_count : sphgi_target_grid(n)->block_count,
-                           BLOCK_GRAIN);
+        sphgi_parallel_for(context, sphgi_block_task, task, blocks,
+                           grain_of(context, blocks, BLOCK_GRAIN_MOST));
     else
-        sphgi_parallel_for(context, sphgi_list_task, task, (int32_t)items, LIST_GRAIN);
+        sphgi_parallel_for(context, sphgi_list_task, task, items,
+                           grain_of(context, items, LIST_GRAIN_MOST));
     if (marks)
         sphgi_selection_unmark(selection, n);
     close_workers(sweep, tally);
@@ -92,8 +101,9 @@ static sphg_result finish_all(struct sphgi_task *task, const struct sphgi_select
 {
     if (!open_workers(&task->sweep))
         return SPHG_ERROR_MEMORY;
-    sphgi_parallel_for(task->sweep.context, sphgi_finish_task, task,
-                       selection->end - selection->begin, LIST_GRAIN);
+    const int32_t items = selection->end - selection->begin;
+    sphgi_parallel_for(task->sweep.context, sphgi_finish_task, task, items,
+                       grain_of(task->sweep.context, items, LIST_GRAIN_MOST));
     close_workers(&task->sweep, tally);
     return SPHG_OK;
 }

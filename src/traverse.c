@@ -18,58 +18,22 @@ static void finish_group(struct sphgi_worker *w)
         sphgi_group_finish(w);
 }
 
-/* Lists of 16-bit ids wait in the piece until a vector of targets is there. */
-static void run_narrow(struct sphgi_worker *w)
+/* Lists wait in the piece until a vector of targets is there. wide: they hold 32-bit numbers. */
+static void run_rest(struct sphgi_worker *w, bool wide)
 {
     if (w->group.lanes > w->summed)
-        sphgi_group_run(w);
+        sphgi_group_run(w, wide);
     finish_group(w);
 }
 
-static void add_narrow(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
-                       const uint16_t *ids, uint16_t count)
+static void add_listed(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
+                       const void *ids, int32_t count, bool wide)
 {
     const int32_t lane = add_target(w, target, place, row) - w->summed;
     w->piece.ids[lane] = ids;
     w->piece.count[lane] = count;
     if (lane + 1 == w->passes->lanes)
-        sphgi_group_run(w);
-    if (w->summed == SPHGI_WIDTH)
-        finish_group(w);
-}
-
-/* Lists of 32-bit numbers. */
-struct supply {
-    const void *ids[SPHGI_LANES_MOST];
-    int64_t count[SPHGI_LANES_MOST];
-};
-
-static void sum_wide(struct sphgi_worker *w, const struct supply *supply)
-{
-    if (w->group.lanes == w->summed)
-        return;
-    sphgi_group_begin(w);
-    do
-        for (int32_t l = 0; l < w->targets; ++l)
-            sphgi_group_add(w, l, supply->ids[l], supply->count[l], true);
-    while (sphgi_group_again(w));
-    sphgi_group_end(w);
-}
-
-static void run_wide(struct sphgi_worker *w, const struct supply *supply)
-{
-    sum_wide(w, supply);
-    finish_group(w);
-}
-
-static void add_wide(struct sphgi_worker *w, struct supply *supply, int32_t target, int32_t place,
-                     const void *row, const void *ids, int64_t count)
-{
-    const int32_t lane = add_target(w, target, place, row) - w->summed;
-    supply->ids[lane] = ids;
-    supply->count[lane] = count;
-    if (lane + 1 == w->passes->lanes)
-        sum_wide(w, supply);
+        sphgi_group_run(w, wide);
     if (w->summed == SPHGI_WIDTH)
         finish_group(w);
 }
@@ -102,7 +66,7 @@ static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int
     for (int32_t t = begin; t < end; ++t, ++lengths) {
         prefetch_ahead(w, t);
         if (is_active(task, t))
-            add_narrow(w, target_at(n, t), t, sphgi_target_row(n, t), ids, *lengths);
+            add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), ids, *lengths, false);
         ids += (*lengths + SPHGI_PAD - 1) & -SPHGI_PAD;
     }
 }
@@ -114,7 +78,7 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
     const uint16_t *lengths = n->found.lengths.data;
     const int32_t first = grid->blocks[block].first, end = grid->blocks[block + 1].first;
     sweep_run(task, w, first, end, sphgi_kept_ids(n, block), lengths + first);
-    run_narrow(w);
+    run_rest(w, false);
 }
 
 /* Nothing is kept: pairs are found cell by cell and used at once; they only have to stay until the
@@ -138,7 +102,7 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
             if (!any)
                 continue;
             if (used + (int64_t)(end - t) * (runs.candidates + SPHGI_PAD) > SPHGI_UNITS_MOST) {
-                run_narrow(w);
+                run_rest(w, false);
                 used = 0;
             }
             uint16_t *ids = finder->ids + used;
@@ -146,7 +110,7 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
             sweep_run(task, w, t, end, ids, finder->lengths);
         }
     }
-    run_narrow(w);
+    run_rest(w, false);
 }
 
 static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
@@ -156,15 +120,14 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const uint32_t *row = (const uint32_t *)(const void *)sphgi_kept_ids(n, block);
-    struct supply supply;
     for (int32_t t = grid->blocks[block].first; t < grid->blocks[block + 1].first; ++t) {
         const size_t count = row[0];
         if (is_active(task, t))
-            add_wide(w, &supply, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER,
-                     (int64_t)count);
+            add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER, (int32_t)count,
+                       true);
         row += HEADER + sphgi_round_up(count, SPHGI_PAD);
     }
-    run_wide(w, &supply);
+    run_rest(w, true);
 }
 
 static void take_wide(void *data, const uint32_t *rows, int32_t count)
@@ -251,7 +214,6 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    struct supply supply;
     struct sphgi_worker w;
     sphgi_worker_open(&w, &task->sweep, number);
     if (task->sweep.packed)
@@ -264,18 +226,18 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
             continue;
         const int32_t *ids;
         const int64_t count = host_row(&n->lists, target, number, &ids);
-        if (count < 0 || (count > 0 && !ids)) {
+        if (count < 0 || count > INT32_MAX || (count > 0 && !ids)) {
             if (w.tally->bad_target < 0 || target < w.tally->bad_target) {
                 w.tally->bad_target = target;
                 w.tally->bad_index = SPHGI_BAD_LENGTH;
             }
             continue;
         }
-        add_wide(&w, &supply, target, target, sphgi_target_row(n, target), ids, count);
+        add_listed(&w, target, target, sphgi_target_row(n, target), ids, (int32_t)count, true);
         if (n->lists.row)
-            run_wide(&w, &supply); /* the function may reuse its array */
+            run_rest(&w, true); /* the function may reuse its array */
     }
-    run_wide(&w, &supply);
+    run_rest(&w, true);
 }
 
 /* ---- Finishing the sums of several sets ----------------------------------------------------- */

@@ -229,29 +229,43 @@ static void make_local(struct sphgi_worker *w, uint32_t *rows, int32_t count, in
         rows[k] = (uint32_t)(at + k);
 }
 
+static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w, int32_t target)
+{
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    return (struct sphgi_cleaning){.mask = n->lists.index_mask ? (uint32_t)n->lists.index_mask
+                                                               : UINT32_MAX,
+                                   .sources = (uint32_t)n->source_count,
+                                   .self = n->part_of ? (uint32_t)target : UINT32_MAX,
+                                   .dummy = w->gather.dummy};
+}
+
+/* Remembers the first target whose list holds what is no source, and what that is. */
+static void note_bad_index(struct sphgi_tally *tally, int32_t target, const int32_t *list,
+                           int32_t count, const struct sphgi_cleaning *how)
+{
+    if (tally->bad_target >= 0 && target >= tally->bad_target)
+        return;
+    tally->bad_target = target;
+    for (int32_t k = count - 1; k >= 0; --k)
+        if (((uint32_t)list[k] & how->mask) >= how->sources)
+            tally->bad_index = (int32_t)((uint32_t)list[k] & how->mask); /* -1 reads as -1 */
+}
+
 /* Drops the target itself and what is no source; returns what is left, packed into `clean`. */
 static int32_t clean_list(struct sphgi_worker *w, int32_t target, const int32_t *list,
                           int32_t count, uint32_t *clean)
 {
-    const sphg_neighbors *n = w->sweep->set->neighbors;
-    const uint32_t mask = n->lists.index_mask ? (uint32_t)n->lists.index_mask : UINT32_MAX;
-    const uint32_t sources = (uint32_t)n->source_count;
-    const uint32_t self = n->part_of ? (uint32_t)target : UINT32_MAX;
+    const struct sphgi_cleaning how = cleaning_of(w, target);
     int32_t kept = 0;
     bool bad = false;
     for (int32_t k = 0; k < count; ++k) {
-        const uint32_t id = (uint32_t)list[k] & mask;
+        const uint32_t id = (uint32_t)list[k] & how.mask;
         clean[kept] = id;
-        bad |= id >= sources;
-        kept += id < sources && id != self;
+        bad |= id >= how.sources;
+        kept += id < how.sources && id != how.self;
     }
-    struct sphgi_tally *tally = w->tally;
-    if (bad && (tally->bad_target < 0 || target < tally->bad_target)) {
-        tally->bad_target = target;
-        for (int32_t k = count - 1; k >= 0; --k)
-            if (((uint32_t)list[k] & mask) >= sources)
-                tally->bad_index = (int32_t)((uint32_t)list[k] & mask); /* -1 reads as -1 */
-    }
+    if (bad)
+        note_bad_index(w->tally, target, list, count, &how);
     return kept;
 }
 
@@ -462,10 +476,10 @@ static bool make_regular(struct sphgi_worker *w)
 {
     struct sphgi_piece *piece = &w->piece;
     const int32_t lanes = w->group.lanes - w->summed;
-    int32_t at = 0;
+    int64_t at = 0;
     for (int32_t l = 0; l < lanes; ++l) {
-        at += (piece->count[l] + SPHGI_PAD - 1) & -SPHGI_PAD;
-        piece->begin[l + 1] = at;
+        at += ((int64_t)piece->count[l] + SPHGI_PAD - 1) & -SPHGI_PAD;
+        piece->begin[l + 1] = (int32_t)at;
     }
     piece->begin[0] = 0;
     piece->parts = lanes;
@@ -479,7 +493,7 @@ static bool make_regular(struct sphgi_worker *w)
 }
 
 /* More pairs than a piece holds. */
-static void run_in_pieces(struct sphgi_worker *w)
+static void run_in_pieces(struct sphgi_worker *w, bool wide)
 {
     const void *ids[SPHGI_LANES_MOST];
     int32_t count[SPHGI_LANES_MOST];
@@ -488,19 +502,36 @@ static void run_in_pieces(struct sphgi_worker *w)
     sphgi_group_begin(w);
     do
         for (int32_t l = 0; l < w->targets; ++l)
-            sphgi_group_add(w, l, ids[l], count[l], false);
+            sphgi_group_add(w, l, ids[l], count[l], wide);
     while (sphgi_group_again(w));
     sphgi_group_end(w);
 }
 
-void sphgi_group_run(struct sphgi_worker *w)
+/* The host's lists of a whole piece, each cleaned into its place. */
+static void clean_piece(struct sphgi_worker *w)
 {
-    if (!make_regular(w)) {
-        run_in_pieces(w);
+    struct sphgi_piece *piece = &w->piece;
+    const int32_t *target = sphgi_targets(w);
+    for (int32_t l = 0; l < w->targets; ++l) {
+        const int32_t *list = piece->ids[l];
+        const struct sphgi_cleaning how = cleaning_of(w, target[l]);
+        uint32_t *clean = (uint32_t *)(void *)w->clean_ids + piece->begin[l];
+        if (w->passes->clean_ids(list, piece->count[l], &how, clean))
+            note_bad_index(w->tally, target[l], list, piece->count[l], &how);
+        piece->ids[l] = clean;
+    }
+}
+
+void sphgi_group_run(struct sphgi_worker *w, bool wide)
+{
+    if (!make_regular(w) || (wide && w->local)) {
+        run_in_pieces(w, wide);
         return;
     }
     begin(w);
-    gather(w, 0, false);
+    if (wide && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
+        clean_piece(w);
+    gather(w, 0, wide);
     sphgi_group_again(w); /* a whole piece never needs its pairs again */
     sphgi_group_end(w);
 }

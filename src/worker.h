@@ -113,8 +113,8 @@ void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids,
 bool sphgi_group_again(struct sphgi_worker *worker);
 void sphgi_group_end(struct sphgi_worker *worker);
 
-/* From begin to end, for 16-bit lists that stand in piece.ids and .count, lane by lane. */
-void sphgi_group_run(struct sphgi_worker *worker);
+/* From begin to end, for lists that stand in piece.ids and .count, lane by lane. */
+void sphgi_group_run(struct sphgi_worker *worker, bool wide);
 
 /* Writes the results; the group is empty again. */
 void sphgi_group_finish(struct sphgi_worker *worker);

@@ -55,17 +55,51 @@ static bool is_neighbor(const void *a, const void *b, double reach, const double
     return bits_of(less(square_distance(d[0], d[1], d[2]), square_of(reach))) & 1;
 }
 
+typedef uint32_t wide_ids __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
+typedef uint16_t narrow_ids __attribute__((vector_size(2 * LANES), aligned(2), may_alias));
+
 /* Ids [k, k + LANES) of pairs that are none are replaced by the dummy row: a field that is not
  * finite there must not enter through 0 * NaN. */
 SPHGI_TEMPLATE void keep_ids(mask inside, const void *ids, int32_t k, uint32_t dummy, void *out,
                              bool wide)
 {
-    const unsigned bits = bits_of(inside);
-    for (int l = 0; l < LANES; ++l) {
-        const bool keep = bits >> l & 1;
-        if (wide)
-            ((uint32_t *)out)[k + l] = keep ? ((const uint32_t *)ids)[k + l] : dummy;
-        else
-            ((uint16_t *)out)[k + l] = keep ? ((const uint16_t *)ids)[k + l] : (uint16_t)dummy;
+    if (wide) {
+        const wide_ids keep = __builtin_convertvector(inside, wide_ids);
+        const wide_ids given = *(const wide_ids *)((const uint32_t *)ids + k);
+        *(wide_ids *)((uint32_t *)out + k) = (given & keep) | (dummy & ~keep);
+    } else {
+        const narrow_ids keep = __builtin_convertvector(inside, narrow_ids);
+        const narrow_ids given = *(const narrow_ids *)((const uint16_t *)ids + k);
+        *(narrow_ids *)((uint16_t *)out + k) = (given & keep) | ((uint16_t)dummy & ~keep);
     }
+}
+
+typedef uint32_t eight_ids __attribute__((vector_size(32), aligned(4), may_alias));
+
+/* The host's numbers to numbers of rows: what is no source, and `self`, becomes the dummy, padding
+ * too. True: there was a number that is no source. */
+static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
+                      uint32_t *out)
+{
+    const eight_ids sources = (eight_ids){0} + how->sources, dummy = (eight_ids){0} + how->dummy;
+    eight_ids bad = {0};
+    int32_t k = 0;
+    for (; k + 8 <= count; k += 8) {
+        const eight_ids id = *(const eight_ids *)(list + k) & how->mask;
+        const eight_ids outside = (eight_ids)(id >= sources);
+        const eight_ids drop = outside | (eight_ids)(id == how->self);
+        bad |= outside;
+        *(eight_ids *)(out + k) = (id & ~drop) | (dummy & drop);
+    }
+    uint32_t any = 0;
+    for (int l = 0; l < 8; ++l)
+        any |= bad[l];
+    for (; k < count; ++k) {
+        const uint32_t id = (uint32_t)list[k] & how->mask;
+        any |= id >= how->sources;
+        out[k] = id >= how->sources || id == how->self ? how->dummy : id;
+    }
+    for (; k % SPHGI_PAD; ++k)
+        out[k] = how->dummy;
+    return any;
 }

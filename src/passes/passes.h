@@ -87,6 +87,11 @@ struct sphgi_gather {
     uint32_t dummy; /* row that a pair beyond the cutoff is sent to */
 };
 
+/* What becomes of the host's numbers of sources. */
+struct sphgi_cleaning {
+    uint32_t mask, sources, self, dummy;
+};
+
 /* A smoothing kernel with everything multiplied into its two factors. */
 struct sphgi_shape {
     sphg_kernel kernel;
@@ -191,6 +196,9 @@ struct sphgi_passes {
      * theirs there, the dummy where there is no pair, and the parts point to them. */
     void (*gather[2])(const struct sphgi_gather *gather, const void *const *x,
                       struct sphgi_piece *piece, int32_t first, void *masked);
+
+    bool (*clean_ids)(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
+                      uint32_t *out);
 
     /* Weights. */
     void (*shape_factors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
