@@ -75,6 +75,20 @@ static void stage_rows(const struct sphgi_finder *finder, const sphg_neighbors *
         (char *)finder->y + (size_t)at * size, (char *)finder->z + (size_t)at * size);
 }
 
+void sphgi_prefetch_rows(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around)
+{
+    enum { MOST = 4096 }; /* rows: what the second-level cache takes without pain */
+    const size_t size = SPHGI_ROW * sphgi_size_of_type(neighbors->position_type);
+    const char *rows = neighbors->sources.rows.data;
+    for (int32_t r = 0; r < around->ranges && around->staged <= MOST; ++r) {
+        const char *row = rows + (size_t)around->begin[r] * size;
+        const char *end = row + (size_t)around->count[r] * size;
+        for (; row < end; row += SPHGI_ALIGNMENT)
+            __builtin_prefetch(row, 0, 2);
+    }
+    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
+}
+
 void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
                              const struct sphgi_surroundings *around)
 {
@@ -91,10 +105,11 @@ bool sphgi_is_crowded(const sphg_neighbors *neighbors, const struct sphgi_surrou
     if (around->staged > SPHGI_STAGED_MOST || units <= SPHGI_UNITS_MOST)
         return around->staged > SPHGI_STAGED_MOST;
     units = 0;
-    for (int32_t c = 0; c < cells; ++c)
-        units +=
-            (int64_t)(start[c + 1] - start[c]) *
-            (sphgi_candidate_runs(&neighbors->sources.lattice, around, c).candidates + SPHGI_PAD);
+    for (int32_t c = 0; c < cells; ++c) {
+        struct sphgi_runs runs;
+        sphgi_candidate_runs(&neighbors->sources.lattice, around, c, &runs);
+        units += (int64_t)(start[c + 1] - start[c]) * (runs.candidates + SPHGI_PAD);
+    }
     return units > SPHGI_UNITS_MOST;
 }
 
@@ -149,7 +164,8 @@ void sphgi_find_wide(const struct sphgi_finder *finder, const sphg_neighbors *ne
                      const struct sphgi_surroundings *around, int32_t cell, int32_t target,
                      sphgi_take *take, void *data)
 {
-    const struct sphgi_runs runs = sphgi_candidate_runs(&neighbors->sources.lattice, around, cell);
+    struct sphgi_runs runs;
+    sphgi_candidate_runs(&neighbors->sources.lattice, around, cell, &runs);
     struct slice slice = {.target = sphgi_target_row(neighbors, target),
                           .self = staged_self(neighbors, around, &runs, cell, target)};
     for (int32_t run = 0; run < runs.count; ++run) {

@@ -24,6 +24,9 @@ struct sphgi_finder sphgi_finder_at(const sphg_context *context, const sphg_neig
                                     int32_t room, void *memory);
 int32_t sphgi_finder_room(const sphg_neighbors *neighbors);
 
+/* Asks for the rows that will be staged. */
+void sphgi_prefetch_rows(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around);
+
 /* Coordinates of the surroundings into x, y, z. */
 void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
                              const struct sphgi_surroundings *around);

@@ -130,7 +130,8 @@ void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key bl
                            struct sphgi_surroundings *around);
 
 /* Where the candidates of a cell are staged. */
-struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                                       const struct sphgi_surroundings *around, int32_t cell);
+void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
+                          const struct sphgi_surroundings *around, int32_t cell,
+                          struct sphgi_runs *runs);
 
 #endif

@@ -42,7 +42,8 @@ static void build_block(struct build *build, const struct sphgi_finder *finder,
     for (int32_t c = 0; c < grid->cells; ++c) {
         if (start[c] == start[c + 1])
             continue;
-        const struct sphgi_runs runs = sphgi_candidate_runs(&grid->lattice, around, c);
+        struct sphgi_runs runs;
+        sphgi_candidate_runs(&grid->lattice, around, c, &runs);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
             used += sphgi_find_targets(finder, n, around, &runs, c, t, end, finder->ids + used,
@@ -130,13 +131,18 @@ static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
     sphg_neighbors *n = build->neighbors;
     const struct sphgi_finder finder = sphgi_finder_at(
         build->context, n, build->room, build->memory + (size_t)worker * build->memory_each);
-    struct sphgi_surroundings around;
+    struct sphgi_surroundings around[2]; /* of a block and of the next */
+    sphgi_block_surroundings(n, begin * build->step, &around[begin & 1]);
     for (int32_t b = begin; b < end; ++b) {
-        sphgi_block_surroundings(n, b * build->step, &around);
-        if (sphgi_is_crowded(n, &around))
-            build_wide_block(build, &finder, &around);
+        const struct sphgi_surroundings *own = &around[b & 1];
+        if (b + 1 < end) {
+            sphgi_block_surroundings(n, (b + 1) * build->step, &around[(b + 1) & 1]);
+            sphgi_prefetch_rows(n, &around[(b + 1) & 1]);
+        }
+        if (sphgi_is_crowded(n, own))
+            build_wide_block(build, &finder, own);
         else
-            build_block(build, &finder, &around);
+            build_block(build, &finder, own);
     }
 }
 

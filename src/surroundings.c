@@ -54,12 +54,20 @@ struct meeting {
 static void find_blocks(const struct sphgi_grid *sources, const struct line *line,
                         struct meeting *meeting)
 {
+    enum { LINE = SPHGI_ALIGNMENT / sizeof(int32_t) };
     for (int32_t z = 0; z < line[2].blocks; ++z)
         for (int32_t y = 0; y < line[1].blocks; ++y)
             for (int32_t x = 0; x < line[0].blocks; ++x) {
                 const int64_t at[3] = {line[0].block[x], line[1].block[y], line[2].block[z]};
                 const int32_t found = sphgi_find_block(sources, at);
-                meeting->block[z][y][x] = found < 0 ? NULL : &sources->blocks[found];
+                meeting->block[z][y][x] = NULL;
+                if (found < 0)
+                    continue;
+                const struct sphgi_block *block = &sources->blocks[found];
+                const int32_t *start = (const int32_t *)sources->cell_start.data + block->first;
+                meeting->block[z][y][x] = block;
+                for (int32_t c = 0; c <= sources->cells; c += LINE) /* all on their way at once */
+                    __builtin_prefetch(start + c);
             }
 }
 
@@ -144,30 +152,31 @@ static int32_t staged_row(const struct sphgi_lattice *lattice, int32_t y, int32_
     return z * ((1 << lattice->axis[1].shift) + 2) + y;
 }
 
-struct sphgi_runs sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                                       const struct sphgi_surroundings *around, int32_t cell)
+void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
+                          const struct sphgi_surroundings *around, int32_t cell,
+                          struct sphgi_runs *runs)
 {
     int32_t at[3], count = 1;
     const struct sphgi_axis *axis = lattice->axis;
     staged_position(lattice, cell, at);
     const int32_t low = at[0] + axis[0].low, behind = at[0] + axis[0].high + 1;
     const int32_t *own = around->offset[staged_row(lattice, at[1], at[2])];
-    struct sphgi_runs runs = {
-        .own = own[at[0]], .begin = {own[low]}, .length = {own[behind] - own[low]}};
-    int32_t candidates = runs.length[0];
+    int32_t candidates = own[behind] - own[low];
+    runs->own = own[at[0]];
+    runs->begin[0] = own[low];
+    runs->length[0] = candidates;
     for (int32_t z = at[2] + axis[2].low; z <= at[2] + axis[2].high; ++z) {
         const int32_t *offset = around->offset[staged_row(lattice, at[1] + axis[1].low, z)];
         for (int32_t y = axis[1].low; y <= axis[1].high; ++y) {
             const int32_t begin = offset[low], length = offset[behind] - begin;
             if (offset != own && length) {
-                runs.begin[count] = begin;
-                runs.length[count++] = length;
+                runs->begin[count] = begin;
+                runs->length[count++] = length;
                 candidates += length;
             }
             offset += SPHGI_STAGED_WIDTH_MOST + 1;
         }
     }
-    runs.count = count;
-    runs.candidates = candidates;
-    return runs;
+    runs->count = count;
+    runs->candidates = candidates;
 }

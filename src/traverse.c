@@ -93,7 +93,8 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
     int64_t used = 0;
     sphgi_stage_coordinates(finder, n, around);
     for (int32_t c = 0; c < grid->cells; ++c) {
-        const struct sphgi_runs runs = sphgi_candidate_runs(&grid->lattice, around, c);
+        struct sphgi_runs runs;
+        sphgi_candidate_runs(&grid->lattice, around, c, &runs);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
             bool any = false;
