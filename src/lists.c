@@ -192,10 +192,11 @@ static bool place_lists(sphg_neighbors *n, int64_t units)
     return true;
 }
 
-/* A little more than needed: pairs come and go from step to step. */
-static int64_t with_margin(int64_t units)
+/* A little more than needed: pairs come and go from step to step. Once they have outgrown their
+ * memory an eighth, lest a slowly rising number asks for more at each step. */
+static int64_t with_margin(const struct sphgi_found *found, int64_t units)
 {
-    return units + units / 64 + MARGIN;
+    return units + units / (found->most_pairs < 0 ? 64 : 8) + MARGIN;
 }
 
 /* Before anything is known: as many as a sample of the blocks suggests. */
@@ -210,7 +211,7 @@ static bool guess(sphg_context *context, struct build *build)
     for (int32_t b = 0; b < grid->block_count; b += step)
         sampled += grid->blocks[b + 1].first - grid->blocks[b].first;
     const double each = sampled ? (double)n->found.units / (double)sampled : 0;
-    return place_lists(n, with_margin((int64_t)(each * n->target_count)));
+    return place_lists(n, with_margin(&n->found, (int64_t)(each * n->target_count)));
 }
 
 static bool are_more_than_ever(const sphg_neighbors *n)
@@ -243,7 +244,7 @@ sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
         return SPHG_ERROR_MEMORY;
     find_blocks(context, &build, 1);
     if (found->units > found->room && are_more_than_ever(n)) {
-        if (!place_lists(n, with_margin(found->units)))
+        if (!place_lists(n, with_margin(found, found->units)))
             return SPHG_ERROR_MEMORY;
         find_blocks(context, &build, 1);
     }
