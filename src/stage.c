@@ -119,7 +119,7 @@ void sphgi_use_local_rows(struct sphgi_worker *w)
         w->rows[s] = rows;
     }
     w->gather.rows = w->staged_positions;
-    w->gather.dummy = SPHGI_PIECE;
+    w->gather.dummy = SPHGI_ID_STEP * SPHGI_PIECE;
     w->gather.guarded = true;
     w->items = (const int32_t *)(const void *)w->local_items;
     w->local = true;
@@ -132,7 +132,7 @@ void sphgi_use_packed_rows(struct sphgi_worker *w)
     const size_t size = row_size(sweep->plan->type);
     w->gather.rows =
         sweep->volumes ? sweep->packed_positions : sweep->set->neighbors->sources.rows.data;
-    w->gather.dummy = (uint32_t)(rows - 1);
+    w->gather.dummy = (uint32_t)(SPHGI_ID_STEP * (rows - 1));
     w->gather.guarded = true;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
         w->rows[s] = sweep->packed_rows + (size_t)s * rows * size;

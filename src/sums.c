@@ -141,8 +141,9 @@ static void sum_fields(struct sphgi_worker *w)
 
 static uint32_t row_at(const struct sphgi_piece *piece, int32_t part, int32_t k)
 {
-    return piece->wide ? ((const uint32_t *)piece->ids[part])[k]
-                       : ((const uint16_t *)piece->ids[part])[k] / (uint32_t)SPHGI_ID_STEP;
+    const uint32_t id = piece->wide ? ((const uint32_t *)piece->ids[part])[k]
+                                    : ((const uint16_t *)piece->ids[part])[k];
+    return id / SPHGI_ID_STEP;
 }
 
 static void put_pair(const struct sphgi_worker *w, int64_t place, int32_t source, int32_t at)
@@ -171,7 +172,7 @@ static void write_pairs(struct sphgi_worker *w)
         const int32_t row = pairs->row_of_target[w->group.target[lane]];
         for (int32_t k = 0; k < piece->count[p]; ++k) {
             const uint32_t id = row_at(piece, p, k);
-            if (w->gather.superset && id == w->gather.dummy)
+            if (w->gather.superset && id == w->gather.dummy / SPHGI_ID_STEP)
                 continue;
             if (pairs->offsets)
                 put_pair(w, pairs->offsets[row] + w->written[lane],

@@ -318,6 +318,8 @@ static void add_listed(struct sphgi_worker *w, int32_t lane, const void *ids, in
             memcpy(clean, ids, (size_t)part * sizeof *clean);
         if (w->local)
             make_local(w, clean, kept, at);
+        for (int32_t k = 0; k < kept; ++k)
+            clean[k] *= SPHGI_ID_STEP;
         const int32_t padded = (int32_t)sphgi_round_up((size_t)kept, SPHGI_PAD);
         for (int32_t k = kept; k < padded; ++k)
             clean[k] = w->gather.dummy;

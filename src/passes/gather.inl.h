@@ -76,30 +76,38 @@ SPHGI_TEMPLATE void keep_ids(mask inside, const void *ids, int32_t k, uint32_t d
 
 typedef uint32_t eight_ids __attribute__((vector_size(32), aligned(4), may_alias));
 
-/* The host's numbers to numbers of rows: what is no source, and `self`, becomes the dummy, padding
- * too. True: there was a number that is no source. */
+/* Eight of the host's numbers to ids of rows: what is no source, and `self`, becomes the dummy. */
+SPHGI_TEMPLATE void clean_eight(const void *list, const struct sphgi_cleaning *how, uint32_t *out,
+                                eight_ids *bad)
+{
+    const eight_ids id = *(const eight_ids *)list & how->mask;
+    const eight_ids outside = (eight_ids)(id >= (eight_ids){0} + how->sources);
+    const eight_ids drop = outside | (eight_ids)(id == how->self);
+    *bad |= outside;
+    *(eight_ids *)out = ((SPHGI_ID_STEP * id) & ~drop) | (how->dummy & drop);
+}
+
+/* A list, padded with the dummy. True: there was a number that is no source. */
 static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out)
 {
-    const eight_ids sources = (eight_ids){0} + how->sources, dummy = (eight_ids){0} + how->dummy;
     eight_ids bad = {0};
-    int32_t k = 0;
-    for (; k + 8 <= count; k += 8) {
-        const eight_ids id = *(const eight_ids *)(list + k) & how->mask;
-        const eight_ids outside = (eight_ids)(id >= sources);
-        const eight_ids drop = outside | (eight_ids)(id == how->self);
-        bad |= outside;
-        *(eight_ids *)(out + k) = (id & ~drop) | (dummy & drop);
+    if (count % SPHGI_PAD)
+        *(eight_ids *)(out + count / SPHGI_PAD * SPHGI_PAD) = (eight_ids){0} + how->dummy;
+    if (count >= 8) {
+        for (int32_t k = 0; k + 8 <= count; k += 8)
+            clean_eight(list + k, how, out + k, &bad);
+        /* the last eight: some of them once more */
+        clean_eight(list + count - 8, how, out + count - 8, &bad);
+    } else if (count) {
+        uint32_t in[8], clean[8];
+        for (int l = 0; l < 8; ++l)
+            in[l] = (uint32_t)list[l < count ? l : 0];
+        clean_eight(in, how, clean, &bad);
+        for (int32_t l = 0; l < count; ++l)
+            out[l] = clean[l];
     }
-    uint32_t any = 0;
-    for (int l = 0; l < 8; ++l)
-        any |= bad[l];
-    for (; k < count; ++k) {
-        const uint32_t id = (uint32_t)list[k] & how->mask;
-        any |= id >= how->sources;
-        out[k] = id >= how->sources || id == how->self ? how->dummy : id;
-    }
-    for (; k % SPHGI_PAD; ++k)
-        out[k] = how->dummy;
-    return any;
+    uint64_t any[4];
+    __builtin_memcpy(any, &bad, sizeof any);
+    return any[0] | any[1] | any[2] | any[3];
 }

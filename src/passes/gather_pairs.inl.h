@@ -13,7 +13,7 @@ SPHGI_TEMPLATE void OUT_NAME(put)(OUT *at, enum sphgi_array array, vec v)
 
 /* What is known when a loop is compiled. */
 struct OUT_NAME(how) {
-    bool wide, guarded, three, scaled, volumes;
+    bool wide, guarded, periodic, three, scaled, volumes;
 };
 
 /* One part: pairs of the target at x, `at` is where they begin in the arrays. */
@@ -32,16 +32,14 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
             gather_rows(g->rows, (const char *)ids + id_size * (size_t)k, how.wide);
         vec dx = xi - row.x, dy = yi - row.y, dz = zi - row.z;
         mask inside = first_lanes(count - k);
-        if (how.guarded && g->periodic) {
+        if (how.periodic) {
             dx = wrapped(dx, w.axis[0]);
             dy = wrapped(dy, w.axis[1]);
             dz = wrapped(dz, w.axis[2]);
         }
-        if (how.guarded && g->superset) {
+        if (how.guarded) {
             inside &= less(square_distance(dx, dy, dz), cutoff);
             keep_ids(inside, ids, k, g->dummy, masked, how.wide);
-        }
-        if (how.guarded) {
             dx = where(inside, dx);
             dy = where(inside, dy);
             dz = where(inside, dz);
@@ -78,16 +76,17 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void
         OUT_NAME(gather_part)
         (g, x[piece->lane[p]], piece->ids[p], piece->count[p], piece->begin[p + 1] - begin,
          (OUT *)piece->arrays + begin, kept, how);
-        if (how.guarded && g->superset)
+        if (how.guarded)
             piece->ids[p] = kept;
     }
 }
 
 SPHGI_TEMPLATE void OUT_NAME(gather_guarded)(const struct sphgi_gather *g, const void *const *x,
                                              struct sphgi_piece *piece, int32_t first, char *masked,
-                                             bool three)
+                                             bool three, bool periodic)
 {
-    struct OUT_NAME(how) how = {.wide = true, .guarded = true, .three = three, .scaled = true};
+    struct OUT_NAME(how)
+        how = {.wide = true, .guarded = true, .periodic = periodic, .three = three, .scaled = true};
     if (piece->wide) {
         OUT_NAME(gather_as)(g, x, piece, first, masked, how);
         return;
@@ -102,10 +101,14 @@ static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x,
 {
     const bool three = g->dimension == 3;
     if (g->guarded || piece->wide) {
-        if (three)
-            OUT_NAME(gather_guarded)(g, x, piece, first, masked, true);
+        if (three && g->periodic)
+            OUT_NAME(gather_guarded)(g, x, piece, first, masked, true, true);
+        else if (three)
+            OUT_NAME(gather_guarded)(g, x, piece, first, masked, true, false);
+        else if (g->periodic)
+            OUT_NAME(gather_guarded)(g, x, piece, first, masked, false, true);
         else
-            OUT_NAME(gather_guarded)(g, x, piece, first, masked, false);
+            OUT_NAME(gather_guarded)(g, x, piece, first, masked, false, false);
         return;
     }
     const int way = (three ? 4 : 0) | (g->unit != 1 ? 2 : 0) | (g->volumes ? 1 : 0);

@@ -69,7 +69,7 @@ struct sphgi_piece {
     int32_t count[SPHGI_LANES_MOST];     /* without the padding */
     bool fresh[SPHGI_LANES_MOST];        /* the lane's first: its sums begin at 0 */
     const void *ids[SPHGI_LANES_MOST];   /* of the pairs, padded */
-    bool wide;                           /* ids are uint32_t row numbers, else uint16_t ids */
+    bool wide;                           /* ids are uint32_t, else uint16_t */
 };
 
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
@@ -84,10 +84,10 @@ struct sphgi_gather {
     bool guarded; /* periodic, superset, or no dummy is far enough */
     bool volumes; /* V_j differ: gather the 4th number of the rows */
     int32_t dimension;
-    uint32_t dummy; /* row that a pair beyond the cutoff is sent to */
+    uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
 };
 
-/* What becomes of the host's numbers of sources. */
+/* What becomes of the host's numbers of sources. dummy: an id. */
 struct sphgi_cleaning {
     uint32_t mask, sources, self, dummy;
 };

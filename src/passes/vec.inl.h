@@ -293,8 +293,9 @@ SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
 SPHGI_TEMPLATE struct four gather_rows(const real *rows, const void *ids, bool wide)
 {
     const real *row[LANES];
-    for (int k = 0; k < LANES; ++k)
-        row[k] = wide ? rows + SPHGI_ROW * (size_t)((const uint32_t *)ids)[k]
-                      : rows + SPHGI_ROW / SPHGI_ID_STEP * (size_t)((const uint16_t *)ids)[k];
+    for (int k = 0; k < LANES; ++k) {
+        const size_t id = wide ? ((const uint32_t *)ids)[k] : ((const uint16_t *)ids)[k];
+        row[k] = rows + SPHGI_ROW / SPHGI_ID_STEP * id;
+    }
     return transpose(row);
 }
