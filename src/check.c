@@ -96,14 +96,22 @@ static bool is_aligned(const void *pointer, size_t size)
     return (uintptr_t)pointer % size == 0;
 }
 
+/* Bytes from one item to the next, whatever the direction; PTRDIFF_MIN has no opposite. */
+static size_t span_of(ptrdiff_t stride)
+{
+    return stride < 0 ? (size_t)0 - (size_t)stride : (size_t)stride;
+}
+
 static sphg_result check_stride(struct sphgi_checker checker, const sphg_view *view,
                                 const struct sphgi_expected *expected, int32_t numbers)
 {
-    const size_t size = sphgi_size_of_type(expected->type);
-    if (view->stride % (ptrdiff_t)size)
+    const size_t size = sphgi_size_of_type(expected->type), span = span_of(view->stride);
+    if (span % size)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is %td, must be a multiple of %zu",
                checker.function, expected->name, view->stride, size);
-    const size_t span = (size_t)(view->stride < 0 ? -view->stride : view->stride);
+    if (expected->count > 1 && span > (size_t)PTRDIFF_MAX / (size_t)expected->count)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is %td, more than memory has for %d items",
+               checker.function, expected->name, view->stride, (int)expected->count);
     if (expected->use == SPHGI_OUTPUT && expected->count > 1 && span < (size_t)numbers * size)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is %td, but an item of this output takes %zu",
                checker.function, expected->name, view->stride, (size_t)numbers * size);
@@ -181,9 +189,23 @@ static bool extents_overlap(const struct sphgi_extent *a, const struct sphgi_ext
     return false;
 }
 
+/* Components of one output that were set on each other. */
+static bool overlaps_itself(const struct sphgi_extent *e)
+{
+    for (int32_t i = 0; i < e->columns.count; ++i)
+        for (int32_t k = 0; k < i; ++k)
+            if (columns_overlap(e, i, e, k))
+                return true;
+    return false;
+}
+
 sphg_result sphgi_check_overlap(struct sphgi_checker checker, const struct sphgi_extent *extents,
                                 int32_t count)
 {
+    for (int32_t i = 0; i < count; ++i)
+        if (extents[i].output && extents[i].count > 0 && overlaps_itself(&extents[i]))
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: output %s overlaps itself", checker.function,
+                   extents[i].name);
     for (int32_t i = 0; i < count; ++i)
         for (int32_t k = 0; k < i; ++k) {
             const struct sphgi_extent *a = &extents[i], *b = &extents[k];
@@ -271,8 +293,12 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
                f, (int)geometry->precision);
     if (geometry->precision == SPHG_F64 && type == SPHG_F32)
         REFUSE(SPHG_ERROR_TYPE, "%s: geometry.precision is f64, but the positions are f32", f);
-    if (!searched && (geometry->skin != 0 || geometry->list_free))
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin and list_free are for searches only", f);
+    if (!searched && geometry->skin != 0)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, it is for searches only", f,
+               geometry->skin);
+    if (!searched && geometry->list_free)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.list_free is %d, it is for searches only", f,
+               (int)geometry->list_free);
     result = check_skin_and_period(checker, geometry, scheme);
     if (!result)
         result = sphgi_check_range(checker, scheme, type);

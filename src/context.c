@@ -5,13 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool config_is_valid(const sphg_config *config)
-{
-    const bool both_or_neither = !config->allocate == !config->release;
-    return both_or_neither && config->threads >= 0 && config->isa >= SPHG_ISA_BEST &&
-           config->isa <= SPHG_ISA_NEON && (!config->parallel_for || config->threads >= 1);
-}
-
 static void choose_passes(sphg_context *context)
 {
     context->passes_f32 = &sphgi_passes_f32_base;
@@ -48,40 +41,62 @@ static void report(const sphg_config *config, sphg_result result, const char *me
         config->log(result, message, config->user);
 }
 
+/* A failure before there is a context to keep the message. */
+__attribute__((format(printf, 3, 4))) static sphg_result
+refuse(const sphg_config *config, sphg_result result, const char *format, ...)
+{
+    char message[SPHGI_MESSAGE_LENGTH];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message, sizeof message, format, arguments);
+    va_end(arguments);
+    report(config, result, message);
+    return result;
+}
+
+static sphg_result check_config(int32_t version, const sphg_config *config)
+{
+    static const char f[] = "sphg_context_create";
+    if (version <= 0 || version / 100 > SPHG_VERSION / 100)
+        return refuse(config, SPHG_ERROR_VERSION, "%s: version is %d, this library serves 1 to %d",
+                      f, (int)version, SPHG_VERSION / 100 * 100 + 99);
+    if (!config->allocate != !config->release)
+        return refuse(config, SPHG_ERROR_ARGUMENT, "%s: config.%s is NULL, config.%s is not", f,
+                      config->allocate ? "release" : "allocate",
+                      config->allocate ? "allocate" : "release");
+    if (config->threads < 0 || (config->parallel_for && config->threads < 1))
+        return refuse(config, SPHG_ERROR_ARGUMENT, "%s: config.threads is %d, must be at least %d",
+                      f, (int)config->threads, config->parallel_for ? 1 : 0);
+    if (config->isa < SPHG_ISA_BEST || config->isa > SPHG_ISA_NEON)
+        return refuse(config, SPHG_ERROR_ARGUMENT, "%s: config.isa is %d, not an instruction set",
+                      f, (int)config->isa);
+    if (config->isa != SPHG_ISA_BEST && !sphgi_cpu_has(config->isa))
+        return refuse(config, SPHG_ERROR_UNSUPPORTED, "%s: config.isa is %d, not on this machine",
+                      f, (int)config->isa);
+    return SPHG_OK;
+}
+
 sphg_result sphg_context_create(int32_t version, const sphg_config *config, sphg_context **context)
 {
     const sphg_config defaults = {0};
     if (!config)
         config = &defaults;
     if (!context)
-        return SPHG_ERROR_ARGUMENT;
+        return refuse(config, SPHG_ERROR_ARGUMENT, "sphg_context_create: context is NULL");
     *context = NULL;
-    if (version <= 0 || version / 100 > SPHG_VERSION / 100) {
-        report(config, SPHG_ERROR_VERSION, "sphg_context_create: version is not one it can serve");
-        return SPHG_ERROR_VERSION;
-    }
-    if (!config_is_valid(config)) {
-        report(config, SPHG_ERROR_ARGUMENT,
-               "sphg_context_create: config needs allocate and release together, threads >= 0 "
-               "(>= 1 with parallel_for) and a known isa");
-        return SPHG_ERROR_ARGUMENT;
-    }
-    const sphg_isa isa = config->isa == SPHG_ISA_BEST ? sphgi_cpu_best() : config->isa;
-    if (!sphgi_cpu_has(isa)) {
-        report(config, SPHG_ERROR_UNSUPPORTED, "sphg_context_create: isa is not on this machine");
-        return SPHG_ERROR_UNSUPPORTED;
-    }
+    const sphg_result result = check_config(version, config);
+    if (result)
+        return result;
     const struct sphgi_allocator allocator = sphgi_allocator_of(config);
     sphg_context *made = sphgi_allocate(&allocator, sizeof *made);
-    if (!made) {
-        report(config, SPHG_ERROR_MEMORY, "sphg_context_create: out of memory");
-        return SPHG_ERROR_MEMORY;
-    }
+    if (!made)
+        return refuse(config, SPHG_ERROR_MEMORY,
+                      "sphg_context_create: the allocator returned NULL");
     memset(made, 0, sizeof *made);
     made->config = *config;
     made->allocator = allocator;
     made->threads = sphgi_thread_count(config);
-    made->isa = isa;
+    made->isa = config->isa == SPHG_ISA_BEST ? sphgi_cpu_best() : config->isa;
     atomic_flag_clear(&made->busy);
     choose_passes(made);
     fill_pack_order(made->pack_order);

@@ -86,6 +86,36 @@ struct exporting {
     int64_t *offsets; /* rows + 1: first counts, then offsets */
 };
 
+static struct sphgi_extent array_extent(const char *name, const void *array, int64_t count,
+                                        size_t item_size)
+{
+    const sphg_view view = {array, NULL, NULL, (ptrdiff_t)item_size, SPHG_U8};
+    const int32_t items = (int32_t)(count < INT32_MAX ? count : INT32_MAX);
+    return (struct sphgi_extent){name, sphgi_flat_columns(&view, array != NULL), items, item_size,
+                                 true};
+}
+
+/* The request's views were compared with each other when the plan was made: these are all that
+ * the pairs may touch beside them. */
+static sphg_result check_pair_overlap(const struct exporting *e)
+{
+    const struct sphgi_plan *plan = e->plan;
+    const sphg_pairs *pairs = e->pairs;
+    const size_t size = sphgi_size_of_type(plan->type);
+    const int64_t rows = (int64_t)plan->target_count + 1;
+    struct sphgi_extent gradient = array_extent("pairs.gradient", NULL, pairs->capacity, size);
+    gradient.columns = e->gradient;
+    const struct sphgi_extent extents[] = {
+        {"sources[0].volume", plan->sets[0].volume, plan->sets[0].neighbors->source_count, size,
+         false},
+        {"target_correction", plan->target_correction, plan->target_count, size, false},
+        gradient,
+        array_extent("pairs.indices", pairs->indices, pairs->capacity, sizeof *pairs->indices),
+        array_extent("pairs.offsets", pairs->offsets, e->subset ? 1 : rows,
+                     sizeof *pairs->offsets)};
+    return sphgi_check_overlap(e->checker, extents, 5);
+}
+
 static sphg_result check_pairs(struct exporting *e)
 {
     const struct sphgi_checker checker = e->checker;
@@ -101,9 +131,10 @@ static sphg_result check_pairs(struct exporting *e)
                                             .count = (int32_t)most,
                                             .use = SPHGI_OUTPUT};
     const sphg_result result = sphgi_check_view(checker, &pairs->gradient, &expected);
-    if (!result)
-        e->gradient = sphgi_columns_of(&pairs->gradient, SPHG_VECTOR, e->plan->dimension);
-    return result;
+    if (result)
+        return result;
+    e->gradient = sphgi_columns_of(&pairs->gradient, SPHG_VECTOR, e->plan->dimension);
+    return check_pair_overlap(e);
 }
 
 static sphg_result count_pairs(struct exporting *e)
@@ -242,7 +273,14 @@ static void classic_gradient(const sphg_scheme *scheme, int32_t d, const double 
 void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double volume,
                         const double *correction, double *gradient)
 {
-    const int32_t d = scheme->dimension == 2 ? 2 : 3;
+    const int32_t d = scheme && scheme->dimension == 2 ? 2 : 3;
+    if (!gradient)
+        return;
+    if (!scheme || !x_ij) {
+        for (int32_t a = 0; a < d; ++a)
+            gradient[a] = (double)NAN;
+        return;
+    }
     if (sphgi_is_classic(scheme->method) && correction)
         classic_gradient(scheme, d, x_ij, volume, correction, gradient);
     else

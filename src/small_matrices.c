@@ -175,6 +175,23 @@ static sphg_result check_inversion(struct sphgi_checker checker, const struct sp
     return sphgi_check_overlap(checker, extents, 5);
 }
 
+/* Workers only note that there was one; the first is looked up for the message. */
+static sphg_result report_volume(struct sphgi_checker checker, const struct batch *b)
+{
+    int32_t k = 0;
+    double value = 0;
+    for (; k < b->count; ++k) {
+        const char *at = b->volume.at[0] + k * b->volume.stride;
+        value = b->type == SPHG_F64 ? *(const double *)(const void *)at
+                                    : (double)*(const float *)(const void *)at;
+        if (!(value >= 0) || !isfinite(value))
+            break;
+    }
+    return sphgi_fail(checker.context, SPHG_ERROR_VOLUME,
+                      "%s: volume[%d] is %g, must be >= 0 and finite", checker.function, (int)k,
+                      value);
+}
+
 static sphg_result run_inversion(struct sphgi_checker checker, struct batch *b, sphg_stats *stats)
 {
     sphg_context *context = checker.context;
@@ -192,8 +209,7 @@ static sphg_result run_inversion(struct sphgi_checker checker, struct batch *b, 
     if (stats)
         *stats = sphgi_tally_stats(&total, b->type);
     if (total.bad_volume && !context->config.trusted)
-        return sphgi_fail(context, SPHG_ERROR_VOLUME, "%s: a volume is negative or not finite",
-                          checker.function);
+        return report_volume(checker, b);
     return SPHG_OK;
 }
 
