@@ -1,0 +1,205 @@
+#include "victim.h"
+#include <string.h>
+
+enum { CANARY = 0xA5 };
+
+static void close_victim(void *object)
+{
+    victim *own = object;
+    sphg_neighbors_destroy(own->built);
+    sphg_neighbors_destroy(own->blank);
+    sphg_neighbors_destroy(own->listed);
+    sphg_neighbors_destroy(own->rebuilt);
+    sphg_context_destroy(own->living);
+    hooks_close(own->host);
+}
+
+static int number_size(const victim *own)
+{
+    return test_field_type(own->test) == SPHG_F64 ? 8 : 4;
+}
+
+/* ---- Arrays ------------------------------------------------------------------------------- */
+
+static sphg_view input(const victim *own, int width, double low, double high)
+{
+    random_state random = random_seeded(11 + (uint64_t)width);
+    double numbers[VICTIM_COUNT * 9];
+    for (int k = 0; k < VICTIM_COUNT * width; k++)
+        numbers[k] = random_between(&random, low, high);
+    const fixture_array array =
+        fixture_numbers(test_field_type(own->test), VICTIM_COUNT, width, numbers);
+    return fixture_view(&array);
+}
+
+static sphg_view output(const victim *own, int slot, int width)
+{
+    sphg_view view = {own->outputs + slot * VICTIM_SLOT_BYTES, NULL, NULL,
+                      (ptrdiff_t)width * number_size(own), test_field_type(own->test)};
+    return view;
+}
+
+void victim_put(sphg_view view, int item, double value)
+{
+    char *place = (char *)(uintptr_t)view.x + item * view.stride;
+    if (view.type == SPHG_F64)
+        *(double *)(void *)place = value;
+    else
+        *(float *)(void *)place = (float)value;
+}
+
+static void make_inputs(victim *own)
+{
+    const int d = own->test->dimension;
+    own->position_view = input(own, d, 0, 2);
+    own->volume_view = input(own, 1, 0.1, 0.2);
+    own->scalars = input(own, 1, -1, 1);
+    own->densities = input(own, 1, 0.5, 1.5);
+    own->vectors = input(own, d, -1, 1);
+    own->tensors = input(own, d * d, -1, 1);
+    own->symmetric = input(own, d * (d + 1) / 2, 0.9, 1.1);
+    own->table = input(own, d * (d + 1) / 2, 0.8, 1.2);
+    own->target_correction = sphg_absent();
+    own->offsets = test_memory((VICTIM_COUNT + 1) * sizeof *own->offsets);
+    own->indices = test_memory(VICTIM_COUNT * VICTIM_COUNT * sizeof *own->indices);
+    own->picked = test_memory(VICTIM_COUNT * sizeof *own->picked);
+    own->mask = test_memory(VICTIM_COUNT);
+}
+
+static void make_outputs(victim *own)
+{
+    const int d = own->test->dimension, width = d * (d + 1) / 2;
+    own->outputs = test_memory(VICTIM_SLOTS * VICTIM_SLOT_BYTES);
+    own->scalar_out = output(own, 0, 1);
+    own->vector_out = output(own, 1, d);
+    own->tensor_out = output(own, 2, d * d);
+    own->table_out = output(own, 3, width);
+    own->lambda_out = output(own, 4, 1);
+    own->rank_out = sphg_view_u8(own->outputs + 5 * VICTIM_SLOT_BYTES, 1);
+    own->u = output(own, 6, 9);
+    own->sigma = output(own, 7, 3);
+    own->v = output(own, 8, 9);
+    own->order = (int32_t *)(void *)(own->outputs + 9 * VICTIM_SLOT_BYTES);
+    own->info = (sphg_neighbors_info *)(void *)(own->outputs + 10 * VICTIM_SLOT_BYTES);
+    own->request.stats = (sphg_stats *)(void *)(own->outputs + 11 * VICTIM_SLOT_BYTES);
+    own->pairs.gradient = output(own, 12, d);
+    own->pairs.offsets = (int64_t *)(void *)(own->outputs + 13 * VICTIM_SLOT_BYTES);
+    own->pairs.indices = (int32_t *)(void *)(own->pairs.offsets + VICTIM_COUNT + 1);
+}
+
+/* ---- Arguments ---------------------------------------------------------------------------- */
+
+static void set_build(victim *own)
+{
+    own->scheme = fixture_scheme(own->test, 1);
+    own->geometry.sources = own->position_view;
+    own->geometry.source_count = own->geometry.target_count = VICTIM_COUNT;
+    own->lists.offsets = own->offsets;
+    own->lists.indices = own->indices;
+}
+
+/* Everything at once that goes together. */
+static void set_request(victim *own)
+{
+    own->sources[0].neighbors = own->built;
+    own->sources[0].volume = own->volume_view;
+    own->sources[0].density = own->densities;
+    own->field.shape = SPHG_SCALAR;
+    own->field.at_sources = own->at_sources;
+    own->field.at_targets = own->scalars;
+    own->field.gradient = own->vector_out;
+    own->at_sources[0] = own->at_sources[1] = own->scalars;
+    own->request.sources = own->sources;
+    own->request.fields = &own->field;
+    own->request.set_count = own->request.field_count = 1;
+    own->request.subset = &own->subset;
+    own->request.correction = own->table_out;
+    own->request.rank = own->rank_out;
+    own->request.lambda_min = own->lambda_out;
+    own->subset.end = VICTIM_COUNT;
+}
+
+static void set_rest(victim *own)
+{
+    own->pairs.capacity = 4 * VICTIM_COUNT; /* of four targets, see the calls */
+    own->wanted.correction = own->table_out;
+    own->wanted.rank = own->rank_out;
+    own->wanted.lambda_min = own->lambda_out;
+    own->wanted.stats = own->request.stats;
+    own->config = hooks_config(own->host, 2);
+    own->version = SPHG_VERSION;
+    own->dimension = own->test->dimension;
+    own->count = VICTIM_COUNT;
+    own->shape = SPHG_SCALAR;
+    own->context_out = &own->made_context;
+    own->neighbors_out = &own->made_neighbors;
+    own->context = own->living;
+    own->neighbors = own->rebuilt;
+    own->config_given = &own->config;
+    own->scheme_given = &own->scheme;
+    own->geometry_given = &own->geometry;
+    own->lists_given = &own->lists;
+    own->request_given = &own->request;
+    own->sources_given = own->sources;
+    own->subset_given = &own->subset;
+    own->pairs_given = &own->pairs;
+    own->wanted_given = &own->wanted;
+}
+
+static void refill_lists(victim *own)
+{
+    for (int k = 0; k <= VICTIM_COUNT; k++)
+        own->offsets[k] = k * (int64_t)VICTIM_COUNT;
+    for (int k = 0; k < VICTIM_COUNT * VICTIM_COUNT; k++)
+        own->indices[k] = k % VICTIM_COUNT;
+    for (int k = 0; k < VICTIM_COUNT; k++)
+        own->picked[k] = k;
+    memset(own->mask, 1, VICTIM_COUNT);
+}
+
+void victim_reset(victim *own)
+{
+    *own = *own->valid;
+    refill_lists(own);
+    own->host->log_count = 0;
+    memset(own->outputs, CANARY, VICTIM_SLOTS * VICTIM_SLOT_BYTES);
+}
+
+int victim_outputs_are_untouched(const victim *own)
+{
+    for (int k = 0; k < VICTIM_SLOTS * VICTIM_SLOT_BYTES; k++)
+        if (own->outputs[k] != CANARY)
+            return 0;
+    return 1;
+}
+
+victim *victim_create(const test_case *test, int trusted)
+{
+    victim *own = test_memory(sizeof *own);
+    own->test = test;
+    own->host = test_memory(sizeof *own->host);
+    hooks_open(own->host);
+    test_at_end(close_victim, own);
+    sphg_config config = hooks_config(own->host, 2);
+    config.trusted = trusted;
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->living));
+    make_inputs(own);
+    make_outputs(own);
+    refill_lists(own);
+    sphg_neighbors **const all[] = {&own->built, &own->blank, &own->listed, &own->rebuilt};
+    for (int k = 0; k < 4; k++)
+        FIXTURE_OK(own->living, sphg_neighbors_create(own->living, all[k]));
+    set_build(own);
+    for (int k = 0; k < 4; k += 3)
+        FIXTURE_OK(own->living,
+                   sphg_neighbors_search(own->living, *all[k], &own->scheme, &own->geometry));
+    FIXTURE_OK(own->living, sphg_neighbors_use_lists(own->living, own->listed, &own->scheme,
+                                                     &own->geometry, &own->lists));
+    set_request(own);
+    set_rest(own);
+    own->valid = test_memory(sizeof *own);
+    *own->valid = *own;
+    own->valid->valid = own->valid;
+    victim_reset(own);
+    return own;
+}

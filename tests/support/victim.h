@@ -1,0 +1,69 @@
+/* One valid call of every public function, with each of its arguments as a member that can be
+ * spoilt: hostile.h knows how. */
+#ifndef TESTS_SUPPORT_VICTIM_H
+#define TESTS_SUPPORT_VICTIM_H
+#include "fixture.h"
+#include "hooks.h"
+
+enum { VICTIM_COUNT = 60, VICTIM_SLOTS = 14, VICTIM_SLOT_BYTES = VICTIM_COUNT * 16 * 8 };
+
+typedef struct victim {
+    const test_case *test;
+    struct victim *valid; /* as it was made: what a reset goes back to */
+    hooks *host;
+    sphg_context *living;
+    sphg_neighbors *built, *blank, *listed; /* listed: by lists of the host, indices below */
+    sphg_neighbors *rebuilt;                /* by the calls that build */
+
+    /* Arguments as they are passed. */
+    sphg_context *context;
+    int32_t version, count, dimension;
+    const sphg_config *config_given;
+    sphg_context **context_out;
+    sphg_neighbors *neighbors, **neighbors_out;
+    sphg_neighbors_info *info;
+    int32_t *order;
+    const sphg_scheme *scheme_given;
+    const sphg_geometry *geometry_given;
+    const sphg_lists *lists_given;
+    const sphg_request *request_given;
+    const sphg_sources *sources_given;
+    const sphg_subset *subset_given;
+    sphg_pairs *pairs_given;
+    const sphg_inversion *wanted_given;
+    sphg_shape shape;
+
+    /* What they point to. */
+    sphg_config config;
+    sphg_scheme scheme;
+    sphg_geometry geometry;
+    sphg_lists lists;
+    sphg_request request;
+    sphg_sources sources[2];
+    sphg_field field;
+    sphg_view at_sources[2];
+    sphg_subset subset;
+    sphg_pairs pairs;
+    sphg_inversion wanted;
+    sphg_view scalars, vectors, tensors, symmetric, densities, table; /* inputs */
+    sphg_view target_correction;
+    sphg_view scalar_out, vector_out, tensor_out, table_out, rank_out, lambda_out;
+    sphg_view u, sigma, v;
+    sphg_context *made_context;
+    sphg_neighbors *made_neighbors;
+
+    sphg_view position_view, volume_view;
+    int64_t *offsets;
+    int32_t *indices, *picked;
+    uint8_t *mask;
+    unsigned char *outputs; /* all that may be written, in one piece of canaries */
+} victim;
+
+victim *victim_create(const test_case *test, int trusted);
+/* Back to the valid call: arguments, inputs, canaries. */
+void victim_reset(victim *own);
+int victim_outputs_are_untouched(const victim *own);
+/* Sets item `item` (its first number) of an input of floating point numbers. */
+void victim_put(sphg_view view, int item, double value);
+
+#endif

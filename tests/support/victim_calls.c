@@ -1,0 +1,158 @@
+#include "victim_calls.h"
+
+/* ---- Calls -------------------------------------------------------------------------------- */
+
+sphg_result call_create_context(victim *own)
+{
+    const sphg_result result =
+        sphg_context_create(own->version, own->config_given, own->context_out);
+    TEST_REQUIRE(result == SPHG_OK || !own->context_out || !*own->context_out,
+                 "a context was made all the same");
+    if (result == SPHG_OK)
+        sphg_context_destroy(*own->context_out);
+    return result;
+}
+
+sphg_result call_create_neighbors(victim *own)
+{
+    const sphg_result result = sphg_neighbors_create(own->context, own->neighbors_out);
+    if (result == SPHG_OK)
+        sphg_neighbors_destroy(*own->neighbors_out);
+    return result;
+}
+
+sphg_result call_search(victim *own)
+{
+    return sphg_neighbors_search(own->context, own->neighbors, own->scheme_given,
+                                 own->geometry_given);
+}
+
+sphg_result call_use_lists(victim *own)
+{
+    return sphg_neighbors_use_lists(own->context, own->neighbors, own->scheme_given,
+                                    own->geometry_given, own->lists_given);
+}
+
+sphg_result call_get_info(victim *own)
+{
+    return sphg_neighbors_get_info(own->context, own->neighbors, own->info);
+}
+
+sphg_result call_get_order(victim *own)
+{
+    return sphg_neighbors_get_order(own->context, own->neighbors, own->order);
+}
+
+sphg_result call_evaluate(victim *own)
+{
+    return sphg_evaluate(own->context, own->scheme_given, own->request_given);
+}
+
+sphg_result call_correction(victim *own)
+{
+    return sphg_correction(own->context, own->scheme_given, own->sources_given, own->subset_given,
+                           own->table_out, own->rank_out);
+}
+
+sphg_result call_gradient(victim *own)
+{
+    return sphg_gradient(own->context, own->scheme_given, own->sources_given, own->subset_given,
+                         own->scalars, own->vector_out);
+}
+
+sphg_result call_jacobian(victim *own)
+{
+    return sphg_jacobian(own->context, own->scheme_given, own->sources_given, own->subset_given,
+                         own->vectors, own->tensor_out);
+}
+
+sphg_result call_divergence(victim *own)
+{
+    return sphg_divergence(own->context, own->scheme_given, own->sources_given, own->subset_given,
+                           own->vectors, own->scalar_out);
+}
+
+sphg_result call_curl(victim *own)
+{
+    return sphg_curl(own->context, own->scheme_given, own->sources_given, own->subset_given,
+                     own->vectors, own->test->dimension == 2 ? own->scalar_out : own->vector_out);
+}
+
+sphg_result call_force(victim *own)
+{
+    return sphg_force(own->context, own->scheme_given, own->sources_given, own->subset_given,
+                      own->shape, own->tensors, own->vector_out);
+}
+
+sphg_result call_pair_gradients(victim *own)
+{
+    return sphg_pair_gradients(own->context, own->scheme_given, own->sources_given,
+                               own->subset_given, own->target_correction, own->pairs_given);
+}
+
+sphg_result call_invert_moments(victim *own)
+{
+    return sphg_invert_moments(own->context, own->scheme_given, own->count, own->symmetric,
+                               own->volume_view, own->wanted_given);
+}
+
+sphg_result call_eigen(victim *own)
+{
+    return sphg_eigen(own->context, own->dimension, own->count, own->symmetric, own->vector_out,
+                      own->tensor_out);
+}
+
+sphg_result call_svd(victim *own)
+{
+    return sphg_svd(own->context, own->count, own->tensors, own->u, own->sigma, own->v);
+}
+
+/* ---- Variants of the valid call ----------------------------------------------------------- */
+
+void prepare_with_targets(victim *own)
+{
+    own->geometry.targets = own->vectors;
+}
+
+void prepare_two_sided(victim *own)
+{
+    own->field.form = SPHG_SYMMETRIC;
+    own->request.correction = own->request.rank = own->request.lambda_min = sphg_absent();
+    own->request.stats = NULL;
+    own->sources[0].correction = own->request.target_correction = own->table;
+    own->request.target_volume = own->volume_view;
+    own->request.target_density = own->densities;
+}
+
+void prepare_direct(victim *own)
+{
+    own->field.form = SPHG_DIRECT;
+    own->field.shape = SPHG_VECTOR;
+    own->at_sources[0] = own->vectors;
+    own->field.at_targets = sphg_absent();
+    own->field.gradient = own->tensor_out;
+    own->field.divergence = own->scalar_out;
+    const ptrdiff_t size = own->scalar_out.stride;
+    own->field.value = own->u;
+    own->field.value.stride = own->test->dimension * size;
+    own->field.curl = own->v;
+    own->field.curl.stride = own->test->dimension == 2 ? size : 3 * size;
+    own->request.fields = &own->field;
+}
+
+void prepare_with_table(victim *own)
+{
+    own->sources[0].correction = own->table;
+    own->shape = SPHG_TENSOR;
+}
+
+void prepare_by_mls(victim *own)
+{
+    own->scheme.method = SPHG_MLS;
+}
+
+void prepare_of_four_targets(victim *own)
+{
+    own->subset.end = 4;
+    own->target_correction = own->table;
+}
