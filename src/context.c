@@ -137,11 +137,13 @@ sphg_result sphgi_enter(sphg_context *context)
     if (atomic_flag_test_and_set_explicit(&context->busy, memory_order_acquire))
         return SPHG_ERROR_BUSY; /* the message belongs to the call that is under way */
     context->message[0] = '\0';
+    context->host_floats = sphgi_floats_enter();
     return SPHG_OK;
 }
 
 sphg_result sphgi_leave(sphg_context *context, sphg_result result)
 {
+    sphgi_floats_leave(context->host_floats);
     atomic_flag_clear_explicit(&context->busy, memory_order_release);
     return result;
 }

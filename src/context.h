@@ -1,6 +1,7 @@
 /* The context: the host's hooks, the chosen passes, scratch memory, the last message. */
 #ifndef SPHGI_CONTEXT_H
 #define SPHGI_CONTEXT_H
+#include "float_environment.h"
 #include "memory.h"
 #include "passes/passes.h"
 #include <stdatomic.h>
@@ -16,6 +17,7 @@ struct sphg_context {
     uint64_t pack_order[256]; /* of each byte: the positions of its set bits, a byte each */
     _Alignas(16) uint8_t pack_bytes[256][16]; /* the same for items of two bytes */
     atomic_flag busy;
+    struct sphgi_floats host_floats; /* of the thread whose call is under way */
     char message[SPHGI_MESSAGE_LENGTH];
     /* Scratch that outlives a call only to spare the next one its allocation. */
     struct sphgi_buffer workers;       /* a slice per thread */
@@ -31,7 +33,8 @@ struct sphg_context {
 
 const struct sphgi_passes *sphgi_passes_of(const sphg_context *context, sphg_type type);
 
-/* A call begins: refuses a context in use. Every sphgi_enter() that gave SPHG_OK needs a leave. */
+/* A call begins: refuses a context in use, and sets the default floating-point environment. Every
+ * sphgi_enter() that gave SPHG_OK needs a leave, which puts the host's back. */
 sphg_result sphgi_enter(sphg_context *context);
 sphg_result sphgi_leave(sphg_context *context, sphg_result result);
 

@@ -1,4 +1,5 @@
 #include "kernel.h"
+#include "float_environment.h"
 #include "kernel_list.h"
 #include <math.h>
 
@@ -73,19 +74,32 @@ static bool scheme_has_kernel(const sphg_scheme *scheme)
            sphgi_kernel_exists(scheme->kernel);
 }
 
+/* Not inlined: arithmetic must stay between the two changes of the environment. */
+__attribute__((noinline)) static void kernel_value(const sphg_scheme *scheme, double r,
+                                                   double *value, double *slope)
+{
+    const int32_t d = scheme->dimension == 2 ? 2 : 3;
+    const double inverse_h = 1 / scheme->support_radius;
+    const double q = r * inverse_h, sigma = sphgi_kernel_sigma(scheme->kernel, d);
+    const double scale = sigma * sphgi_power(inverse_h, d);
+    const bool inside = r < scheme->support_radius;
+    *value = inside ? scale * kernel_w(scheme->kernel, q) : 0;
+    *slope = inside ? scale * inverse_h * inverse_h * kernel_d(scheme->kernel, q) : 0;
+}
+
+static void checked_value(const sphg_scheme *scheme, double r, double *value, double *slope)
+{
+    if (scheme_has_kernel(scheme) && scheme->support_radius > 0 &&
+        isfinite(scheme->support_radius) && r >= 0)
+        kernel_value(scheme, r, value, slope);
+}
+
 void sphg_kernel_value(const sphg_scheme *scheme, double r, double *w, double *dw_over_r)
 {
     double value = NAN, slope = NAN;
-    if (scheme_has_kernel(scheme) && scheme->support_radius > 0 &&
-        isfinite(scheme->support_radius) && r >= 0) {
-        const int32_t d = scheme->dimension == 2 ? 2 : 3;
-        const double inverse_h = 1 / scheme->support_radius;
-        const double q = r * inverse_h, sigma = sphgi_kernel_sigma(scheme->kernel, d);
-        const double scale = sigma * sphgi_power(inverse_h, d);
-        const bool inside = r < scheme->support_radius;
-        value = inside ? scale * kernel_w(scheme->kernel, q) : 0;
-        slope = inside ? scale * inverse_h * inverse_h * kernel_d(scheme->kernel, q) : 0;
-    }
+    const struct sphgi_floats before = sphgi_floats_enter();
+    checked_value(scheme, r, &value, &slope);
+    sphgi_floats_leave(before);
     if (w)
         *w = value;
     if (dw_over_r)

@@ -270,20 +270,29 @@ static void classic_gradient(const sphg_scheme *scheme, int32_t d, const double 
         gradient[a] = slope * x_ij[a] * polynomial[0] + w * polynomial[1 + a];
 }
 
-void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double volume,
-                        const double *correction, double *gradient)
+/* Not inlined: arithmetic must stay between the two changes of the environment. */
+__attribute__((noinline)) static void pair_gradient(const sphg_scheme *scheme, const double *x_ij,
+                                                    double volume, const double *correction,
+                                                    double *gradient)
 {
-    const int32_t d = scheme && scheme->dimension == 2 ? 2 : 3;
-    if (!gradient)
-        return;
-    if (!scheme || !x_ij) {
-        for (int32_t a = 0; a < d; ++a)
-            gradient[a] = (double)NAN;
-        return;
-    }
+    const int32_t d = scheme->dimension == 2 ? 2 : 3;
     if (sphgi_is_classic(scheme->method) && correction)
         classic_gradient(scheme, d, x_ij, volume, correction, gradient);
     else
         linearised_gradient(scheme, d, x_ij, volume,
                             scheme->method == SPHG_PLAIN ? NULL : correction, gradient);
+}
+
+void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double volume,
+                        const double *correction, double *gradient)
+{
+    if (!gradient)
+        return;
+    for (int32_t a = 0; (!scheme || !x_ij) && a < (scheme && scheme->dimension == 2 ? 2 : 3); ++a)
+        gradient[a] = (double)NAN;
+    if (!scheme || !x_ij)
+        return;
+    const struct sphgi_floats before = sphgi_floats_enter();
+    pair_gradient(scheme, x_ij, volume, correction, gradient);
+    sphgi_floats_leave(before);
 }

@@ -33,18 +33,43 @@ static void openmp_for(sphg_task *task, void *data, int32_t count, int32_t grain
 }
 #endif
 
+/* A task in the default floating-point environment, on whichever thread it runs. */
+struct guarded {
+    sphg_task *task;
+    void *data;
+};
+
+static void run_guarded(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct guarded *guarded = data;
+    const struct sphgi_floats before = sphgi_floats_enter();
+    guarded->task(guarded->data, begin, end, worker);
+    sphgi_floats_leave(before);
+}
+
+/* Executors run in the host's environment: threads that they create inherit it, and keep it. */
+static void run_by_executor(sphg_context *context, struct guarded *guarded, int32_t count,
+                            int32_t grain)
+{
+    const sphg_config *config = &context->config;
+    sphgi_floats_leave(context->host_floats);
+    if (config->parallel_for)
+        config->parallel_for(run_guarded, guarded, count, grain, config->user);
+#ifdef SPHG_USE_OPENMP
+    else
+        openmp_for(run_guarded, guarded, count, grain, context->threads);
+#endif
+    context->host_floats = sphgi_floats_enter();
+}
+
 void sphgi_parallel_for(sphg_context *context, sphg_task *task, void *data, int32_t count,
                         int32_t grain)
 {
-    const sphg_config *config = &context->config;
+    struct guarded guarded = {task, data};
     if (count <= 0)
         return;
-    if (config->parallel_for)
-        config->parallel_for(task, data, count, grain, config->user);
-#ifdef SPHG_USE_OPENMP
-    else if (context->threads > 1 && count > grain)
-        openmp_for(task, data, count, grain, context->threads);
-#endif
+    if (context->config.parallel_for || (context->threads > 1 && count > grain))
+        run_by_executor(context, &guarded, count, grain);
     else
         task(data, 0, count, 0);
 }

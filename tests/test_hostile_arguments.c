@@ -2,23 +2,12 @@
  * right code, a message that names argument and value, nothing written, and the next call works.
  * The list of functions, parameters and members comes from the header: what is new there and has no
  * rows here does not compile or fails. */
-#include "hostile_rows.inl.h"
 #include "public_names.h"
+#include "support/hostile_rows.h"
+#include "support/victim_calls.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
-
-/* A function of the header that has no rows above stops here. */
-static const struct tested {
-    const char *function, *parameters;
-    const probe *probes;
-    int count;
-} functions[] = {
-#define FUNCTION(name, parameters)                                                                 \
-    {#name, parameters, probes_##name, (int)(sizeof(probes_##name) / sizeof *probes_##name)},
-    PUBLIC_FUNCTIONS(FUNCTION)
-#undef FUNCTION
-};
-enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 static int begins_with(const char *path, const char *name, size_t length)
 {
@@ -27,11 +16,11 @@ static int begins_with(const char *path, const char *name, size_t length)
 
 static int has_row(const char *function, const char *name, size_t length)
 {
-    for (int f = 0; f < FUNCTIONS; f++)
-        for (int p = 0; p < functions[f].count; p++)
-            for (int a = 0; a < functions[f].probes[p].count; a++)
-                if ((!function || strcmp(functions[f].function, function) == 0) &&
-                    begins_with(functions[f].probes[p].arguments[a].path, name, length))
+    for (int f = 0; f < hostile_function_count; f++)
+        for (int p = 0; p < hostile_functions[f].count; p++)
+            for (int a = 0; a < hostile_functions[f].probes[p].count; a++)
+                if ((!function || strcmp(hostile_functions[f].name, function) == 0) &&
+                    begins_with(hostile_functions[f].probes[p].arguments[a].path, name, length))
                     return 1;
     return 0;
 }
@@ -39,11 +28,11 @@ static int has_row(const char *function, const char *name, size_t length)
 static void every_parameter_has_a_row(const test_case *test)
 {
     (void)test;
-    for (int f = 0; f < FUNCTIONS; f++)
-        for (const char *word = functions[f].parameters + 1; *word;) {
+    for (int f = 0; f < hostile_function_count; f++)
+        for (const char *word = hostile_functions[f].parameters + 1; *word;) {
             const size_t length = strcspn(word, " ");
-            TEST_REQUIRE(!length || has_row(functions[f].function, word, length),
-                         "%s: no rows for %.*s", functions[f].function, (int)length, word);
+            TEST_REQUIRE(!length || has_row(hostile_functions[f].name, word, length),
+                         "%s: no rows for %.*s", hostile_functions[f].name, (int)length, word);
             word += length + (word[length] == ' ');
         }
 }
@@ -141,7 +130,7 @@ static void prepare(victim *own, const probe *tested)
 }
 
 /* Spoils, calls, judges, and makes the valid call; 0: this argument has no such way. */
-static int try_once(victim *own, const struct tested *function, const probe *tested, int a,
+static int try_once(victim *own, const hostile_function *function, const probe *tested, int a,
                     int number)
 {
     const argument *spoilt = &tested->arguments[a];
@@ -151,7 +140,7 @@ static int try_once(victim *own, const struct tested *function, const probe *tes
         return 0;
     if (made.expected == HOSTILE_SKIPPED)
         return 1;
-    const char *where = test_text("%s: %s %s", function->function, spoilt->path, made.what);
+    const char *where = test_text("%s: %s %s", function->name, spoilt->path, made.what);
     memset(own->host->log_message, 0, sizeof own->host->log_message);
     const sphg_neighbors_info before = info_of(own);
     const sphg_result result = tested->call(own);
@@ -170,15 +159,15 @@ static void refuse_everywhere(const test_case *test, int trusted)
 {
     victim *own = victim_create(test, trusted);
     cells = complaints = 0;
-    for (int f = 0; f < FUNCTIONS; f++)
-        for (int p = 0; p < functions[f].count; p++) {
-            const probe *tested = &functions[f].probes[p];
+    for (int f = 0; f < hostile_function_count; f++)
+        for (int p = 0; p < hostile_functions[f].count; p++) {
+            const probe *tested = &hostile_functions[f].probes[p];
             if (!tested->call || (tested->call == call_svd && test->dimension == 2))
                 continue;
             for (int a = 0; a < tested->count; a++)
                 for (int number = 0;
                      !(trusted && hostile_is_about_numbers(tested->arguments[a].kind)) &&
-                     try_once(own, &functions[f], tested, a, number);
+                     try_once(own, &hostile_functions[f], tested, a, number);
                      number++)
                     ;
         }
@@ -229,9 +218,9 @@ static void every_function_is_refused_while_the_context_is_busy(const test_case 
 {
     victim *own = victim_create(test, 0);
     fixture_array results = fixture_output(test_field_type(test), VICTIM_COUNT, test->dimension);
-    for (int f = 0; f < FUNCTIONS; f++)
-        for (int p = 0; p < functions[f].count; p++) {
-            reentry again = {own, &functions[f].probes[p], SPHG_OK, 0};
+    for (int f = 0; f < hostile_function_count; f++)
+        for (int p = 0; p < hostile_functions[f].count; p++) {
+            reentry again = {own, &hostile_functions[f].probes[p], SPHG_OK, 0};
             const sphg_lists lists = {.row = row_that_calls_back, .user = &again};
             if (!takes_a_context(again.tested))
                 continue;
@@ -242,7 +231,7 @@ static void every_function_is_refused_while_the_context_is_busy(const test_case 
             FIXTURE_OK(own->living, sphg_gradient(own->living, &own->scheme, &sources, NULL,
                                                   own->scalars, fixture_view(&results)));
             TEST_REQUIRE(again.inner == SPHG_ERROR_BUSY && again.untouched, "%s: %s",
-                         functions[f].function, sphg_result_string(again.inner));
+                         hostile_functions[f].name, sphg_result_string(again.inner));
         }
 }
 

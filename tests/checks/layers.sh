@@ -8,7 +8,7 @@ layer_of() {
         evaluate.c | pairs.c | neighbors.c | small_matrices.c) echo 4 ;;
         plan.* | plan_sums.* | selection.* | tally.* | worker.* | finish.* | sums.* | stage.* | traverse.* | sweep.* | svd.*) echo 3 ;;
         neighbors.h | skin.* | find.* | lists.* | grid.* | lattice.c | sort.c | surroundings.c) echo 3 ;;
-        context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.*) echo 2 ;;
+        context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.* | float_environment.*) echo 2 ;;
         passes/*) echo 1 ;;
         internal.h) echo 0 ;;
     esac

@@ -214,11 +214,11 @@ static int spoil_start(victim *own, sphg_view *view, const argument *spoilt, int
 static int spoil_overlap(victim *own, const probe *tested, const argument *spoilt, int number,
                          trial *made)
 {
+    if (!(spoilt->flags & HOSTILE_OUTPUT) || number / 3 >= tested->count)
+        return 0;
     sphg_view *view = member(own, spoilt);
     const argument *other = &tested->arguments[number / 3];
     const sphg_view *at = member(own, other);
-    if (!(spoilt->flags & HOSTILE_OUTPUT) || number / 3 >= tested->count)
-        return 0;
     expect(made, SPHG_ERROR_ARGUMENT, "overlaps");
     if (other == spoilt && spoilt->flags & HOSTILE_VECTOR && number % 3 == 0) {
         view->y = view->z = view->x;

@@ -1,9 +1,7 @@
-/* The arguments of each public function and what is wrong with them, a table per function; included
- * by test_hostile_arguments.c alone. */
-#ifndef TESTS_HOSTILE_ROWS_INL_H
-#define TESTS_HOSTILE_ROWS_INL_H
-#include "support/hostile.h"
-#include "support/victim_calls.h"
+/* The arguments of each public function and what is wrong with them, a table per function. */
+#include "hostile_rows.h"
+#include "public_names.h"
+#include "victim_calls.h"
 #include <stdio.h>
 
 #define AT(member) offsetof(victim, member)
@@ -392,4 +390,11 @@ static const argument of_svd[] = {
 };
 static const probe probes_sphg_svd[] = {PROBE(NULL, call_svd, of_svd)};
 
-#endif
+/* A function of the header that has no rows above stops here. */
+const hostile_function hostile_functions[] = {
+#define FUNCTION(name, parameters)                                                                 \
+    {#name, parameters, probes_##name, (int)(sizeof(probes_##name) / sizeof *probes_##name)},
+    PUBLIC_FUNCTIONS(FUNCTION)
+#undef FUNCTION
+};
+const int hostile_function_count = sizeof hostile_functions / sizeof *hostile_functions;
