@@ -1,0 +1,32 @@
+/* SPHG_TEST_LONG=1 asks for the long figures: tests/run --long. */
+#ifndef TESTS_SUPPORT_LONG_H
+#define TESTS_SUPPORT_LONG_H
+#include <stdlib.h>
+#include <time.h>
+
+static inline int long_is_asked_for(void)
+{
+    const char *value = getenv("SPHG_TEST_LONG");
+    return value && value[0] == '1';
+}
+
+static inline int long_or(int long_count, int short_count)
+{
+    return long_is_asked_for() ? long_count : short_count;
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { long_sanitized = 1 };
+#else
+enum { long_sanitized = 0 };
+#endif
+
+/* For reports only: no test asserts a time. */
+static inline double long_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+#endif
