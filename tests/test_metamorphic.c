@@ -1,0 +1,305 @@
+/* Random scenes and what must not change them: relations that hold to the bit, so that no reference
+ * is needed. SPHG_TEST_LONG=1 takes 100 000 scenes. */
+#include "support/fixture.h"
+#include "support/long.h"
+#include <math.h>
+#include <string.h>
+
+enum { MOST = 56, FAR = 5, WIDTH = 16 };
+
+/* Coordinates, volumes and fields are short binary fractions: sums and products with powers of two
+ * are exact in f32, too. */
+typedef struct world {
+    int count, searched; /* searched: or by lists, which fix the order of sums */
+    sphg_scheme scheme;
+    sphg_form form;
+    double x[MOST * 3], volume[MOST], field[MOST];
+    int32_t lists[MOST * MOST]; /* row i: count numbers */
+} world;
+
+typedef struct outcome {
+    double gradient[MOST * 3];
+    uint8_t rank[MOST];
+    sphg_stats stats;
+} outcome;
+
+typedef struct rig {
+    sphg_type type;
+    sphg_context *context;
+    sphg_neighbors *neighbors;
+    random_state random;
+} rig;
+
+static double fraction(rig *own, int range, int bits)
+{
+    return ldexp(random_index(&own->random, 2 * range << bits) - (range << bits), -bits);
+}
+
+/* Blocks, sheets, lines, clumps and loners, of any method, kernel and policy. */
+static void make_world(rig *own, world *made)
+{
+    random_state *random = &own->random;
+    const int d = 2 + random_index(random, 2), flat = random_index(random, 6);
+    memset(made, 0, sizeof *made);
+    made->count = 1 + random_index(random, MOST - FAR);
+    made->scheme.dimension = d;
+    made->scheme.method = (sphg_method)random_index(random, 6);
+    made->scheme.kernel = (sphg_kernel)random_index(random, 7);
+    made->scheme.policy = (sphg_policy)random_index(random, 4);
+    made->scheme.support_radius = ldexp(1 + random_index(random, 40), -4);
+    made->scheme.threshold = random_index(random, 2) ? 0 : ldexp(1, -1 - random_index(random, 16));
+    made->form = random_index(random, 3) ? SPHG_DIFFERENCE : SPHG_DIRECT;
+    for (int k = 0; k < made->count * d; k++)
+        made->x[k] = k % d >= 3 - flat % 4 ? .25 : fraction(own, flat == 5 ? 1 : 2, 9);
+    for (int i = 0; i < made->count; i++) {
+        made->volume[i] = ldexp(random_index(random, 256), -8);
+        made->field[i] = fraction(own, 8, 8);
+        for (int k = 0; k < made->count; k++)
+            made->lists[i * made->count + k] = k;
+    }
+}
+
+/* ---- One run ------------------------------------------------------------------------------ */
+
+static sphg_view numbers(const rig *own, void *memory, const double *values, int count, int width)
+{
+    for (int k = 0; k < count * width; k++) {
+        if (own->type == SPHG_F64)
+            ((double *)memory)[k] = values[k];
+        else
+            ((float *)memory)[k] = (float)values[k];
+    }
+    const ptrdiff_t size = own->type == SPHG_F64 ? 8 : 4;
+    return (sphg_view){memory, NULL, NULL, width * size, own->type};
+}
+
+/* Offsets of the host are read by operators: build and evaluation stand in one function. */
+static void run(const rig *own, const world *on, const sphg_subset *subset, outcome *found)
+{
+    const int d = on->scheme.dimension, n = on->count;
+    double memory[3][MOST * 3], result[MOST * 3] = {0};
+    int64_t offsets[MOST + 1];
+    for (int i = 0; i <= n; i++)
+        offsets[i] = (int64_t)i * n;
+    const sphg_geometry geometry = {
+        .sources = numbers(own, memory[0], on->x, n, d), .source_count = n, .target_count = n};
+    const sphg_lists lists = {.offsets = offsets, .indices = on->lists};
+    const sphg_sources sources = {.neighbors = own->neighbors,
+                                  .volume = numbers(own, memory[1], on->volume, n, 1)};
+    const sphg_view at_sources = numbers(own, memory[2], on->field, n, 1);
+    sphg_field field = {.shape = SPHG_SCALAR, .form = on->form, .at_sources = &at_sources};
+    field.gradient = numbers(own, result, found->gradient, n, d);
+    sphg_request request = {
+        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1, .subset = subset};
+    if (on->scheme.method != SPHG_PLAIN) {
+        request.rank = sphg_view_u8(found->rank, 1);
+        request.stats = &found->stats;
+    }
+    FIXTURE_OK(own->context,
+               on->searched
+                   ? sphg_neighbors_search(own->context, own->neighbors, &on->scheme, &geometry)
+                   : sphg_neighbors_use_lists(own->context, own->neighbors, &on->scheme, &geometry,
+                                              &lists));
+    FIXTURE_OK(own->context, sphg_evaluate(own->context, &on->scheme, &request));
+    for (int k = 0; k < n * d; k++)
+        found->gradient[k] = own->type == SPHG_F64 ? result[k] : (double)((float *)result)[k];
+}
+
+/* ---- Relations ---------------------------------------------------------------------------- */
+
+/* Of the first `count` targets: gradient = factor[axis] * expected, ranks alike. */
+static void require_related(const world *on, const outcome *expected, const outcome *found,
+                            const double *factor, const char *relation)
+{
+    const int d = on->scheme.dimension;
+    for (int k = 0; k < on->count * d; k++)
+        TEST_REQUIRE(expected->gradient[k] * factor[k % d] == found->gradient[k],
+                     "%s: %a, not %a; %s, kernel %d, policy %d, H %g, eps %g, %dD, %d particles",
+                     relation, found->gradient[k], expected->gradient[k] * factor[k % d],
+                     test_method_name(on->scheme.method), (int)on->scheme.kernel,
+                     (int)on->scheme.policy, on->scheme.support_radius, on->scheme.threshold, d,
+                     on->count);
+    TEST_REQUIRE(memcmp(expected->rank, found->rank, (size_t)on->count) == 0, "%s: other ranks",
+                 relation);
+}
+
+static const double one[] = {1, 1, 1};
+
+static void translation(rig *own, const world *on, const outcome *expected)
+{
+    world moved = *on;
+    outcome found = {.rank = {0}};
+    const int d = on->scheme.dimension;
+    double by[3];
+    for (int a = 0; a < 3; a++)
+        by[a] = fraction(own, 1024, 0);
+    for (int k = 0; k < on->count * d; k++)
+        moved.x[k] += by[k % d];
+    run(own, &moved, NULL, &found);
+    require_related(on, expected, &found, one, "translation");
+}
+
+/* Not of matrices that were decomposed: of two equal diagonal entries Jacobi's rotation takes
+ * either eigenvector first, and the sum over both is rounded in that order. */
+static void mirror(rig *own, const world *on, const outcome *expected)
+{
+    world mirrored = *on;
+    outcome found = {.rank = {0}};
+    const int d = on->scheme.dimension, axis = random_index(&own->random, d);
+    double factor[] = {1, 1, 1};
+    factor[axis] = -1;
+    if (expected->stats.decomposed > 0)
+        return;
+    for (int i = 0; i < on->count; i++)
+        mirrored.x[i * d + axis] = -mirrored.x[i * d + axis];
+    run(own, &mirrored, NULL, &found);
+    require_related(on, expected, &found, factor, "mirror");
+}
+
+static void unit_of_length(rig *own, const world *on, const outcome *expected)
+{
+    world scaled = *on;
+    outcome found = {.rank = {0}};
+    const int d = on->scheme.dimension, k = random_index(&own->random, 31) - 15;
+    const double factor[] = {ldexp(1, -k), ldexp(1, -k), ldexp(1, -k)};
+    for (int n = 0; n < on->count * d; n++)
+        scaled.x[n] = ldexp(scaled.x[n], k);
+    for (int i = 0; i < on->count; i++)
+        scaled.volume[i] = ldexp(scaled.volume[i], d * k);
+    scaled.scheme.support_radius = ldexp(scaled.scheme.support_radius, k);
+    run(own, &scaled, NULL, &found);
+    require_related(on, expected, &found, factor, "unit of length");
+}
+
+static void unit_of_field(rig *own, const world *on, const outcome *expected)
+{
+    world scaled = *on;
+    outcome found = {.rank = {0}};
+    const int k = random_index(&own->random, 41) - 20;
+    const double factor[] = {ldexp(1, k), ldexp(1, k), ldexp(1, k)};
+    for (int i = 0; i < on->count; i++)
+        scaled.field[i] = ldexp(scaled.field[i], k);
+    run(own, &scaled, NULL, &found);
+    require_related(on, expected, &found, factor, "unit of the field");
+}
+
+static void constant(rig *own, const world *on, const outcome *expected)
+{
+    world raised = *on;
+    outcome found = {.rank = {0}};
+    const double by = fraction(own, 2048, 0);
+    if (on->form != SPHG_DIFFERENCE)
+        return;
+    for (int i = 0; i < on->count; i++)
+        raised.field[i] += by;
+    run(own, &raised, NULL, &found);
+    require_related(on, expected, &found, one, "constant");
+}
+
+/* Particles beyond everybody's reach, which the lists name last. */
+static void strangers(rig *own, const world *on, const outcome *expected)
+{
+    world more = *on;
+    outcome found = {.rank = {0}};
+    const int d = on->scheme.dimension;
+    more.count += FAR;
+    for (int i = on->count; i < more.count; i++) {
+        for (int a = 0; a < d; a++)
+            more.x[i * d + a] = 512 + 64 * i;
+        more.volume[i] = 1;
+        more.field[i] = 3;
+    }
+    for (int k = 0; k < more.count * more.count; k++)
+        more.lists[k] = k % more.count;
+    run(own, &more, NULL, &found);
+    require_related(on, expected, &found, one, "strangers");
+}
+
+/* Other names; rows keep the order of the particles that they mean. */
+static void names(rig *own, const world *on, const outcome *expected)
+{
+    world renamed = *on;
+    outcome found = {.rank = {0}}, back = {.rank = {0}};
+    const int d = on->scheme.dimension, n = on->count;
+    int32_t name[MOST];
+    for (int i = 0; i < n; i++) {
+        const int k = random_index(&own->random, i + 1);
+        name[i] = name[k];
+        name[k] = i;
+    }
+    for (int i = 0; i < n; i++) {
+        memcpy(renamed.x + name[i] * d, on->x + i * d, (size_t)d * sizeof(double));
+        renamed.volume[name[i]] = on->volume[i];
+        renamed.field[name[i]] = on->field[i];
+        for (int k = 0; k < n; k++)
+            renamed.lists[name[i] * n + k] = name[on->lists[i * n + k]];
+    }
+    run(own, &renamed, NULL, &found);
+    for (int i = 0; i < n; i++) {
+        memcpy(back.gradient + i * d, found.gradient + name[i] * d, (size_t)d * sizeof(double));
+        back.rank[i] = found.rank[name[i]];
+    }
+    require_related(on, expected, &back, one, "names");
+}
+
+static void subset(rig *own, const world *on, const outcome *expected)
+{
+    uint8_t mask[MOST];
+    outcome found, mixed = *expected;
+    const int d = on->scheme.dimension;
+    const sphg_subset chosen = {0, on->count, NULL, mask};
+    memset(&found, 0, sizeof found);
+    for (int i = 0; i < on->count; i++) {
+        mask[i] = (uint8_t)random_index(&own->random, 2);
+        for (int a = 0; a < d && !mask[i]; a++)
+            mixed.gradient[i * d + a] = found.gradient[i * d + a] = 7;
+        if (!mask[i])
+            mixed.rank[i] = found.rank[i] = 77;
+    }
+    run(own, on, &chosen, &found);
+    if (on->scheme.method == SPHG_PLAIN)
+        memcpy(found.rank, mixed.rank, sizeof mixed.rank);
+    require_related(on, &mixed, &found, one, "subset");
+}
+
+/* ---- Scenes ------------------------------------------------------------------------------- */
+
+typedef void relation(rig *own, const world *on, const outcome *expected);
+
+static void each_scene(const test_case *test, int searched, relation *const *relations, int count)
+{
+    rig own = {test_field_type(test), fixture_context_of(1), NULL, random_seeded(601)};
+    const int scenes = long_or(100000, 250);
+    FIXTURE_OK(own.context, sphg_neighbors_create(own.context, &own.neighbors));
+    for (int k = 0; k < scenes; k++) {
+        world on;
+        outcome expected = {.rank = {0}};
+        make_world(&own, &on);
+        on.searched = searched;
+        run(&own, &on, NULL, &expected);
+        for (int r = 0; r < count; r++)
+            relations[r](&own, &on, &expected);
+    }
+    sphg_neighbors_destroy(own.neighbors);
+    print_message("%d scenes, %d relations\n", scenes, count);
+}
+
+static void relations_hold_to_the_bit_in_the_order_of_lists(const test_case *test)
+{
+    relation *const relations[] = {translation, mirror,    unit_of_length, unit_of_field,
+                                   constant,    strangers, names,          subset};
+    each_scene(test, 0, relations, 8);
+}
+
+/* Where the search decides the order of sums, moving particles may change it. */
+static void relations_hold_to_the_bit_after_a_search(const test_case *test)
+{
+    relation *const relations[] = {unit_of_length, unit_of_field, constant, subset};
+    each_scene(test, 1, relations, 4);
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(relations_hold_to_the_bit_in_the_order_of_lists, TEST_SINGLE_AND_DOUBLE, 0, 0, 0),
+    TEST_ENTRY(relations_hold_to_the_bit_after_a_search, TEST_SINGLE_AND_DOUBLE, 0, 0, 0),
+};
+TEST_MAIN(entries)
