@@ -25,12 +25,15 @@ static void rotate_pair(double *x, double *y, double c, double s)
     }
 }
 
+/* Of columns that are orthogonal to rounding the product is noise, and by it columns of one length
+ * would be turned by any angle, sweep after sweep, each time a few roundings worse. */
 static void orthogonalise(struct columns *m, int p, int q)
 {
     const double product = dot(m->b[p], m->b[q]);
-    if (product == 0)
+    const double square_p = dot(m->b[p], m->b[p]), square_q = dot(m->b[q], m->b[q]);
+    if (product == 0 || fabs(product) <= 0x1p-53 * sqrt(square_p) * sqrt(square_q))
         return;
-    const double zeta = (dot(m->b[q], m->b[q]) - dot(m->b[p], m->b[p])) / (2 * product);
+    const double zeta = (square_q - square_p) / (2 * product);
     const double t = (zeta < 0 ? -1 : 1) / (fabs(zeta) + sqrt(1 + zeta * zeta));
     const double c = 1 / sqrt(1 + t * t);
     rotate_pair(m->b[p], m->b[q], c, c * t);
