@@ -1,0 +1,164 @@
+/* Calls in any order on objects in any state, with an allocator that fails now and then: a code
+ * that the header names, every block given back at the end. */
+#include "fuzz.h"
+
+enum { MOST = 20, OBJECTS = 3, HEADER = 64 };
+
+typedef struct world {
+    int fail; /* the allocation from now on that fails; 0: none */
+    long blocks;
+    sphg_context *context;
+    sphg_neighbors *objects[OBJECTS];
+    float x[MOST * 3], volume[MOST], field[MOST], out[MOST * 16], more[MOST * 16];
+    int32_t order[MOST], indices[MOST * MOST];
+    int64_t offsets[MOST + 1];
+    uint8_t rank[MOST];
+    sphg_scheme scheme;
+} world;
+
+static void *allocate(size_t size, size_t alignment, void *user)
+{
+    world *own = user;
+    if (own->fail > 0 && --own->fail == 0)
+        return NULL;
+    char *memory =
+        aligned_alloc(alignment, (size + HEADER + alignment - 1) / alignment * alignment);
+    FUZZ_REQUIRE(memory && alignment <= HEADER, "no memory");
+    memcpy(memory, &size, sizeof size);
+    own->blocks++;
+    return memory + HEADER;
+}
+
+static void release(void *memory, size_t size, void *user)
+{
+    world *own = user;
+    size_t asked;
+    memcpy(&asked, (char *)memory - HEADER, sizeof asked);
+    FUZZ_REQUIRE(asked == size, "released %zu bytes of %zu", size, asked);
+    own->blocks--;
+    free((char *)memory - HEADER);
+}
+
+static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
+{
+    const int count = fuzz_below(from, MOST + 1), flags = fuzz_byte(from);
+    const sphg_geometry geometry = {.sources = sphg_view_f32(own->x, own->scheme.dimension * 4),
+                                    .source_count = count,
+                                    .target_count = flags & 1 ? count : count / 2,
+                                    .list_free = (flags & 2) != 0,
+                                    .skin = flags & 4 ? .25 : 0,
+                                    .period = {flags & 8 ? 40 : 0}};
+    const sphg_lists lists = {.offsets = own->offsets, .indices = own->indices};
+    for (int k = 0; k < count * 3; k++)
+        own->x[k] = (float)fuzz_tame(from);
+    if (!(flags & 16))
+        return sphg_neighbors_search(own->context, object, &own->scheme, &geometry);
+    for (int i = 0; i <= MOST; i++)
+        own->offsets[i] = (int64_t)i * count;
+    for (int k = 0; k < MOST * MOST; k++)
+        own->indices[k] = count ? k % count : 0;
+    return sphg_neighbors_use_lists(own->context, object, &own->scheme, &geometry, &lists);
+}
+
+static sphg_result operate(world *own, fuzz_bytes *from, const sphg_neighbors *object)
+{
+    const int d = own->scheme.dimension, kind = fuzz_byte(from) % 6;
+    const sphg_sources sources = {.neighbors = object, .volume = sphg_view_f32(own->volume, 4)};
+    const sphg_view field = sphg_view_f32(own->field, 4), out = sphg_view_f32(own->out, d * 4);
+    const sphg_subset subset = {0, fuzz_below(from, MOST + 1), NULL, NULL};
+    const sphg_subset *chosen = fuzz_byte(from) % 2 ? &subset : NULL;
+    if (kind == 0)
+        return sphg_gradient(own->context, &own->scheme, &sources, chosen, field, out);
+    if (kind == 1)
+        return sphg_correction(own->context, &own->scheme, &sources, chosen,
+                               sphg_view_f32(own->out, 64), sphg_view_u8(own->rank, 1));
+    if (kind == 2)
+        return sphg_force(own->context, &own->scheme, &sources, chosen, SPHG_SCALAR, field, out);
+    sphg_pairs pairs = {.offsets = own->offsets, .capacity = fuzz_byte(from)};
+    if (kind == 3)
+        return sphg_pair_gradients(own->context, &own->scheme, &sources, chosen, sphg_absent(),
+                                   &pairs);
+    sphg_sources both[2] = {sources, sources};
+    both[1].neighbors = own->objects[fuzz_byte(from) % OBJECTS];
+    const sphg_view fields[2] = {field, kind == 4 ? field : sphg_absent()};
+    const sphg_field one = {.shape = SPHG_SCALAR, .at_sources = fields, .gradient = out};
+    const sphg_request request = {.sources = both,
+                                  .fields = &one,
+                                  .set_count = 2,
+                                  .field_count = 1,
+                                  .subset = chosen,
+                                  .rank = sphg_view_u8(own->rank, 1)};
+    return sphg_evaluate(own->context, &own->scheme, &request);
+}
+
+static sphg_result question(world *own, fuzz_bytes *from, const sphg_neighbors *object)
+{
+    sphg_neighbors_info info;
+    const sphg_view tensors = sphg_view_f32(own->out, 36);
+    switch (fuzz_byte(from) % 4) {
+    case 0:
+        return sphg_neighbors_get_info(own->context, object, &info);
+    case 1:
+        return sphg_neighbors_get_order(own->context, object, own->order);
+    case 2:
+        return sphg_eigen(own->context, 3, MOST, tensors, sphg_view_f32(own->more, 12),
+                          sphg_absent());
+    default:
+        return sphg_svd(own->context, MOST, tensors, sphg_absent(), sphg_view_f32(own->more, 12),
+                        sphg_absent());
+    }
+}
+
+static sphg_result step(world *own, fuzz_bytes *from)
+{
+    sphg_neighbors **object = &own->objects[fuzz_byte(from) % OBJECTS];
+    switch (fuzz_byte(from) % 8) {
+    case 0:
+        sphg_neighbors_destroy(*object);
+        *object = NULL;
+        return SPHG_OK;
+    case 1:
+        if (*object)
+            return SPHG_OK;
+        return sphg_neighbors_create(own->context, object);
+    case 2:
+        own->scheme.dimension = 2 + fuzz_byte(from) % 2;
+        own->scheme.method = (sphg_method)(fuzz_byte(from) % 6);
+        own->scheme.support_radius = (1 + fuzz_byte(from)) / 16.;
+        return SPHG_OK;
+    case 3:
+    case 4:
+        return search(own, from, *object);
+    case 5:
+        return question(own, from, *object);
+    default:
+        return operate(own, from, *object);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static world own;
+    fuzz_bytes from = {data, size};
+    memset(&own, 0, sizeof own);
+    const sphg_config config = {
+        .threads = 1, .allocate = allocate, .release = release, .user = &own};
+    own.scheme = (sphg_scheme){.dimension = 3, .support_radius = 1};
+    own.fail = fuzz_byte(&from) % 4;
+    if (sphg_context_create(SPHG_VERSION, &config, &own.context) == SPHG_OK)
+        for (int k = 0; k < 40 && from.left; k++) {
+            const int armed = fuzz_byte(&from);
+            own.fail = armed > 128 ? armed % 24 : 0;
+            for (int i = 0; i < MOST; i++)
+                own.volume[i] = 1;
+            const sphg_result result = step(&own, &from);
+            FUZZ_REQUIRE(result >= SPHG_ERROR_MEMORY && result <= SPHG_ERROR_CAPACITY, "%d: %s",
+                         (int)result, sphg_last_message(own.context));
+            FUZZ_REQUIRE(result != SPHG_ERROR_MEMORY || armed > 128, "memory failed by itself");
+        }
+    for (int k = 0; k < OBJECTS; k++)
+        sphg_neighbors_destroy(own.objects[k]);
+    sphg_context_destroy(own.context);
+    FUZZ_REQUIRE(own.blocks == 0, "%ld blocks leaked", own.blocks);
+    return 0;
+}

@@ -1,0 +1,136 @@
+/* Lists of the host, right and wrong: refused, found wrong by the operators, or summed; never read
+ * beyond their ends. Offsets decide how long the indices must be: a copy of just that size. */
+#include "fuzz.h"
+
+enum { MOST = 24, INDICES = 400 };
+
+typedef struct host {
+    sphg_type type;
+    int dimension, count, shape;
+    double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 16];
+    double results[4][MOST * 16];
+    int64_t offsets[MOST + 1];
+    int32_t lengths[MOST], indices[INDICES];
+    const int32_t *rows[MOST];
+    sphg_scheme scheme;
+} host;
+
+static sphg_view numbers(fuzz_bytes *from, const host *on, double *memory, int width, int tame)
+{
+    for (int k = 0; k < on->count * width; k++)
+        fuzz_put(on->type, memory, k, tame ? fuzz_byte(from) / 64. : fuzz_real(from));
+    return fuzz_view(on->type, memory, width);
+}
+
+static void take_lists(fuzz_bytes *from, host *on, sphg_lists *lists)
+{
+    const int kind = fuzz_byte(from), honest = kind & 1;
+    for (int i = 0; i < on->count; i++) {
+        on->lengths[i] = fuzz_below(from, INDICES / MOST);
+        on->offsets[i + 1] = on->offsets[i] + on->lengths[i];
+        if (!honest && fuzz_byte(from) > 250)
+            on->offsets[i + 1] = fuzz_byte(from) - 128;
+        if (!honest && fuzz_byte(from) > 250)
+            on->lengths[i] = -fuzz_byte(from);
+        on->rows[i] = on->indices + i * (INDICES / MOST);
+    }
+    for (int k = 0; k < INDICES; k++) {
+        const int index = fuzz_byte(from);
+        on->indices[k] = on->count ? index % on->count : 0;
+        if (!honest && index > 250)
+            fuzz_take(from, &on->indices[k], sizeof on->indices[k]);
+    }
+    lists->index_mask = kind & 4 ? 0xffff : 0;
+    if (kind & 2) {
+        lists->rows = on->rows;
+        lists->lengths = on->lengths;
+    } else {
+        lists->offsets = on->offsets;
+        lists->indices = on->indices;
+    }
+}
+
+/* The indices at the end of a block of their own: reading on is seen by the sanitizer. */
+static int32_t *moved_to_the_end(host *on, sphg_lists *lists)
+{
+    const int64_t used = lists->offsets ? on->offsets[on->count] : 0;
+    int monotone = lists->offsets != NULL && used >= 0 && used <= INDICES;
+    for (int i = 0; i < on->count && monotone; i++)
+        monotone = on->offsets[i] <= on->offsets[i + 1];
+    if (!monotone)
+        return NULL;
+    int32_t *copy = malloc((size_t)used * sizeof *copy + 1);
+    memcpy(copy, on->indices, (size_t)used * sizeof *copy);
+    lists->indices = copy;
+    return copy;
+}
+
+static sphg_result evaluate(fuzz_bytes *from, host *on, const sphg_neighbors *neighbors)
+{
+    const int d = on->dimension, width = sphg_correction_width(&on->scheme);
+    const int form = fuzz_byte(from) % 4, tame = fuzz_byte(from) % 2;
+    on->shape = 1 + fuzz_byte(from) % 4;
+    const int item = on->shape == 1   ? 1
+                     : on->shape == 2 ? d
+                     : on->shape == 3 ? d * (d + 1) / 2
+                                      : d * d;
+    const sphg_view at_sources = numbers(from, on, on->field, item, tame);
+    sphg_sources sources = {.neighbors = neighbors};
+    sources.volume = numbers(from, on, on->volume, 1, fuzz_byte(from) % 4);
+    sources.density = numbers(from, on, on->density, 1, tame);
+    if (width && form > 1)
+        sources.correction = numbers(from, on, on->table, width, tame);
+    sphg_field field = {.shape = (sphg_shape)on->shape,
+                        .form = (sphg_form)form,
+                        .accumulate = fuzz_byte(from) % 2,
+                        .at_sources = &at_sources};
+    if (on->shape < 3)
+        field.gradient = fuzz_view(on->type, on->results[0], on->shape == 1 ? d : d * d);
+    else
+        field.divergence = fuzz_view(on->type, on->results[1], d);
+    if (on->shape == 2)
+        field.curl = fuzz_view(on->type, on->results[2], d == 3 ? 3 : 1);
+    sphg_request request = {
+        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+    if (width && form < 2)
+        request.correction = fuzz_view(on->type, on->results[3], width);
+    return sphg_evaluate(fuzz_context(), &on->scheme, &request);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static host on;
+    static sphg_neighbors *neighbors;
+    fuzz_bytes from = {data, size};
+    sphg_lists lists = {0};
+    if (!neighbors)
+        sphg_neighbors_create(fuzz_context(), &neighbors);
+    memset(&on, 0, sizeof on);
+    const int flags = fuzz_byte(&from);
+    on.type = flags & 1 ? SPHG_F64 : SPHG_F32;
+    on.dimension = flags & 2 ? 3 : 2;
+    on.count = fuzz_below(&from, MOST + 1);
+    on.scheme.dimension = on.dimension;
+    on.scheme.method = (sphg_method)(fuzz_byte(&from) % 6);
+    on.scheme.kernel = (sphg_kernel)(fuzz_byte(&from) % 7);
+    on.scheme.policy = (sphg_policy)(fuzz_byte(&from) % 4);
+    on.scheme.support_radius = (1 + fuzz_byte(&from)) / 16.;
+    const sphg_geometry geometry = {.sources = numbers(&from, &on, on.x, on.dimension, flags & 4),
+                                    .source_count = on.count,
+                                    .target_count = on.count};
+    take_lists(&from, &on, &lists);
+    int32_t *copy = moved_to_the_end(&on, &lists);
+    sphg_result result =
+        sphg_neighbors_use_lists(fuzz_context(), neighbors, &on.scheme, &geometry, &lists);
+    FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
+                     result == SPHG_ERROR_NOT_FINITE,
+                 "%s", sphg_last_message(fuzz_context()));
+    if (!result)
+        result = evaluate(&from, &on, neighbors);
+    FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
+                     result == SPHG_ERROR_NOT_FINITE || result == SPHG_ERROR_INDEX ||
+                     result == SPHG_ERROR_VOLUME,
+                 "%s", sphg_last_message(fuzz_context()));
+    free(copy);
+    return 0;
+}
