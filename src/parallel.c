@@ -47,12 +47,14 @@ static void run_guarded(void *data, int32_t begin, int32_t end, int32_t worker)
     sphgi_floats_leave(before);
 }
 
-/* Executors run in the host's environment: threads that they create inherit it, and keep it. */
+/* Executors run in the host's environment: threads that they create inherit it, and keep it. What a
+ * host's executor does to it stays; the flags that OpenMP's arithmetic raises do not. */
 static void run_by_executor(sphg_context *context, struct guarded *guarded, int32_t count,
                             int32_t grain)
 {
     const sphg_config *config = &context->config;
-    sphgi_floats_leave(context->host_floats);
+    const struct sphgi_floats before = context->host_floats;
+    sphgi_floats_leave(before);
     if (config->parallel_for)
         config->parallel_for(run_guarded, guarded, count, grain, config->user);
 #ifdef SPHG_USE_OPENMP
@@ -60,6 +62,8 @@ static void run_by_executor(sphg_context *context, struct guarded *guarded, int3
         openmp_for(run_guarded, guarded, count, grain, context->threads);
 #endif
     context->host_floats = sphgi_floats_enter();
+    if (!config->parallel_for)
+        context->host_floats = before;
 }
 
 void sphgi_parallel_for(sphg_context *context, sphg_task *task, void *data, int32_t count,

@@ -1,20 +1,14 @@
 /* Whatever rounding mode, flushing of denormals and traps the host has set, on whichever thread:
- * the same bits, no trap, and the host finds its environment, errno, locale, signal handlers and
- * standard streams as they were. */
+ * the same bits, no trap, and the host finds its environment and errno as they were. */
 #include "support/hostile_rows.h"
 #include "support/hooks.h"
 #include "support/pairs.h"
 #include <dlfcn.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <fenv.h>
-#include <locale.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #endif
@@ -301,83 +295,11 @@ static void functions_of_numbers_do_not_depend_on_it(const test_case *test)
     }
 }
 
-/* ---- The rest of the process -------------------------------------------------------------- */
-
-enum { SIGNALS = 32 };
-
-typedef struct reaction {
-    void (*handler)(int number);
-    int flags;
-} reaction;
-
-static void remember_signals(reaction *reactions)
-{
-    for (int k = 1; k < SIGNALS; k++) {
-        struct sigaction action = {0};
-        sigaction(k, NULL, &action);
-        reactions[k].handler = action.sa_handler;
-        reactions[k].flags = action.sa_flags;
-    }
-}
-
-/* What the calls print, valid and refused ones: bytes in a file that stands for both streams. */
-static long printed_by_calls(victim *own)
-{
-    FILE *file = tmpfile();
-    assert_non_null(file);
-    fflush(stdout);
-    const int kept[2] = {dup(1), dup(2)};
-    for (int k = 0; k < 2; k++)
-        dup2(fileno(file), k + 1);
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++) {
-            const probe *tested = &hostile_functions[f].probes[p];
-            trial made;
-            for (int a = 0; tested->call && a < tested->count; a++) {
-                victim_reset(own);
-                if (tested->prepare)
-                    tested->prepare(own);
-                if (hostile_spoil(own, tested, a, 0, &made))
-                    tested->call(own);
-                hostile_restore(&made);
-            }
-        }
-    fflush(stdout);
-    for (int k = 0; k < 2; k++) {
-        dup2(kept[k], k + 1);
-        close(kept[k]);
-    }
-    const long bytes = (long)lseek(fileno(file), 0, SEEK_END);
-    fclose(file);
-    return bytes;
-}
-
-static void calls_leave_the_process_alone(const test_case *test)
-{
-    victim *own = victim_create(test, 0);
-    reaction before[SIGNALS] = {{0}}, after[SIGNALS] = {{0}};
-    sigset_t mask_before, mask_after;
-    const char *locale = test_text("%s", setlocale(LC_ALL, NULL));
-    remember_signals(before);
-    pthread_sigmask(SIG_SETMASK, NULL, &mask_before);
-    errno = 4711;
-    const long printed = printed_by_calls(own);
-    pthread_sigmask(SIG_SETMASK, NULL, &mask_after);
-    remember_signals(after);
-    assert_int_equal(printed, 0);
-    for (int k = 1; k < SIGNALS; k++) {
-        assert_true(before[k].handler == after[k].handler && before[k].flags == after[k].flags);
-        assert_int_equal(sigismember(&mask_before, k), sigismember(&mask_after, k));
-    }
-    assert_string_equal(setlocale(LC_ALL, NULL), locale);
-}
-
 static const test_entry entries[] = {
     TEST_ENTRY(results_do_not_depend_on_the_float_environment, TEST_SINGLE_AND_DOUBLE, TEST_3D,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_CRKPM), 0),
     TEST_ENTRY(fast_math_elsewhere_changes_nothing, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
     TEST_ENTRY(every_function_leaves_the_environment_alone, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
     TEST_ONCE(functions_of_numbers_do_not_depend_on_it),
-    TEST_ENTRY(calls_leave_the_process_alone, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
 };
 TEST_MAIN(entries)
