@@ -382,8 +382,8 @@ static const probe probes_sphg_eigen[] = {PROBE(NULL, call_eigen, of_eigen)};
 static const argument of_svd[] = {
     CONTEXT,
     ROW("count", COUNT, count),
-    VIEW("matrices", tensors, REQUIRED | VECTOR | HOSTILE_LEADING),
-    ROW("matrices", NUMBERS, tensors),
+    VIEW("matrices", squares, REQUIRED | VECTOR | HOSTILE_LEADING),
+    ROW("matrices", NUMBERS, squares),
     VIEW("u", u, OUTPUT | VECTOR),
     VIEW("sigma", sigma, OUTPUT | VECTOR),
     VIEW("v", v, OUTPUT | VECTOR),

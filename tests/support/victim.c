@@ -57,6 +57,7 @@ static void make_inputs(victim *own)
     own->densities = input(own, 1, 0.5, 1.5);
     own->vectors = input(own, d, -1, 1);
     own->tensors = input(own, d * d, -1, 1);
+    own->squares = input(own, 9, -1, 1); /* 3 x 3 in 2D as well */
     own->symmetric = input(own, d * (d + 1) / 2, 0.9, 1.1);
     own->table = input(own, d * (d + 1) / 2, 0.8, 1.2);
     own->target_correction = sphg_absent();

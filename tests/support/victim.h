@@ -45,7 +45,7 @@ typedef struct victim {
     sphg_subset subset;
     sphg_pairs pairs;
     sphg_inversion wanted;
-    sphg_view scalars, vectors, tensors, symmetric, densities, table; /* inputs */
+    sphg_view scalars, vectors, tensors, symmetric, squares, densities, table; /* inputs */
     sphg_view target_correction;
     sphg_view scalar_out, vector_out, tensor_out, table_out, rank_out, lambda_out;
     sphg_view u, sigma, v;

@@ -104,7 +104,7 @@ sphg_result call_eigen(victim *own)
 
 sphg_result call_svd(victim *own)
 {
-    return sphg_svd(own->context, own->count, own->tensors, own->u, own->sigma, own->v);
+    return sphg_svd(own->context, own->count, own->squares, own->u, own->sigma, own->v);
 }
 
 /* ---- Variants of the valid call ----------------------------------------------------------- */
