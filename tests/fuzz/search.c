@@ -142,7 +142,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         compare(&on, offsets, indices);
         for (int k = 0; k < on.sources * on.dimension; k++) {
             const double x = fuzz_get(on.type, memory_of(&on, 0), k);
-            fuzz_put(on.type, memory_of(&on, 0), k, x + fuzz_byte(&from) % 4 / 64.);
+            const double far = on.geometry.skin > 0 ? on.geometry.skin : 1. / 16;
+            fuzz_put(on.type, memory_of(&on, 0), k, x + far * (fuzz_byte(&from) % 9 - 4) / 4);
         }
     }
     return 0;
