@@ -18,13 +18,15 @@ static void stage_stream(struct sphgi_worker *w, const struct sphgi_surroundings
     const sphg_neighbors *n = sweep->set->neighbors;
     const struct sphgi_stream *stream = &sweep->set->streams[number];
     const size_t size = row_size(sweep->plan->type);
-    const char *packed = sweep->packed_rows + (size_t)number * ((size_t)n->source_count + 1) * size;
+    const char *packed = NULL;
+    if (sweep->packed)
+        packed = sweep->packed_rows + (size_t)number * ((size_t)n->source_count + 1) * size;
     w->rows[number] = to;
     memset(to, 0, size);
     to += size;
     for (int32_t r = 0; r < around->ranges; ++r) {
         const size_t count = (size_t)around->count[r];
-        if (sweep->packed)
+        if (packed)
             memcpy(to, packed + (size_t)around->begin[r] * size, count * size);
         else
             w->passes->load_rows(&stream->columns, n->sources.order.data, around->begin[r],
