@@ -39,14 +39,13 @@ sphg_result sphg_correction(sphg_context *context, const sphg_scheme *scheme,
     return evaluate(checker, scheme, &request);
 }
 
-/* In a request an absent field is 0 and an absent result is not wanted; here it is a mistake. */
-static sphg_result refuse_absent(struct sphgi_checker checker, const char *what)
+static sphg_result refuse(struct sphgi_checker checker, const char *what)
 {
     const sphg_result result = sphgi_enter(checker.context);
     if (result)
         return result;
-    return sphgi_leave(checker.context, sphgi_fail(checker.context, SPHG_ERROR_ARGUMENT,
-                                                   "%s: the %s is absent", checker.function, what));
+    return sphgi_leave(checker.context, sphgi_fail(checker.context, SPHG_ERROR_ARGUMENT, "%s: %s",
+                                                   checker.function, what));
 }
 
 /* One field of one source set that holds the targets. */
@@ -55,8 +54,8 @@ static sphg_result evaluate_field(struct sphgi_checker checker, const sphg_schem
                                   const sphg_field *field)
 {
     const bool wants = field->gradient.x || field->divergence.x || field->curl.x;
-    if (!wants || !field->at_sources->x)
-        return refuse_absent(checker, wants ? "field" : "result");
+    if (!wants || !field->at_sources->x) /* in a request absent is 0, or not wanted */
+        return refuse(checker, wants ? "the field is absent" : "the result is absent");
     const sphg_request request = {
         .sources = sources, .fields = field, .set_count = 1, .field_count = 1, .subset = subset};
     return evaluate(checker, scheme, &request);
@@ -102,13 +101,13 @@ sphg_result sphg_force(sphg_context *context, const sphg_scheme *scheme,
                        const sphg_sources *sources, const sphg_subset *subset, sphg_shape shape,
                        sphg_view stress, sphg_view force)
 {
+    const struct sphgi_checker checker = {context, "sphg_force"};
     sphg_field field = {.shape = shape, .form = SPHG_ADJOINT, .at_sources = &stress};
     if (shape == SPHG_SCALAR)
         field.gradient = force;
     else
         field.divergence = force;
-    if (shape == SPHG_VECTOR) /* its divergence would be no vector */
-        field.shape = (sphg_shape)0;
-    return evaluate_field((struct sphgi_checker){context, "sphg_force"}, scheme, sources, subset,
-                          &field);
+    if (shape == SPHG_VECTOR) /* its divergence is no vector */
+        return refuse(checker, "shape is SPHG_VECTOR, must be a scalar or a tensor");
+    return evaluate_field(checker, scheme, sources, subset, &field);
 }

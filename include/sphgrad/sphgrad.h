@@ -276,7 +276,7 @@ typedef struct sphg_neighbors_info {
     double skin_left; /* [L] any particle may move this far before the next rebuild */
 } sphg_neighbors_info;
 
-/* An empty object; its memory is the context's: destroy it first. */
+/* An empty object, NULL on failure; its memory is the context's: destroy it first. */
 SPHG_API sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighbors);
 SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is ignored */
 
