@@ -7,7 +7,7 @@
  */
 void sphgi_evaluate_piece(struct sphgi_worker *worker);
 
-/* A_i, V_i, rho_i of the group, once. Late: their cache lines were asked for when it was filled. */
+/* A_i, V_i, rho_i of the targets at work, once. */
 void sphgi_load_targets(struct sphgi_worker *worker);
 
 /* The targets' values of the field can be read from the packed rows of this set. */

@@ -50,21 +50,11 @@ static bool is_active(const struct sphgi_task *task, int32_t place)
     return !task->selection->active || task->selection->active[place];
 }
 
-/* The next groups' data are asked for while this one is summed. */
-static void prefetch_ahead(const struct sphgi_worker *w, int32_t place)
-{
-    enum { AHEAD = 2 * SPHGI_LANES_MOST };
-    const sphg_neighbors *n = w->sweep->set->neighbors;
-    if (place + AHEAD < n->target_count)
-        sphgi_group_prefetch(w, target_at(n, place + AHEAD));
-}
-
 static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
                       int32_t end, const uint16_t *ids, const uint16_t *lengths)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     for (int32_t t = begin; t < end; ++t, ++lengths) {
-        prefetch_ahead(w, t);
         if (is_active(task, t))
             add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), ids, *lengths, false);
         ids += (*lengths + SPHGI_PAD - 1) & -SPHGI_PAD;

@@ -73,32 +73,12 @@ double sphgi_volume_unit(const struct sphgi_sweep *sweep)
     return sphgi_power(1 / sweep->plan->scheme.radius, sweep->plan->dimension);
 }
 
-/* Both ends of an item: they may lie on two cache lines. */
-static void will_need(struct sphgi_worker *w, const struct sphgi_columns *columns)
-{
-    if (!columns->count || !columns->stride || w->asks + 2 > SPHGI_ASKS_MOST)
-        return;
-    w->ask[w->asks++] = (struct sphgi_ask){columns->at[0], columns->stride};
-    if (columns->count > 1)
-        w->ask[w->asks++] = (struct sphgi_ask){columns->at[columns->count - 1], columns->stride};
-}
-
-static void list_needs(struct sphgi_worker *w)
+static void find_targets_in_rows(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    w->asks = 0;
-    will_need(w, &plan->target_correction);
-    will_need(w, &plan->correction);
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        if (k < 32 && sphgi_targets_in_rows(w, field))
+    for (int32_t k = 0; k < plan->field_count && k < 32; ++k)
+        if (sphgi_targets_in_rows(w, &plan->fields[k]))
             w->targets_in_rows |= 1u << k;
-        else
-            will_need(w, &field->target);
-        will_need(w, &field->gradient);
-        will_need(w, &field->divergence);
-        will_need(w, &field->curl);
-    }
 }
 
 /* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
@@ -151,7 +131,7 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     if (!sweep->volumes)
         w->passes->fill(SPHGI_PIECE, sweep->volume, w->arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
-    list_needs(w);
+    find_targets_in_rows(w);
 }
 
 static void empty_piece(struct sphgi_worker *w)

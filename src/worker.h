@@ -57,13 +57,6 @@ struct sphgi_share {
     double mantissa, power[2];
 };
 
-/* Memory of the host that is read or written target by target. */
-enum { SPHGI_ASKS_MOST = 16 };
-struct sphgi_ask {
-    const char *at;
-    ptrdiff_t stride;
-};
-
 struct sphgi_worker {
     const struct sphgi_sweep *sweep;
     const struct sphgi_passes *passes;
@@ -77,19 +70,17 @@ struct sphgi_worker {
                                       many, and how many of those have a target */
     int32_t summed;                /* lanes whose sums are done */
     struct sphgi_share share[2];   /* of the table of corrections */
-    struct sphgi_ask ask[SPHGI_ASKS_MOST];
-    int32_t asks;
-    bool regular;                 /* part k of the piece is lane k, whole */
-    const void **rows;            /* of each stream */
-    unsigned summing;             /* SPHGI_SUM_..., of this pass over the group */
-    bool coefficients_first;      /* they must be known before fields can be summed */
-    bool targets_loaded;          /* A_i, V_i, rho_i of the group */
-    uint32_t targets_in_rows;     /* a bit per field: A_i stand in packed rows */
-    int32_t pieces;               /* evaluated since the group began */
-    bool local;                   /* rows are copied pair by pair */
-    const int32_t *items;         /* sources behind the ids; NULL: the ids are their numbers */
-    uint32_t touched;             /* a bit per lane: had a pair in this round */
-    int64_t written[SPHGI_WIDTH]; /* pairs of each target so far */
+    bool regular;                  /* part k of the piece is lane k, whole */
+    const void **rows;             /* of each stream */
+    unsigned summing;              /* SPHGI_SUM_..., of this pass over the group */
+    bool coefficients_first;       /* they must be known before fields can be summed */
+    bool targets_loaded;           /* A_i, V_i, rho_i of the group */
+    uint32_t targets_in_rows;      /* a bit per field: A_i stand in packed rows */
+    int32_t pieces;                /* evaluated since the group began */
+    bool local;                    /* rows are copied pair by pair */
+    const int32_t *items;          /* sources behind the ids; NULL: the ids are their numbers */
+    uint32_t touched;              /* a bit per lane: had a pair in this round */
+    int64_t written[SPHGI_WIDTH];  /* pairs of each target so far */
 
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
@@ -118,13 +109,6 @@ void sphgi_group_run(struct sphgi_worker *worker, bool wide);
 
 /* Writes the results; the group is empty again. */
 void sphgi_group_finish(struct sphgi_worker *worker);
-
-/* Asks for the cache lines that a target will need. */
-static inline void sphgi_group_prefetch(const struct sphgi_worker *worker, int32_t target)
-{
-    for (int32_t k = 0; k < worker->asks; ++k)
-        __builtin_prefetch(worker->ask[k].at + target * worker->ask[k].stride);
-}
 
 /* The same for a group whose sums stand in the arena already. */
 void sphgi_group_finish_from_arena(struct sphgi_worker *worker);
