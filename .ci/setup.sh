@@ -1,4 +1,4 @@
-# Shared by bench/run and tests/run (sourced by bash): packages, and builds that are quiet unless
+# Shared by bench/run, examples/run and tests/run (sourced by bash): packages, and builds that are quiet unless
 # they fail or warn. A need is met if its probe works, from whichever package that came.
 
 probe_compiler() {
@@ -16,6 +16,8 @@ probe_pkg_config() { command -v pkg-config >/dev/null; }
 probe_cmocka() { pkg-config --exists cmocka 2>/dev/null; }
 probe_lapacke() { pkg-config --exists lapacke 2>/dev/null; }
 probe_cjson() { pkg-config --exists libcjson 2>/dev/null; }
+# Particles that the examples write for ParaView.
+probe_hdf5() { pkg-config --exists hdf5 2>/dev/null || pkg-config --exists hdf5-serial 2>/dev/null; }
 probe_gnuplot() { gnuplot -e 'set terminal pngcairo' >/dev/null 2>&1; }
 probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
 probe_clang_openmp() { probe_compiler clang c -fopenmp; }
@@ -28,6 +30,7 @@ package_of() {
         cmocka) echo libcmocka-dev ;;
         lapacke) echo liblapacke-dev ;;
         cjson) echo libcjson-dev ;;
+        hdf5) echo libhdf5-dev ;;
         gnuplot) echo gnuplot-nox ;;
         clang) echo clang ;;
         clang_openmp) echo libomp-dev ;;

@@ -1,0 +1,26 @@
+/* The command line that all scenes share. */
+#ifndef SOLVER_OPTIONS_H
+#define SOLVER_OPTIONS_H
+#include <stdbool.h>
+#include <stdint.h>
+
+enum {
+    METHOD_COUNT = 4 /* sph, kgc, mls, rkpm */
+};
+enum method { SPH, KGC, MLS, RKPM };
+extern const char *const method_names[METHOD_COUNT];
+
+struct options {
+    const char *scene;
+    const char *output; /* a directory that exists; NULL: nothing is written */
+    int32_t threads;    /* 0: the library's default */
+    uint64_t seed;
+    enum method method; /* runs beside SPH; SPH: runs alone */
+    bool method_given;
+    bool full;
+    bool check;
+};
+
+/* Ends the program on a bad option (status 2) and after --help. */
+struct options options_read(const char *scene, const char *about, int argc, char **argv);
+#endif

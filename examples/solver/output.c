@@ -1,0 +1,63 @@
+#include "output.h"
+#include "vtkhdf.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_LENGTH = 4096 };
+
+static void fail(const char *path)
+{
+    fprintf(stderr, "cannot write %s: %s\n", path, strerror(errno));
+    exit(EXIT_FAILURE);
+}
+
+static void make_path(char path[PATH_LENGTH], const struct run *run, const char *end)
+{
+    const int length = snprintf(path, PATH_LENGTH, "%s/%s_%s_%s", run->options->output,
+                                run->options->scene, method_names[run->method], end);
+    if (length >= PATH_LENGTH) {
+        errno = ENAMETOOLONG;
+        fail(run->options->output);
+    }
+}
+
+void output_explain(void)
+{
+    if (!vtkhdf_is_there())
+        fprintf(stderr, "built without HDF5: no particles for ParaView\n");
+}
+
+FILE *output_open(const struct run *run, const char *label)
+{
+    char path[PATH_LENGTH], end[64];
+    if (!run->options->output)
+        return NULL;
+    snprintf(end, sizeof end, "%s.dat", label);
+    make_path(path, run, end);
+    FILE *file = fopen(path, "w");
+    if (!file)
+        fail(path);
+    return file;
+}
+
+void output_close(FILE *file)
+{
+    if (file && (ferror(file) | fclose(file)) != 0)
+        fail("a table");
+}
+
+void output_particles(const struct run *run, int32_t frame, int32_t count, vector *x,
+                      const struct output_field *fields)
+{
+    char path[PATH_LENGTH], end[64];
+    if (!run->options->output || !vtkhdf_is_there())
+        return;
+    snprintf(end, sizeof end, "%04d.vtkhdf", (int)frame);
+    make_path(path, run, end);
+    if (!vtkhdf_write(path, count, x, fields)) {
+        fprintf(stderr, "cannot write %s\n", path);
+        exit(EXIT_FAILURE);
+    }
+}

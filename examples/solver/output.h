@@ -1,0 +1,26 @@
+/* Files that a run leaves in its output directory: SCENE_METHOD_LABEL.dat for gnuplot, and
+ * SCENE_METHOD_0001.vtkhdf for ParaView. Without a directory all calls do nothing. */
+#ifndef SOLVER_OUTPUT_H
+#define SOLVER_OUTPUT_H
+#include "scene.h"
+
+#include <stdio.h>
+
+/* Says on stderr which kinds of output this build has to skip. */
+void output_explain(void);
+
+/* A text table, or NULL. */
+FILE *output_open(const struct run *run, const char *label);
+void output_close(FILE *file);
+
+/* One value per particle beside its place; dimension 1: a scalar, 3: a vector. */
+struct output_field {
+    const char *name;
+    const double *values;
+    int32_t dimension;
+};
+
+/* Particles as the numbered file `frame`; the table of fields ends with a name of NULL. */
+void output_particles(const struct run *run, int32_t frame, int32_t count, vector *x,
+                      const struct output_field *fields);
+#endif

@@ -1,0 +1,96 @@
+#define _POSIX_C_SOURCE 200809L /* fork, chdir */
+#include "picture.h"
+#include "arrays.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum {
+    STATUS_NO_PROGRAM = 127 /* as in the shell */
+};
+
+struct picture picture_open(const char *directory, const char *name)
+{
+    char path[4096];
+    struct picture picture = {directory, name, NULL};
+    if (snprintf(path, sizeof path, "%s/%s.gp", directory, name) < (int)sizeof path)
+        picture.script = fopen(path, "w");
+    if (!picture.script) {
+        fprintf(stderr, "cannot write %s/%s.gp: %s\n", directory, name, strerror(errno));
+        exit(EXIT_FAILURE);
+    }
+    return picture;
+}
+
+/* Viridis (van der Walt, Smith 2015, matplotlib, CC0): the colour-blind see it, too. */
+void picture_begin(const struct picture *picture, int width, int height, int rows, int columns)
+{
+    fprintf(picture->script,
+            "set terminal pngcairo size %d,%d font 'sans,11'\n"
+            "set output '%s.png'\n"
+            "set palette defined (0 '#440154', 1 '#482878', 2 '#3e4a89', 3 '#31688e', "
+            "4 '#26828e', 5 '#1f9e89', 6 '#35b779', 7 '#6dcd59', 8 '#b4de2c', 9 '#fde725')\n"
+            "set style fill solid\n"
+            "unset key\n"
+            "set multiplot layout %d,%d\n",
+            width, height, picture->name, rows, columns);
+}
+
+static void become_gnuplot(const struct picture *picture)
+{
+    char script[256];
+    snprintf(script, sizeof script, "%s.gp", picture->name);
+    if (chdir(picture->directory) == 0)
+        execlp("gnuplot", "gnuplot", script, (char *)NULL);
+    _exit(STATUS_NO_PROGRAM);
+}
+
+void picture_close(const struct picture *picture)
+{
+    int status = -1;
+    if (fclose(picture->script) != 0)
+        fprintf(stderr, "cannot write %s.gp: %s\n", picture->name, strerror(errno));
+    fflush(NULL); /* or the child would print buffered text again */
+    const pid_t child = fork();
+    if (child == 0)
+        become_gnuplot(picture);
+    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status))
+        fprintf(stderr, "cannot run gnuplot: %s\n", strerror(errno));
+    else if (WEXITSTATUS(status) == STATUS_NO_PROGRAM)
+        fprintf(stderr, "no gnuplot here, so no picture; the tables are written\n");
+    else if (WEXITSTATUS(status) != 0)
+        fprintf(stderr, "gnuplot failed on %s/%s.gp\n", picture->directory, picture->name);
+}
+
+struct seen {
+    double right, up, near, colour;
+};
+
+static int farther_first(const void *a, const void *b)
+{
+    const struct seen *first = a, *second = b;
+    return (first->near > second->near) - (first->near < second->near);
+}
+
+void picture_project(FILE *table, const double eye[3], int count, double (*x)[3],
+                     const double *colour)
+{
+    const double flat = hypot(eye[0], eye[1]), length = hypot(flat, eye[2]);
+    const vector toward = {eye[0] / length, eye[1] / length, eye[2] / length};
+    const vector right = {-eye[1] / flat, eye[0] / flat, 0};
+    vector up;
+    if (!table)
+        return;
+    cross(toward, right, up);
+    struct seen *seen = array_new(count, sizeof *seen);
+    for (int i = 0; i < count; i++)
+        seen[i] = (struct seen){dot(x[i], right), dot(x[i], up), dot(x[i], toward), colour[i]};
+    qsort(seen, (size_t)count, sizeof *seen, farther_first);
+    for (int i = 0; i < count; i++)
+        fprintf(table, "%.5g %.5g %.5g\n", seen[i].right, seen[i].up, seen[i].colour);
+    free(seen);
+}

@@ -1,0 +1,209 @@
+#include "pressure.h"
+#include "stopwatch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FEWEST_ITERATIONS = 2 };
+
+/* Compression of a particle that shall feel no pressure: no displacement makes up for it. */
+static const double never_compressed = -1e3;
+
+/* The divergence of fewer neighbours says more about the surface than about compression. */
+static int32_t fewest_neighbors(const struct sph *sph)
+{
+    return sph->plain.dimension == 2 ? 7 : 20;
+}
+
+struct pressure pressure_new(const struct sph *sph, struct contact *contact, int32_t capacity)
+{
+    struct pressure made = {.relaxation = 0.5,
+                            .rate_error = 1e-3,
+                            .density_error = 1e-4,
+                            .most_iterations = 100,
+                            .sph = sph,
+                            .contact = contact,
+                            .neighbors = sph_neighbors(sph),
+                            .pairs = pairs_new(capacity)};
+    made.compression = array_new(capacity, sizeof *made.compression);
+    made.slope = array_new(capacity, sizeof *made.slope);
+    made.inverse_diagonal = array_new(capacity, sizeof *made.inverse_diagonal);
+    made.potential = array_new(capacity, sizeof *made.potential);
+    made.stress = array_new(capacity, sizeof *made.stress);
+    made.source = array_new(capacity, sizeof *made.source);
+    made.change = array_new(capacity, sizeof *made.change);
+    made.displacement = array_new(capacity, sizeof *made.displacement);
+    return made;
+}
+
+void pressure_free(struct pressure *pressure)
+{
+    sphg_neighbors_destroy(pressure->neighbors);
+    pairs_free(&pressure->pairs);
+    free(pressure->compression);
+    free(pressure->slope);
+    free(pressure->inverse_diagonal);
+    free(pressure->potential);
+    free(pressure->stress);
+    free(pressure->source);
+    free(pressure->change);
+    free(pressure->displacement);
+}
+
+static sphg_sources sources_of(const struct pressure *pressure, const struct particles *fluid)
+{
+    const sphg_sources sources = {.neighbors = pressure->neighbors,
+                                  .volume = everywhere(&fluid->rest_volume)};
+    return sources;
+}
+
+/* Compression sum V W and its slope sum V grad W, of fluid and wall. */
+static void sum_compression(struct pressure *pressure, const struct particles *fluid)
+{
+    const double one = 1;
+    const sphg_view ones = everywhere(&one);
+    const sphg_sources sources = sources_of(pressure, fluid);
+    const struct contact *contact = pressure->contact;
+    sphg_field field = direct_field(SPHG_SCALAR, &ones);
+    field.value = scalars(pressure->compression);
+    field.gradient = vectors(pressure->slope);
+    sph_evaluate(pressure->sph, &pressure->sph->plain, &sources, sphg_absent(), 1, &field);
+    for (int32_t i = 0; contact && i < fluid->count; i++) {
+        pressure->compression[i] += contact->filling[i];
+        add_scaled(pressure->slope[i], 1, contact->slope[i]);
+    }
+}
+
+/* How much compression a unit of potential takes from its own particle: by moving that, and by
+ * moving its neighbours, of other density perhaps. */
+static double diagonal(const struct pressure *pressure, const struct particles *fluid, int32_t i)
+{
+    const struct pairs *pairs = &pressure->pairs;
+    double sum = dot(pressure->slope[i], pressure->slope[i]);
+    for (int64_t k = pairs->offsets[i]; k < pairs->offsets[i + 1]; k++) {
+        const double ratio = fluid->rest_density[i] / fluid->rest_density[pairs->indices[k]];
+        sum += ratio * dot(pairs->gradient[k], pairs->gradient[k]);
+    }
+    return sum;
+}
+
+void pressure_prepare(struct pressure *pressure, struct particles *fluid)
+{
+    const double support_radius = pressure->sph->plain.support_radius;
+    const double least = 1e-8 / (support_radius * support_radius); /* a lone particle: no wall */
+    const sphg_sources sources = sources_of(pressure, fluid);
+    sph_search(pressure->sph, pressure->neighbors, fluid->count, fluid->x);
+    if (pressure->contact)
+        contact_update(pressure->sph, pressure->contact, fluid);
+    const double start = stopwatch_now();
+    sum_compression(pressure, fluid);
+    pairs_update(pressure->sph, &sources, &pressure->pairs);
+    for (int32_t i = 0; i < fluid->count; i++) {
+        const double sum = diagonal(pressure, fluid, i);
+        pressure->inverse_diagonal[i] = sum > least ? 1 / sum : 0;
+        fluid->density[i] = fluid->rest_density[i] * pressure->compression[i];
+        fluid->volume[i] = fluid->mass[i] / fluid->density[i];
+    }
+    pressure->sph->spent[PRESSURE] += stopwatch_now() - start;
+}
+
+/* change = d compression / dt where particles move with u, and walls with theirs or not at all. */
+static void compression_rate(struct pressure *pressure, const struct particles *fluid, vector *u,
+                             bool walls_move)
+{
+    const struct contact *contact = pressure->contact;
+    const sphg_sources sources = sources_of(pressure, fluid);
+    sph_check(pressure->sph,
+              sphg_divergence(pressure->sph->context, &pressure->sph->plain, &sources, NULL,
+                              vectors(u), scalars(pressure->change)));
+    for (int32_t i = 0; i < fluid->count; i++) {
+        pressure->change[i] = -pressure->change[i];
+        if (contact)
+            pressure->change[i] +=
+                dot(u[i], contact->slope[i]) - (walls_move ? contact->approach[i] : 0);
+    }
+}
+
+/* Where the potential moves the particles. The adjoint of the divergence above, so it keeps the
+ * fluid's momentum; stress in units of density, since what one particle of a pair gains in momentum
+ * the other one loses. */
+static void displace(struct pressure *pressure, const struct particles *fluid)
+{
+    const sphg_sources sources = sources_of(pressure, fluid);
+    for (int32_t i = 0; i < fluid->count; i++)
+        pressure->stress[i] = fluid->rest_density[i] * pressure->potential[i];
+    sph_check(pressure->sph,
+              sphg_force(pressure->sph->context, &pressure->sph->plain, &sources, NULL, SPHG_SCALAR,
+                         scalars(pressure->stress), vectors(pressure->displacement)));
+    for (int32_t i = 0; i < fluid->count; i++) {
+        for (int k = 0; k < 3; k++)
+            pressure->displacement[i][k] /= -fluid->mass[i];
+        if (pressure->contact)
+            add_scaled(pressure->displacement[i], -pressure->potential[i],
+                       pressure->contact->slope[i]);
+    }
+}
+
+/* One Jacobi step towards source + change = 0, without pulling. Returns the mean compression left
+ * before it. */
+static double relax(struct pressure *pressure, const struct particles *fluid)
+{
+    double left = 0;
+    displace(pressure, fluid);
+    compression_rate(pressure, fluid, pressure->displacement, false);
+    for (int32_t i = 0; i < fluid->count; i++) {
+        const double residual = pressure->source[i] + pressure->change[i];
+        const double step = pressure->relaxation * residual * pressure->inverse_diagonal[i];
+        pressure->potential[i] = fmax(0, pressure->potential[i] + step);
+        left += fmax(0, residual);
+    }
+    return left / fluid->count;
+}
+
+static int32_t solve(struct pressure *pressure, struct particles *fluid, double dt, double error)
+{
+    int32_t iterations = 0;
+    memset(pressure->potential, 0, (size_t)fluid->count * sizeof *pressure->potential);
+    for (int32_t i = 0; i < fluid->count; i++)
+        pressure->potential[i] =
+            pressure->relaxation * fmax(0, pressure->source[i]) * pressure->inverse_diagonal[i];
+    while (iterations < pressure->most_iterations) {
+        const double left = relax(pressure, fluid);
+        if (++iterations >= FEWEST_ITERATIONS && left < error)
+            break;
+    }
+    displace(pressure, fluid);
+    for (int32_t i = 0; i < fluid->count; i++)
+        add_scaled(fluid->v[i], 1 / dt, pressure->displacement[i]);
+    return iterations;
+}
+
+static int32_t count_neighbors(const struct pressure *pressure, int32_t i)
+{
+    const int64_t *offsets = pressure->pairs.offsets;
+    return (int32_t)(offsets[i + 1] - offsets[i]) +
+           (pressure->contact ? pressure->contact->touching[i] : 0);
+}
+
+void pressure_stop_compression(struct pressure *pressure, struct particles *fluid, double dt)
+{
+    const double start = stopwatch_now();
+    compression_rate(pressure, fluid, fluid->v, true);
+    for (int32_t i = 0; i < fluid->count; i++)
+        pressure->source[i] = count_neighbors(pressure, i) < fewest_neighbors(pressure->sph)
+                                  ? never_compressed
+                                  : fmax(0, dt * pressure->change[i]);
+    pressure->rate_iterations += solve(pressure, fluid, dt, pressure->rate_error);
+    pressure->sph->spent[PRESSURE] += stopwatch_now() - start;
+}
+
+void pressure_keep_density(struct pressure *pressure, struct particles *fluid, double dt)
+{
+    const double start = stopwatch_now();
+    compression_rate(pressure, fluid, fluid->v, true);
+    for (int32_t i = 0; i < fluid->count; i++)
+        pressure->source[i] = pressure->compression[i] + dt * pressure->change[i] - 1;
+    pressure->density_iterations += solve(pressure, fluid, dt, pressure->density_error);
+    pressure->sph->spent[PRESSURE] += stopwatch_now() - start;
+}

@@ -1,0 +1,9 @@
+/* Particles in the form VTKHDF 1.0, UnstructuredGrid, a vertex per particle: what VTK 9.1
+ * (ParaView 5.11) reads. docs.vtk.org, "VTKHDF file format". */
+#ifndef SOLVER_VTKHDF_H
+#define SOLVER_VTKHDF_H
+#include "output.h"
+
+bool vtkhdf_is_there(void); /* false: built without HDF5 */
+bool vtkhdf_write(const char *path, int32_t count, vector *x, const struct output_field *fields);
+#endif

@@ -1,0 +1,153 @@
+#include "wall.h"
+#include "stopwatch.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Matrices of the wall alone: a particle that sees too little of it for an exact normal (three in a
+ * row, or a plane that it lies in) is better off without correction than with half of one. */
+static sphg_scheme wall_scheme(const struct sph *sph, double threshold)
+{
+    sphg_scheme scheme = sph->corrected;
+    scheme.policy = SPHG_IDENTITY;
+    scheme.threshold = threshold;
+    return scheme;
+}
+
+struct wall wall_new(const struct sph *sph, int32_t count, vector *x)
+{
+    struct wall wall = {.count = count, .x = x};
+    const double one = 1;
+    const sphg_view ones = everywhere(&one);
+    sphg_neighbors *neighbors = sph_neighbors(sph);
+    wall.v = array_new(count, sizeof *wall.v);
+    wall.volume = array_new(count, sizeof *wall.volume);
+    sph_search(sph, neighbors, count, x);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = ones};
+    sphg_field field = direct_field(SPHG_SCALAR, &ones);
+    field.value = scalars(wall.volume);
+    sph_evaluate(sph, &sph->plain, &sources, sphg_absent(), 1, &field);
+    for (int32_t k = 0; k < count; k++)
+        wall.volume[k] = 1 / wall.volume[k];
+    sphg_neighbors_destroy(neighbors);
+    return wall;
+}
+
+void wall_free(struct wall *wall)
+{
+    free(wall->x);
+    free(wall->v);
+    free(wall->volume);
+}
+
+struct contact contact_new(const struct sph *sph, const struct wall *wall, int32_t capacity)
+{
+    struct contact contact = {.wall = wall,
+                              .threshold = 1e-9,
+                              .skin = 0.25 * sph->plain.support_radius,
+                              .neighbors = sph_neighbors(sph)};
+    contact.filling = array_new(capacity, sizeof *contact.filling);
+    contact.slope = array_new(capacity, sizeof *contact.slope);
+    contact.approach = array_new(capacity, sizeof *contact.approach);
+    contact.drag = array_new(capacity, sizeof *contact.drag);
+    contact.touching = array_new(capacity, sizeof *contact.touching);
+    contact.correction = array_new(capacity, 6 * sizeof *contact.correction);
+    contact.target_volume = array_new(1, sizeof *contact.target_volume);
+    contact.offsets = array_new(capacity + 1, sizeof *contact.offsets);
+    return contact;
+}
+
+void contact_free(struct contact *contact)
+{
+    sphg_neighbors_destroy(contact->neighbors);
+    free(contact->filling);
+    free(contact->slope);
+    free(contact->approach);
+    free(contact->drag);
+    free(contact->touching);
+    free(contact->correction);
+    free(contact->target_volume);
+    free(contact->offsets);
+}
+
+static void find_pairs(const struct sph *sph, struct contact *contact,
+                       const struct particles *fluid)
+{
+    const sphg_geometry geometry = {.sources = vectors(contact->wall->x),
+                                    .source_count = contact->wall->count,
+                                    .targets = vectors(fluid->x),
+                                    .target_count = fluid->count,
+                                    .skin = contact->skin};
+    const double start = stopwatch_now();
+    sph_check(sph, sphg_neighbors_search(sph->context, contact->neighbors, &sph->plain, &geometry));
+    sph->spent[SEARCH] += stopwatch_now() - start;
+}
+
+static void compute_matrices(const struct sph *sph, const sphg_scheme *scheme,
+                             struct contact *contact, const sphg_sources *sources)
+{
+    const sphg_request request = {
+        .sources = sources,
+        .set_count = 1,
+        .target_volume = everywhere(contact->target_volume),
+        .correction = sphg_view_f64(contact->correction, 6 * sizeof *contact->correction)};
+    const double start = stopwatch_now();
+    sph_check(sph, sphg_evaluate(sph->context, scheme, &request));
+    sph->spent[WALL_MATRICES] += stopwatch_now() - start;
+}
+
+static void sum(const struct sph *sph, const sphg_scheme *scheme, struct contact *contact,
+                const sphg_sources *sources)
+{
+    const double one = 1;
+    const sphg_view ones = everywhere(&one), v = vectors(contact->wall->v);
+    sphg_field fields[2] = {direct_field(SPHG_SCALAR, &ones), direct_field(SPHG_VECTOR, &v)};
+    sphg_request request = {.sources = sources,
+                            .set_count = 1,
+                            .fields = fields,
+                            .field_count = 2,
+                            .target_volume = everywhere(contact->target_volume)};
+    fields[0].value = scalars(contact->filling);
+    fields[0].gradient = vectors(contact->slope);
+    fields[1].value = vectors(contact->drag);
+    fields[1].divergence = scalars(contact->approach);
+    if (scheme->method != SPHG_PLAIN)
+        request.target_correction =
+            sphg_view_f64(contact->correction, 6 * sizeof *contact->correction);
+    sph_check(sph, sphg_evaluate(sph->context, scheme, &request));
+}
+
+static void count_pairs(const struct sph *sph, struct contact *contact, const sphg_sources *sources,
+                        int32_t count)
+{
+    sphg_pairs pairs = {.offsets = contact->offsets};
+    sph_check(sph,
+              sphg_pair_gradients(sph->context, &sph->plain, sources, NULL, sphg_absent(), &pairs));
+    for (int32_t i = 0; i < count; i++)
+        contact->touching[i] = (int32_t)(contact->offsets[i + 1] - contact->offsets[i]);
+}
+
+void contact_update(const struct sph *sph, struct contact *contact, const struct particles *fluid)
+{
+    const sphg_scheme scheme = wall_scheme(sph, contact->threshold);
+    const sphg_sources sources = {.neighbors = contact->neighbors,
+                                  .volume = scalars(contact->wall->volume)};
+    *contact->target_volume = fluid->rest_volume;
+    find_pairs(sph, contact, fluid);
+    if (scheme.method != SPHG_PLAIN)
+        compute_matrices(sph, &scheme, contact, &sources);
+    sum(sph, &scheme, contact, &sources);
+    count_pairs(sph, contact, &sources, fluid->count);
+}
+
+void contact_friction(const struct contact *contact, double strength, struct particles *fluid)
+{
+    for (int32_t i = 0; i < fluid->count; i++) {
+        const double share = strength * fluid->rest_density[i] / fluid->density[i];
+        const double most = fmin(1, share * contact->filling[i]);
+        const double scale = contact->filling[i] > 0 ? most / contact->filling[i] : 0;
+        const double held[3] = {fluid->v[i][0], fluid->v[i][1], fluid->v[i][2]};
+        add_scaled(fluid->v[i], scale, contact->drag[i]);
+        add_scaled(fluid->v[i], -scale * contact->filling[i], held);
+    }
+}
