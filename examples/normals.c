@@ -254,7 +254,7 @@ int main(int argc, char **argv)
                                         {"distance_error", EACH_CORRECTED, AT_MOST, 1e-9},
                                         {"beside_fluid_max_degrees", EACH_CORRECTED, AT_MOST, 1e-6},
                                         {"sphere_mean_degrees", EACH_CORRECTED, SHARE_OF_SPH, 0.5},
-                                        {NULL}};
+                                        {0}};
     static const struct scene scene = {
         "normals", "Boundary normals above irregular walls.", simulate, draw, gates, true};
     return scene_main(&scene, argc, argv);

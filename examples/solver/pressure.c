@@ -21,6 +21,7 @@ struct pressure pressure_new(const struct sph *sph, struct contact *contact, int
     struct pressure made = {.relaxation = 0.5,
                             .rate_error = 1e-3,
                             .density_error = 1e-4,
+                            .fewest_iterations = 2,
                             .most_iterations = 100,
                             .sph = sph,
                             .contact = contact,
@@ -170,7 +171,7 @@ static int32_t solve(struct pressure *pressure, struct particles *fluid, double 
             pressure->relaxation * fmax(0, pressure->source[i]) * pressure->inverse_diagonal[i];
     while (iterations < pressure->most_iterations) {
         const double left = relax(pressure, fluid);
-        if (++iterations >= FEWEST_ITERATIONS && left < error)
+        if (++iterations >= pressure->fewest_iterations && left < error)
             break;
     }
     displace(pressure, fluid);
