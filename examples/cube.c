@@ -106,7 +106,7 @@ static void write_cube(const struct run *run, const struct particles *cube, int3
 static void spin(const struct run *run, const struct sph *sph, double turns)
 {
     struct particles cube = make_cube(run);
-    struct operators operators = operators_new(sph, cube.count);
+    struct operators operators = operators_new(sph, NULL, cube.count);
     struct viscosity viscosity = viscosity_new(&operators, cube.count);
     vector *start = array_new(cube.count, sizeof *start);
     const struct state before = state_of(&cube);
@@ -140,7 +140,7 @@ static void spin(const struct run *run, const struct sph *sph, double turns)
 static void calm(const struct run *run, const struct sph *sph)
 {
     struct particles cube = make_cube(run);
-    struct operators operators = operators_new(sph, cube.count);
+    struct operators operators = operators_new(sph, NULL, cube.count);
     struct viscosity viscosity = viscosity_new(&operators, cube.count);
     struct random random = {run->options->seed + 1};
     double gained = 0, lost = 0;

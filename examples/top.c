@@ -24,16 +24,16 @@ static double profile(double z)
     return z > -half_height ? disc : disc + 1.2 * (z + half_height);
 }
 
-static double spacing_of(const struct run *run)
+static double spacing_of(bool full)
 {
-    return run->options->full ? 0.02 : 0.05;
+    return full ? 0.02 : 0.05;
 }
 
 /* A jittered lattice within the profile. */
 static struct particles make_top(const struct run *run)
 {
     struct random random = {run->options->seed};
-    const double spacing = spacing_of(run);
+    const double spacing = spacing_of(run->options->full);
     const int32_t side = 2 * (int32_t)(0.3 / spacing) + 1, sides[3] = {side, side, side};
     struct particles block = particles_block(sides, spacing, 0.15, density, &random);
     int32_t count = 0;
@@ -130,7 +130,7 @@ static double spin(const struct run *run, const struct sph *sph, bool implicit)
     struct particles top = make_top(run);
     struct elasticity elasticity = elasticity_new(sph, &top, young, poisson);
     vector *force = array_new(top.count, sizeof *force), before, now;
-    const double dt = implicit ? implicit_step : explicit_step * spacing_of(run);
+    const double dt = implicit ? implicit_step : explicit_step * spacing_of(run->options->full);
     const int32_t steps = (int32_t)(6.283185307179586 * turns / turning / dt);
     FILE *series = implicit ? output_open(run, "momentum") : NULL;
     set_spinning(&top);
@@ -160,7 +160,8 @@ static double spin(const struct run *run, const struct sph *sph, bool implicit)
 
 static void simulate(const struct run *run)
 {
-    struct sph sph = run_open(run, 3, 2 * spacing_of(run), run->options->full ? 6000 : 400);
+    struct sph sph =
+        run_open(run, 3, 2 * spacing_of(run->options->full), run->options->full ? 6000 : 400);
     rigid_rotation(run, &sph);
     metrics_set(run->metrics, "implicit_loss", spin(run, &sph, true));
     metrics_set(run->metrics, "explicit_loss", fabs(spin(run, &sph, false)));
@@ -177,10 +178,9 @@ static void draw(const struct picture *picture, const char *const methods[2])
     for (int k = 0; k < 2; k++)
         fprintf(script,
                 "set title '%s: after the time of five turns'\n"
-                "plot 'top_%s_top.dat' using 1:2:(0.025) with circles lc rgb '#333333', "
-                "'' using 1:2:(0.025):3 with circles lc palette "
+                "plot 'top_%s_top.dat' using 1:2:(%g):3 with circles lc palette "
                 "fillstyle solid border lc rgb '#333333'\n",
-                methods[k], methods[k]);
+                methods[k], methods[k], 0.5 * spacing_of(picture->full));
     fprintf(script,
             "set size noratio\nset xtics\nset ytics\nset border\nset offsets 0, 0, 0, 0\n"
             "set key bottom left\nset title 'implicit steps'\nset xlabel 'time [s]'\n"

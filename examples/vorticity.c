@@ -117,7 +117,7 @@ static void write_layer(const struct run *run, const struct particles *block, ve
 /* Spin in a fluid that is held in rigid rotation for 2 s. */
 static void held_rotation(const struct run *run, const struct sph *sph, struct particles *block)
 {
-    struct operators operators = operators_new(sph, block->count);
+    struct operators operators = operators_new(sph, NULL, block->count);
     vector *curl = array_new(block->count, sizeof *curl),
            *spin = array_new(block->count, sizeof *spin);
     rotate(block);
@@ -171,7 +171,7 @@ static void couple(const struct sph *sph, const struct operators *operators,
 /* A block at rest whose particles spin sets itself in motion; nothing acts from outside. */
 static void free_block(const struct run *run, const struct sph *sph, struct particles *block)
 {
-    struct operators operators = operators_new(sph, block->count);
+    struct operators operators = operators_new(sph, NULL, block->count);
     vector *spin = array_new(block->count, sizeof *spin),
            *work = array_new(block->count, sizeof *work);
     tensor *stress = array_new(block->count, sizeof *stress);

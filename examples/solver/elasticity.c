@@ -10,8 +10,9 @@ struct elasticity elasticity_new(const struct sph *sph, struct particles *body, 
                                  double poisson)
 {
     const int32_t count = body->count;
-    struct elasticity made = {
-        .tolerance = 1e-4, .rest = operators_new(sph, count), .rotations = rotations_new(count)};
+    struct elasticity made = {.tolerance = 1e-4,
+                              .rest = operators_new(sph, NULL, count),
+                              .rotations = rotations_new(count)};
     made.shear = young / (2 * (1 + poisson));
     made.lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
     made.deformation = array_new(count, sizeof *made.deformation);

@@ -4,7 +4,15 @@
 #include "arrays.h"
 
 /* Where the time of a step goes. */
-enum account { SEARCH, FLUID_MATRICES, WALL_MATRICES, PRESSURE, FORCES, ACCOUNT_COUNT };
+enum account {
+    SEARCH,
+    FLUID_MATRICES,
+    WALL_MATRICES,
+    PRESSURE,
+    FORCES,
+    MEASURING, /* what would not be done but for this account */
+    ACCOUNT_COUNT
+};
 
 /* What every part of the solver is given. Densities and the pressure among fluid particles are
  * plain SPH throughout; `corrected` is the method that a run is about, which may be plain, too. */

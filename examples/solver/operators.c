@@ -8,12 +8,14 @@ enum {
     WIDTH = 6 /* of a row of corrections, in 2D more than needed */
 };
 
-struct operators operators_new(const struct sph *sph, int32_t capacity)
+struct operators operators_new(const struct sph *sph, sphg_neighbors *shared, int32_t capacity)
 {
-    struct operators made = {.sph = sph, .neighbors = sph_neighbors(sph)};
+    struct operators made = {.sph = sph, .shared = shared};
+    if (!shared)
+        made.neighbors = sph_neighbors(sph);
     made.volume = array_new(capacity, sizeof *made.volume);
     made.correction = array_new(capacity, WIDTH * sizeof *made.correction);
-    made.sources.neighbors = made.neighbors;
+    made.sources.neighbors = shared ? shared : made.neighbors;
     made.sources.volume = scalars(made.volume);
     if (sph->corrected.method != SPHG_PLAIN)
         made.sources.correction = sphg_view_f64(made.correction, WIDTH * sizeof *made.correction);
@@ -41,9 +43,15 @@ static void correct(struct operators *operators, const struct particles *particl
     sph->spent[FLUID_MATRICES] += stopwatch_now() - start;
 }
 
+static void search(struct operators *operators, const struct particles *particles)
+{
+    if (operators->neighbors)
+        sph_search(operators->sph, operators->neighbors, particles->count, particles->x);
+}
+
 void operators_update(struct operators *operators, const struct particles *particles)
 {
-    sph_search(operators->sph, operators->neighbors, particles->count, particles->x);
+    search(operators, particles);
     correct(operators, particles);
 }
 
@@ -53,7 +61,8 @@ static void sum_density(const struct operators *operators, struct particles *par
     const struct sph *sph = operators->sph;
     const double one = 1;
     const sphg_view mass = scalars(particles->mass);
-    const sphg_sources sources = {.neighbors = operators->neighbors, .volume = everywhere(&one)};
+    const sphg_sources sources = {.neighbors = operators->sources.neighbors,
+                                  .volume = everywhere(&one)};
     sphg_field field = direct_field(SPHG_SCALAR, &mass);
     field.value = scalars(particles->density);
     sph_evaluate(sph, &sph->plain, &sources, sphg_absent(), 1, &field);
@@ -63,7 +72,7 @@ static void sum_density(const struct operators *operators, struct particles *par
 
 void operators_update_density(struct operators *operators, struct particles *particles)
 {
-    sph_search(operators->sph, operators->neighbors, particles->count, particles->x);
+    search(operators, particles);
     sum_density(operators, particles);
     correct(operators, particles);
 }

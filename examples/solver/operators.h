@@ -7,13 +7,14 @@
 
 struct operators {
     const struct sph *sph;
-    sphg_neighbors *neighbors;
-    double *volume, *correction; /* copies: of a rest configuration they must not change */
+    sphg_neighbors *neighbors, *shared; /* one is NULL */
+    double *volume, *correction;        /* copies: of a rest configuration they must not change */
     sphg_sources sources;
     int32_t count;
 };
 
-struct operators operators_new(const struct sph *sph, int32_t capacity);
+/* shared: neighbours that others search, or NULL. */
+struct operators operators_new(const struct sph *sph, sphg_neighbors *shared, int32_t capacity);
 void operators_free(struct operators *operators);
 
 /* Neighbours and corrections as the particles stand now, with the volumes that they have ... */

@@ -25,6 +25,19 @@ void particles_free(struct particles *particles)
     free(particles->volume);
 }
 
+struct particles particles_range(const struct particles *particles, int32_t begin, int32_t end)
+{
+    const struct particles range = {.count = end - begin,
+                                    .rest_volume = particles->rest_volume,
+                                    .x = particles->x + begin,
+                                    .v = particles->v + begin,
+                                    .rest_density = particles->rest_density + begin,
+                                    .mass = particles->mass + begin,
+                                    .density = particles->density + begin,
+                                    .volume = particles->volume + begin};
+    return range;
+}
+
 void particles_set_rest_density(struct particles *particles, int32_t i, double rest_density)
 {
     particles->rest_density[i] = particles->density[i] = rest_density;

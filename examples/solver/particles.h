@@ -17,6 +17,9 @@ struct particles {
 struct particles particles_new(int32_t count, double rest_volume);
 void particles_free(struct particles *particles);
 
+/* Some of them, as a set that shares their memory: not to be freed. */
+struct particles particles_range(const struct particles *particles, int32_t begin, int32_t end);
+
 /* Also the mass, and density and volume at rest. */
 void particles_set_rest_density(struct particles *particles, int32_t i, double rest_density);
 

@@ -13,10 +13,10 @@ enum {
     STATUS_NO_PROGRAM = 127 /* as in the shell */
 };
 
-struct picture picture_open(const char *directory, const char *name)
+struct picture picture_open(const char *directory, const char *name, bool full)
 {
     char path[4096];
-    struct picture picture = {directory, name, NULL};
+    struct picture picture = {directory, name, full, NULL};
     if (snprintf(path, sizeof path, "%s/%s.gp", directory, name) < (int)sizeof path)
         picture.script = fopen(path, "w");
     if (!picture.script) {

@@ -1,14 +1,16 @@
 /* Pictures by gnuplot: SCENE.gp and SCENE.png beside the tables of the runs. */
 #ifndef SOLVER_PICTURE_H
 #define SOLVER_PICTURE_H
+#include <stdbool.h>
 #include <stdio.h>
 
 struct picture {
     const char *directory, *name;
+    bool full;    /* the runs had their full size */
     FILE *script; /* gnuplot commands go here */
 };
 
-struct picture picture_open(const char *directory, const char *name);
+struct picture picture_open(const char *directory, const char *name, bool full);
 
 /* width x height [pixel], and panels side by side. */
 void picture_begin(const struct picture *picture, int width, int height, int rows, int columns);

@@ -19,9 +19,9 @@ struct sph run_open(const struct run *run, int32_t dimension, double support_rad
 void run_progress(const struct run *run, double done, double of)
 {
     static double shown;
-    if (!isatty(STDERR_FILENO) || (done < of && stopwatch_now() - shown < 0.2))
+    if (!isatty(STDERR_FILENO) || (done < of && stopwatch_wall() - shown < 0.2))
         return;
-    shown = stopwatch_now();
+    shown = stopwatch_wall();
     fprintf(stderr, "\r%s, %s: %3.0f %%%s", run->options->scene, method_names[run->method],
             100 * done / of, done < of ? "" : "\r\33[K");
 }
@@ -37,9 +37,9 @@ static void simulate(const struct scene *scene, const struct options *options, e
                      struct metrics *metrics)
 {
     const struct run run = {options, method, metrics};
-    const double start = stopwatch_now();
+    const double start = stopwatch_wall();
     scene->simulate(&run);
-    metrics_set(metrics, "seconds", stopwatch_now() - start);
+    metrics_set(metrics, "seconds", stopwatch_wall() - start);
     metrics_print(options, method, metrics);
 }
 
@@ -48,7 +48,7 @@ static void draw(const struct scene *scene, const struct options *options)
     const char *const methods[2] = {method_names[SPH], method_names[options->method]};
     if (!options->output || !scene->draw)
         return;
-    const struct picture picture = picture_open(options->output, scene->name);
+    const struct picture picture = picture_open(options->output, scene->name, options->full);
     scene->draw(&picture, methods);
     picture_close(&picture);
 }

@@ -3,9 +3,19 @@
 
 #include <time.h>
 
-double stopwatch_now(void)
+static double read_clock(clockid_t clock)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double stopwatch_wall(void)
+{
+    return read_clock(CLOCK_MONOTONIC);
+}
+
+double stopwatch_now(void)
+{
+    return read_clock(CLOCK_THREAD_CPUTIME_ID);
 }

@@ -2,6 +2,7 @@
 #ifndef SOLVER_VISCOSITY_H
 #define SOLVER_VISCOSITY_H
 #include "operators.h"
+#include "pairs.h"
 
 /* Implicit, of the strain rate E = (grad v + grad v^T) / 2 as in Takahashi et al. 2015
  * (doi:10.1111/cgf.12578), but with the force in adjoint form instead of the paper's Eq. (38): the
@@ -28,4 +29,11 @@ void viscosity_force(struct viscosity *viscosity, vector *v, vector *force);
 
 /* v = v + dt force(v) / mass, with the force of the new v. */
 void viscosity_solve(struct viscosity *viscosity, struct particles *fluid, double dt);
+
+/* Explicit, among the particles from `first` on, of the Laplacian of v in the form of Monaghan 2005
+ * (doi:10.1088/0034-4885/68/8/R01), which Weiler et al. 2018 take for their implicit one: for
+ * fluids that are hardly viscous. pairs: plain gradients with volumes at rest. */
+void viscosity_add_laplacian(const struct sph *sph, const struct pairs *pairs,
+                             const struct particles *fluid, int32_t first, double kinematic,
+                             vector *acceleration);
 #endif

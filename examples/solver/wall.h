@@ -26,11 +26,14 @@ struct contact {
                           corrected method, exactly so (but for particles at the rim of H) */
     double *approach;  /* sum v_k . G_ik */
     vector *drag;      /* sum V_k v_k W_ik */
-    int32_t *touching; /* number of k */
+    int32_t *touching; /* number of k; where there are none, all of the above is zero */
     sphg_neighbors *neighbors;
     double *correction;
     double *target_volume; /* one number, stands for all */
+    int64_t updates;
     int64_t *offsets;
+    int32_t *near; /* particles that touch the wall: mostly few of many */
+    int32_t near_count;
 };
 
 struct contact contact_new(const struct sph *sph, const struct wall *wall, int32_t capacity);
