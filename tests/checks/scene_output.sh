@@ -1,0 +1,39 @@
+#!/bin/sh
+# scene_output.sh PROGRAM DIR [READER]: a scene (vorticity) prints a line of metrics per method, refuses
+# bad options, and leaves tables, particles and, where there is gnuplot, a picture in its output directory.
+program=$1 directory=$2 reader=$3
+status=0
+
+complain() {
+    echo "$*" >&2
+    status=1
+}
+
+refuses() {
+    "$program" "$@" >/dev/null 2>&1
+    code=$?
+    [ "$code" -eq 2 ] || complain "vorticity $*: exit status $code instead of 2"
+}
+
+refuses --nonsense
+refuses nonsense
+refuses --method gaussian
+refuses --size huge
+refuses --seed x
+refuses --threads -1
+refuses --output /dev/null
+
+rm -rf "$directory"
+lines=$("$program" --method mls --seed 7 --output "$directory") || complain "the scene failed"
+[ "$(printf '%s\n' "$lines" | grep -c '^{"scene": "vorticity", "method": "\(sph\|mls\)", .*"seed": 7, .*}$')" -eq 2 ] ||
+    complain "not a line of metrics for each method: $lines"
+for method in sph mls; do
+    [ -s "$directory/vorticity_${method}_spin.dat" ] || complain "no table for $method"
+    if [ -n "$reader" ]; then
+        "$reader" "$directory/vorticity_${method}_0000.vtkhdf" spin || complain "particles of $method"
+    fi
+done
+if command -v gnuplot >/dev/null 2>&1; then
+    [ -s "$directory/vorticity.png" ] || complain "no picture"
+fi
+exit $status
