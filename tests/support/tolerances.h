@@ -36,6 +36,9 @@
     X(equal_within_bound, 20, 0.67, "two results, each within 10 D of the exact one")              \
     X(policy_value, 16, 4, "C along the normal of a plane, in units of 1 / m_ref")                 \
     X(flat_exactness, 32, 9.4, "slopes within a plane, lambda around .3")                          \
-    X(one_addition, 2, 1, "a stored gradient added to a stored number")
+    X(one_addition, 2, 1, "a stored gradient added to a stored number")                            \
+    /* The examples' solver */                                                                     \
+    X(full_friction, 4, 0, "two sums over forty wall particles and their ratio")                   \
+    X(exact_iterations, 16, 1, "three steps of conjugate gradients, condition 3, |b| up to 1")
 
 #endif
