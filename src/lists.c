@@ -30,6 +30,23 @@ static int64_t claim(struct build *build, int32_t block, int64_t units, bool wid
     return fits ? place : -1;
 }
 
+/* What is staged for a block stands in front of its ids: sweeps need not look it up again. Returns
+ * the units that this takes. */
+static int64_t head_units(const struct sphgi_surroundings *around)
+{
+    const size_t numbers = 2 + 2 * (size_t)around->ranges;
+    return (int64_t)sphgi_round_up(numbers * sizeof(int32_t) / sizeof(uint16_t), SPHGI_PAD);
+}
+
+static void write_head(const struct sphgi_surroundings *around, uint16_t *to)
+{
+    int32_t *head = (int32_t *)(void *)to;
+    head[0] = around->ranges;
+    head[1] = around->staged;
+    memcpy(head + 2, around->begin, (size_t)around->ranges * sizeof *head);
+    memcpy(head + 2 + around->ranges, around->count, (size_t)around->ranges * sizeof *head);
+}
+
 static void build_block(struct build *build, const struct sphgi_finder *finder,
                         const struct sphgi_surroundings *around)
 {
@@ -53,9 +70,12 @@ static void build_block(struct build *build, const struct sphgi_finder *finder,
     for (int32_t t = start[0]; t < start[grid->cells]; ++t)
         pairs += lengths[t];
     atomic_fetch_add(&build->pairs, pairs);
-    const int64_t place = claim(build, around->block, used, false);
-    if (place >= 0)
-        memcpy(n->found.ids + place, finder->ids, (size_t)used * sizeof(uint16_t));
+    const int64_t head = head_units(around);
+    const int64_t place = claim(build, around->block, head + used, false);
+    if (place < 0)
+        return;
+    write_head(around, n->found.ids + place);
+    memcpy(n->found.ids + place + head, finder->ids, (size_t)used * sizeof(uint16_t));
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */

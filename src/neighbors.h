@@ -2,6 +2,7 @@
 #ifndef SPHGI_NEIGHBORS_H
 #define SPHGI_NEIGHBORS_H
 #include "grid.h"
+#include <string.h>
 
 /* Found pairs, target by target in grid order. A target's ids are padded to a multiple of SPHGI_PAD
  * with 0. Normally they are staged numbers (struct sphgi_surroundings) times SPHGI_ID_STEP in 16
@@ -76,9 +77,23 @@ static inline bool sphgi_is_kept_wide(const sphg_neighbors *neighbors, int32_t b
     return neighbors->found.lists[block] & 1;
 }
 
-static inline const uint16_t *sphgi_kept_ids(const sphg_neighbors *neighbors, int32_t block)
+static inline const uint16_t *sphgi_kept_units(const sphg_neighbors *neighbors, int32_t block)
 {
     return neighbors->found.ids + (neighbors->found.lists[block] >> 1);
+}
+
+/* Of a block that is kept and not wide: its ids, and what is staged for them, ranges alone. */
+static inline const uint16_t *sphgi_kept_ids(const sphg_neighbors *neighbors, int32_t block,
+                                             struct sphgi_surroundings *around)
+{
+    const uint16_t *units = sphgi_kept_units(neighbors, block);
+    const int32_t *head = (const int32_t *)(const void *)units;
+    const size_t ranges = (size_t)head[0];
+    around->ranges = head[0];
+    around->staged = head[1];
+    memcpy(around->begin, head + 2, ranges * sizeof *head);
+    memcpy(around->count, head + 2 + ranges, ranges * sizeof *head);
+    return units + sphgi_round_up(2 * (2 + 2 * ranges), SPHGI_PAD);
 }
 
 /* Row (x y z .) of a target; place: in grid order, with the host's lists the target itself. */

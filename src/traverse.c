@@ -54,9 +54,13 @@ static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int
                       int32_t end, const uint16_t *ids, const uint16_t *lengths)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    for (int32_t t = begin; t < end; ++t, ++lengths) {
-        if (is_active(task, t))
-            add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), ids, *lengths, false);
+    const int32_t *order = sphgi_target_grid(n)->order.data;
+    const size_t row_size = SPHGI_ROW * sphgi_size_of_type(n->position_type);
+    const char *row = sphgi_target_row(n, begin);
+    const uint8_t *active = task->selection->active;
+    for (int32_t t = begin; t < end; ++t, ++lengths, row += row_size) {
+        if (!active || active[t])
+            add_listed(w, order[t], t, row, ids, *lengths, false);
         ids += (*lengths + SPHGI_PAD - 1) & -SPHGI_PAD;
     }
 }
@@ -67,7 +71,10 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const uint16_t *lengths = n->found.lengths.data;
     const int32_t first = grid->blocks[block].first, end = grid->blocks[block + 1].first;
-    sweep_run(task, w, first, end, sphgi_kept_ids(n, block), lengths + first);
+    struct sphgi_surroundings around;
+    const uint16_t *ids = sphgi_kept_ids(n, block, &around);
+    sphgi_stage_block(w, &around);
+    sweep_run(task, w, first, end, ids, lengths + first);
     run_rest(w, false);
 }
 
@@ -110,7 +117,7 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     enum { HEADER = 8 };
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const uint32_t *row = (const uint32_t *)(const void *)sphgi_kept_ids(n, block);
+    const uint32_t *row = (const uint32_t *)(const void *)sphgi_kept_units(n, block);
     for (int32_t t = grid->blocks[block].first; t < grid->blocks[block + 1].first; ++t) {
         const size_t count = row[0];
         if (is_active(task, t))
@@ -150,26 +157,33 @@ static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_w
         }
 }
 
-static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
-                        const struct sphgi_finder *finder)
+static void sweep_unkept_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+                               const struct sphgi_finder *finder)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_surroundings around;
     sphgi_block_surroundings(n, block, &around);
-    const bool kept = sphgi_is_kept(n, block);
-    const bool wide = kept ? sphgi_is_kept_wide(n, block) : sphgi_is_crowded(n, &around);
-    if (wide)
+    if (sphgi_is_crowded(n, &around)) {
         sphgi_use_local_rows(w);
-    else
-        sphgi_stage_block(w, &around);
-    if (!kept && wide)
         sweep_found_wide_block(task, w, finder, &around);
-    else if (!kept)
+    } else {
+        sphgi_stage_block(w, &around);
         sweep_found_block(task, w, finder, &around);
-    else if (wide)
+    }
+}
+
+static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+                        const struct sphgi_finder *finder)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    if (!sphgi_is_kept(n, block)) {
+        sweep_unkept_block(task, w, block, finder);
+    } else if (sphgi_is_kept_wide(n, block)) {
+        sphgi_use_local_rows(w);
         sweep_kept_wide_block(task, w, block);
-    else
+    } else {
         sweep_kept_block(task, w, block);
+    }
 }
 
 void sphgi_block_task(void *data, int32_t begin, int32_t end, int32_t number)

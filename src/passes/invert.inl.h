@@ -125,7 +125,9 @@ SPHGI_TEMPLATE void keep_lane(const struct corrected *done, int from, int lane, 
         poison += (double)m[k * SPHGI_WIDTH + lane] - (double)m[k * SPHGI_WIDTH + lane];
     for (int k = 0; k < numbers; ++k)
         c[k * SPHGI_WIDTH + lane] = (real)(done->c[k][from] + poison);
-    verdict->rank[lane] = poison < 0 || poison >= 0 ? (uint8_t)done->rank[from] : 0;
+    verdict->rank[lane] = (uint8_t)done->rank[from];
+    if (!(poison < 0 || poison >= 0))
+        verdict->rank[lane] = 0;
     const real lambda = (real)done->lambda_min[from];
     verdict->lambda_min[lane] = (double)lambda;
     if (lambda_min)
