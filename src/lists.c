@@ -4,10 +4,10 @@
 #include <string.h>
 
 enum {
-    WIDE_HEADER = 8, /* numbers in front of a wide row: its length, then nothing */
-    GRAIN = 4,       /* blocks */
-    MARGIN = 512,    /* units */
-    SAMPLE = 64      /* one block of so many is looked at for a first guess */
+    WIDE_HEADER = 8,     /* numbers in front of a wide row: its length, then nothing */
+    LEAST_TARGETS = 256, /* of a task: fewer are not worth a thread */
+    MARGIN = 512,        /* units */
+    SAMPLE = 64          /* one block of so many is looked at for a first guess */
 };
 
 struct build {
@@ -174,7 +174,9 @@ static void find_blocks(sphg_context *context, struct build *build, int32_t step
     build->step = step;
     atomic_store(&build->units, 0);
     atomic_store(&build->pairs, 0);
-    sphgi_parallel_for(context, build_task, build, (blocks + step - 1) / step, GRAIN);
+    const int64_t targets = sphgi_max32(build->neighbors->target_count, 1);
+    const int32_t grain = (int32_t)((int64_t)blocks * LEAST_TARGETS / targets) + 1;
+    sphgi_parallel_for(context, build_task, build, (blocks + step - 1) / step, grain);
     found->units = atomic_load(&build->units);
     found->pairs = atomic_load(&build->pairs);
 }

@@ -7,10 +7,8 @@
 #include <string.h>
 
 enum {
-    SHARES = 32, /* that each thread gets at least, so that they end together */
-    BLOCK_GRAIN_MOST = 8,
-    LIST_GRAIN_MOST = 1024, /* targets of the host's lists */
-    PACK_WORTH = 4          /* fields are packed when at least a 4th of the targets is selected */
+    LEAST_TARGETS = 512, /* of a task: fewer are not worth a thread */
+    PACK_WORTH = 4       /* fields are packed when at least a 4th of the targets is selected */
 };
 
 /* ---- One sweep ------------------------------------------------------------------------------ */
@@ -61,9 +59,10 @@ static void look_at_volumes(struct sphgi_sweep *sweep, struct sphgi_tally *tally
         sweep->plan->type == SPHG_F64 ? value * unit : (double)((float)value * (float)unit);
 }
 
-static int32_t grain_of(const sphg_context *context, int32_t items, int32_t most)
+/* Items of a task, of which so many hold all targets. */
+static int32_t grain_of(int32_t items, int32_t targets)
 {
-    return sphgi_max32(1, sphgi_min32(items / (SHARES * context->threads), most));
+    return (int32_t)((int64_t)items * LEAST_TARGETS / sphgi_max32(targets, 1)) + 1;
 }
 
 static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *selection,
@@ -85,11 +84,9 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
                            : searched ? sphgi_target_grid(n)->block_count
                                       : 0;
     if (searched)
-        sphgi_parallel_for(context, sphgi_block_task, task, blocks,
-                           grain_of(context, blocks, BLOCK_GRAIN_MOST));
+        sphgi_parallel_for(context, sphgi_block_task, task, blocks, grain_of(blocks, items));
     else
-        sphgi_parallel_for(context, sphgi_list_task, task, items,
-                           grain_of(context, items, LIST_GRAIN_MOST));
+        sphgi_parallel_for(context, sphgi_list_task, task, items, LEAST_TARGETS);
     if (marks)
         sphgi_selection_unmark(selection, n);
     close_workers(sweep, tally);
@@ -102,8 +99,7 @@ static sphg_result finish_all(struct sphgi_task *task, const struct sphgi_select
     if (!open_workers(&task->sweep))
         return SPHG_ERROR_MEMORY;
     const int32_t items = selection->end - selection->begin;
-    sphgi_parallel_for(task->sweep.context, sphgi_finish_task, task, items,
-                       grain_of(task->sweep.context, items, LIST_GRAIN_MOST));
+    sphgi_parallel_for(task->sweep.context, sphgi_finish_task, task, items, LEAST_TARGETS);
     close_workers(&task->sweep, tally);
     return SPHG_OK;
 }

@@ -137,6 +137,29 @@ SPHGI_TEMPLATE void keep_lane(const struct corrected *done, int from, int lane, 
     verdict->empty |= (uint32_t)none << lane;
 }
 
+/* A lane of zeros, a target without neighbours, has nothing to decompose: every direction is
+ * dropped.
+ */
+SPHGI_TEMPLATE bool keep_empty(const struct sphgi_threshold *threshold, int lane, const real *m,
+                               double low, real *c, real *lambda_min, struct sphgi_verdict *verdict,
+                               bool three)
+{
+    const int numbers = three ? 6 : 3;
+    for (int k = 0; k < numbers; ++k)
+        if (m[k * SPHGI_WIDTH + lane] != R(0))
+            return false;
+    for (int k = 0; k < numbers; ++k) {
+        const bool diagonal = three ? k == 0 || k == 3 || k == 5 : k != 1;
+        c[k * SPHGI_WIDTH + lane] = R(diagonal && threshold->policy != SPHG_TRUNCATE ? low : 0);
+    }
+    verdict->rank[lane] = 0;
+    verdict->lambda_min[lane] = 0;
+    if (lambda_min)
+        lambda_min[lane] = R(0);
+    verdict->empty |= (uint32_t)1 << lane;
+    return true;
+}
+
 /* Decomposes the lanes of `open`, packed: each for itself, whatever stands beside it. m, c:
  * [number][SPHGI_WIDTH], normalised. */
 SPHGI_TEMPLATE void decompose_as(const struct sphgi_threshold *threshold, const real *m,
@@ -146,8 +169,12 @@ SPHGI_TEMPLATE void decompose_as(const struct sphgi_threshold *threshold, const 
     const int numbers = three ? 6 : 3;
     while (open) {
         int lane[DLANES], taken = 0;
-        for (; open && taken < DLANES; open &= open - 1)
-            lane[taken++] = __builtin_ctz(open);
+        for (; open && taken < DLANES; open &= open - 1) {
+            lane[taken] = __builtin_ctz(open);
+            taken += !keep_empty(threshold, lane[taken], m, low, c, lambda_min, verdict, three);
+        }
+        if (!taken)
+            return;
         dvec wide[6];
         for (int k = 0; k < numbers; ++k) {
             double picked[DLANES];
