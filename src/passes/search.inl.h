@@ -30,6 +30,10 @@ SPHGI_TEMPLATE id_base ids_from(int32_t number)
 {
     return _mm_set1_epi16((short)(SPHGI_ID_STEP * number));
 }
+SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
+{
+    return _mm_add_epi16(first, ids_from(numbers));
+}
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
 {
 #if REAL_IS_F64
@@ -58,6 +62,10 @@ typedef int32_t id_base;
 SPHGI_TEMPLATE id_base ids_from(int32_t number)
 {
     return SPHGI_ID_STEP * number;
+}
+SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
+{
+    return first + ids_from(numbers);
 }
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
 {
@@ -168,7 +176,7 @@ SPHGI_TEMPLATE int32_t collect_run(const struct sphgi_find *find, const struct c
         pack_numbers(c->y + n, at[1], order);
         pack_numbers(c->z + n, at[2], order);
         number_ids(c->ids + n, first, order);
-        first += ids_from(LANES);
+        first = ids_after(first, LANES);
         n += __builtin_popcount(bits);
     }
     return n - __builtin_popcount(bits >> (LANES - (k - end))); /* read beyond the end */

@@ -24,7 +24,7 @@ case $command in
     limit)
         measure --particles 4096 --repetitions 2
         "$checker" "$work/report.json" results/ deviation 0 1e-5 probe/ error_max 0 1e-5 \
-            /library 'percent_of_limit, baseline, 4 lanes' 0.1 1000
+            /library 'percent_of_limit, baseline, 4 lanes' 0.01 100000
         measure --particles 1000 --repetitions 1 --support 2.5 --jitter 0 --threads 1
         "$checker" "$work/report.json" results/ deviation 0 1e-5
         measure --probe --particles 4096 --repetitions 2
