@@ -15,6 +15,12 @@ static void choose_passes(sphg_context *context)
         context->passes_f64 = &sphgi_passes_f64_v3;
     }
 #endif
+#ifdef SPHG_HAVE_V4
+    if (context->isa == SPHG_ISA_X86_V4) {
+        context->passes_f32 = &sphgi_passes_f32_v4;
+        context->passes_f64 = &sphgi_passes_f64_v4;
+    }
+#endif
 }
 
 static void fill_pack_order(uint64_t *order)

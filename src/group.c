@@ -128,7 +128,7 @@ static void add_part(struct sphgi_worker *w, int32_t lane, const void *ids, int3
     piece->count[part] = count;
     piece->fresh[part] = !(w->touched >> lane & 1);
     w->touched |= 1u << lane;
-    piece->begin[part + 1] = piece->begin[part] + (int32_t)sphgi_round_up((size_t)count, SPHGI_PAD);
+    piece->begin[part + 1] = piece->begin[part] + ((count + w->pad - 1) & -w->pad);
 }
 
 static void gather(struct sphgi_worker *w, int32_t first, bool wide)
@@ -329,7 +329,7 @@ static bool make_regular(struct sphgi_worker *w)
     const int32_t lanes = w->group.lanes - w->summed;
     int64_t at = 0;
     for (int32_t l = 0; l < lanes; ++l) {
-        at += ((int64_t)piece->count[l] + SPHGI_PAD - 1) & -SPHGI_PAD;
+        at += ((int64_t)piece->count[l] + w->pad - 1) & -w->pad;
         piece->begin[l + 1] = (int32_t)at;
     }
     piece->begin[0] = 0;

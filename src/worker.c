@@ -122,6 +122,8 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
     open_scheme(w);
     w->inverse_h = 1 / sweep->plan->scheme.radius;
+    w->pad =
+        sphgi_max32(SPHGI_PAD, sphgi_max32(sweep->passes->lanes, sweep->position_passes->lanes));
     sphgi_open_shares(w);
     w->coefficients_first = needs_coefficients_first(sweep);
     w->piece.arrays = w->arrays;

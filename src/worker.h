@@ -69,6 +69,7 @@ struct sphgi_worker {
     int32_t first, width, targets; /* the lanes of the group that are at work: first of them, how
                                       many, and how many of those have a target */
     int32_t summed;                /* lanes whose sums are done */
+    int32_t pad;                   /* parts of a piece begin at multiples of this */
     struct sphgi_share share[2];   /* of the table of corrections */
     bool regular;                  /* part k of the piece is lane k, whole */
     const void **rows;             /* of each stream */

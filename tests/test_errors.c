@@ -238,7 +238,7 @@ static void builds_refuse_positions_that_are_not_finite(const test_case *test)
 static void trusted_contexts_still_check_arguments(const test_case *test)
 {
     subject *own = subject_create(test);
-    sphg_config config = {0};
+    sphg_config config = {.isa = test_isa()};
     config.trusted = 1;
     sphg_context *context = NULL;
     sphg_neighbors *neighbors = NULL;

@@ -48,6 +48,7 @@ static host *host_of(size_t most)
     host *own = test_memory(sizeof *own);
     own->limit.most = most;
     const sphg_config config = {.threads = 2,
+                                .isa = test_isa(),
                                 .allocate = allocate_limited,
                                 .release = release_limited,
                                 .user = &own->limit};

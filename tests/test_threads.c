@@ -161,7 +161,7 @@ static void require_same(const results *a, const results *b, const char *where)
 
 static results serial_results(const stage *own, int list_free, rows *pairs)
 {
-    const sphg_config serial = {.threads = 1};
+    const sphg_config serial = {.threads = 1, .isa = test_isa()};
     return run_under(own, &serial, list_free, pairs);
 }
 
@@ -173,7 +173,7 @@ static void results_do_not_depend_on_the_number_of_threads(const test_case *test
         const results expected = serial_results(&own, list_free, &expected_pairs);
         const int32_t threads[] = {2, 3, 4, 7, 8, 16, 0};
         for (int k = 0; k < 7; k++) {
-            const sphg_config config = {.threads = threads[k]};
+            const sphg_config config = {.threads = threads[k], .isa = test_isa()};
             const results found = run_under(&own, &config, list_free, &pairs);
             const char *where = test_text("%d threads", threads[k]);
             rows_require_equal(&pairs, &expected_pairs, where);
@@ -241,9 +241,9 @@ static void search_does_not_depend_on_threads(const test_case *test)
 {
     found *serial = test_memory(sizeof *serial), *other = test_memory(sizeof *other);
     const int32_t threads[] = {2, 3, 4, 7, 8, 16};
-    search_under(test, &(sphg_config){.threads = 1}, serial);
+    search_under(test, &(sphg_config){.threads = 1, .isa = test_isa()}, serial);
     for (int k = 0; k < 6; k++) {
-        search_under(test, &(sphg_config){.threads = threads[k]}, other);
+        search_under(test, &(sphg_config){.threads = threads[k], .isa = test_isa()}, other);
         rows_require_equal(&other->pairs, &serial->pairs, test_text("%d threads", threads[k]));
         assert_memory_equal(other->order, serial->order, sizeof serial->order);
     }
@@ -289,7 +289,7 @@ typedef struct helper {
 static void *help(void *argument)
 {
     helper *own = argument;
-    const sphg_config serial = {.threads = 1};
+    const sphg_config serial = {.threads = 1, .isa = test_isa()};
     const sphg_sources sources = sources_of(own->own, own->shared);
     sphg_context *context = NULL;
     own->result = sphg_context_create(SPHG_VERSION, &serial, &context);

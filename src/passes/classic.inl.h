@@ -130,14 +130,13 @@ static void transposed_classic(const struct sphgi_piece *piece, int32_t dimensio
         const real volume = target_volume ? ((const real *)target_volume)[piece->lane[p]] : R(1);
         const vec y_unit = splat(R(scales->value)), z_unit = splat(R(scales->slope));
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            const char *ids = (const char *)piece->ids[p] +
-                              (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
+            const struct listed list = listed_in(piece, p, k);
             const vec weight = weight_of(piece, p, k, density, kind);
             const vec x[3] = {from(piece, SPHGI_X, k), from(piece, SPHGI_Y, k),
                               d == 3 ? from(piece, SPHGI_Z, k) : splat(R(0))};
             vec polynomial[4];
             for (int32_t m = 0; m <= d; ++m) {
-                const struct four c = gather_rows(rows[m], ids, piece->wide);
+                const struct four c = gather_rows(rows[m], list);
                 polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
                 if (d == 3)
                     polynomial[m] += c.w * x[2];

@@ -21,10 +21,8 @@ SPHGI_TEMPLATE dvec dselect(dmask m, dvec a, dvec b)
 
 SPHGI_TEMPLATE dvec dsqrt(dvec v)
 {
-#if defined(__AVX2__)
-    return (dvec)_mm256_sqrt_pd((__m256d)v);
-#elif defined(__SSE2__)
-    return (dvec)_mm_sqrt_pd((__m128d)v);
+#if defined(__SSE2__)
+    return (dvec)VECTOR_OP(sqrt_pd)((VECTOR_TYPE(d))v);
 #else
     for (int k = 0; k < DLANES; ++k)
         v[k] = __builtin_sqrt(v[k]);

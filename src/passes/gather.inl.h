@@ -20,7 +20,8 @@ SPHGI_TEMPLATE vec wrapped(vec difference, struct wrap w)
     const vec magic = splat(REAL_IS_F64 ? R(0x1.8p52) : R(0x1.8p23));
     const vec turns = (difference * w.inverse + magic) - magic;
     const vec near = difference - rounded(turns * w.period);
-    const vec more = where(near > w.half, splat(R(1))) - where(near < -w.half, splat(R(1)));
+    const vec more =
+        where(less(w.half, near), splat(R(1))) - where(less(near, -w.half), splat(R(1)));
     return difference - rounded((turns + more) * w.period);
 }
 
@@ -55,23 +56,43 @@ static bool is_neighbor(const void *a, const void *b, double reach, const double
     return bits_of(less(square_distance(d[0], d[1], d[2]), square_of(reach))) & 1;
 }
 
-typedef uint32_t wide_ids __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
-typedef uint16_t narrow_ids __attribute__((vector_size(2 * LANES), aligned(2), may_alias));
-
-/* Ids [k, k + LANES) of pairs that are none are replaced by the dummy row: a field that is not
- * finite there must not enter through 0 * NaN. */
-SPHGI_TEMPLATE void keep_ids(mask inside, const void *ids, int32_t k, uint32_t dummy, void *out,
-                             bool wide)
+/* The first LANES ids, at out: pairs that are none are replaced by the dummy row, for a field that
+ * is not finite must not enter through 0 * NaN. */
+SPHGI_TEMPLATE void keep_ids(mask inside, struct listed list, void *out)
 {
-    if (wide) {
+#if VECTOR_BYTES == 64 && REAL_IS_F64
+    const __mmask8 keep = (__mmask8)inside;
+    const __m256i dummy = _mm256_loadu_epi32(list.dummies);
+    if (list.wide)
+        _mm256_storeu_epi32(out, _mm256_mask_loadu_epi32(dummy, keep, list.ids));
+    else
+        _mm_storeu_epi16(out, _mm_maskz_loadu_epi16(keep, list.ids));
+#elif VECTOR_BYTES == 64
+    const __mmask16 keep = (__mmask16)inside;
+    const __m512i dummy = _mm512_broadcast_i32x8(_mm256_loadu_epi32(list.dummies));
+    if (list.wide)
+        _mm512_storeu_epi32(out, _mm512_mask_loadu_epi32(dummy, keep, list.ids));
+    else
+        _mm256_storeu_epi16(out, _mm256_maskz_loadu_epi16(keep, list.ids));
+#else
+    typedef uint32_t wide_ids __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
+    typedef uint16_t narrow_ids __attribute__((vector_size(2 * LANES), aligned(2), may_alias));
+    if (list.wide) {
         const wide_ids keep = __builtin_convertvector(inside, wide_ids);
-        const wide_ids given = *(const wide_ids *)((const uint32_t *)ids + k);
-        *(wide_ids *)((uint32_t *)out + k) = (given & keep) | (dummy & ~keep);
+        const wide_ids dummy = (wide_ids){0} + *(const uint32_t *)list.dummies;
+        *(wide_ids *)out = (*(const wide_ids *)list.ids & keep) | (dummy & ~keep);
     } else {
         const narrow_ids keep = __builtin_convertvector(inside, narrow_ids);
-        const narrow_ids given = *(const narrow_ids *)((const uint16_t *)ids + k);
-        *(narrow_ids *)((uint16_t *)out + k) = (given & keep) | ((uint16_t)dummy & ~keep);
+        *(narrow_ids *)out = *(const narrow_ids *)list.ids & keep;
     }
+#endif
+}
+
+/* The ids of the pairs from k on of part p, which k belongs to. */
+SPHGI_TEMPLATE struct listed listed_in(const struct sphgi_piece *piece, int32_t p, int32_t k)
+{
+    const struct listed all = {piece->ids[p], piece->count[p], piece->dummies, piece->wide};
+    return after(all, k - piece->begin[p]);
 }
 
 typedef uint32_t eight_ids __attribute__((vector_size(32), aligned(4), may_alias));

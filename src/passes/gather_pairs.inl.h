@@ -16,22 +16,20 @@ struct OUT_NAME(how) {
     bool wide, guarded, periodic, three, scaled, volumes;
 };
 
-/* One part: pairs of the target at x, `at` is where they begin in the arrays. */
 /* One part: pairs of the target at x, `at` is where they begin in the arrays. padded: their number
- * rounded up to SPHGI_PAD; ids are readable that far. */
+ * there. */
 SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const real *x,
-                                          const void *ids, int32_t count, int32_t padded, OUT *at,
-                                          void *masked, struct OUT_NAME(how) how)
+                                          struct listed list, int32_t padded, OUT *at, char *masked,
+                                          struct OUT_NAME(how) how)
 {
     const vec xi = splat(x[0]), yi = splat(x[1]), zi = splat(x[2]);
     const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
     const struct wraps w = wraps_of(g->period);
-    const size_t id_size = how.wide ? 4 : 2;
-    for (int32_t k = 0; k < padded; k += LANES, at += LANES) {
-        const struct four row =
-            gather_rows(g->rows, (const char *)ids + id_size * (size_t)k, how.wide);
+    list.wide = how.wide;
+    for (int32_t k = 0; k < padded; k += LANES, at += LANES, list = after(list, LANES)) {
+        const struct four row = gather_rows(g->rows, list);
         vec dx = xi - row.x, dy = yi - row.y, dz = zi - row.z;
-        mask inside = first_lanes(count - k);
+        mask inside = first_lanes(list.count);
         if (how.periodic) {
             dx = wrapped(dx, w.axis[0]);
             dy = wrapped(dy, w.axis[1]);
@@ -39,7 +37,8 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
         }
         if (how.guarded) {
             inside &= less(square_distance(dx, dy, dz), cutoff);
-            keep_ids(inside, ids, k, g->dummy, masked, how.wide);
+            keep_ids(inside, list, masked);
+            masked += LANES * (how.wide ? 4 : 2);
             dx = where(inside, dx);
             dy = where(inside, dy);
             dz = where(inside, dz);
@@ -70,11 +69,13 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void
                                         struct sphgi_piece *piece, int32_t first, char *masked,
                                         struct OUT_NAME(how) how)
 {
+    for (int k = 0; k < SPHGI_PAD; ++k)
+        piece->dummies[k] = g->dummy;
     for (int32_t p = first; p < piece->parts; ++p) {
         const int32_t begin = piece->begin[p];
         char *kept = masked + (how.wide ? 4 : 2) * (size_t)begin;
         OUT_NAME(gather_part)
-        (g, x[piece->lane[p]], piece->ids[p], piece->count[p], piece->begin[p + 1] - begin,
+        (g, x[piece->lane[p]], listed_in(piece, p, begin), piece->begin[p + 1] - begin,
          (OUT *)piece->arrays + begin, kept, how);
         if (how.guarded)
             piece->ids[p] = kept;

@@ -85,7 +85,7 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
         const vec i0 = R(1) / m[0], l1 = m[1] * i0, l2 = m[2] * i0;
         const vec d1 = m[3] - l1 * m[1], i1 = R(1) / d1, t = m[4] - l1 * m[2], l3 = t * i1;
         const vec d2 = m[5] - l2 * m[2] - l3 * t, i2 = R(1) / d2, k2 = l1 * l3 - l2;
-        pivots = (m[0] > zero) & (d1 > zero) & (d2 > zero);
+        pivots = less(zero, m[0]) & less(zero, d1) & less(zero, d2);
         trace = m[0] + m[3] + m[5];
         c[5] = i2;
         c[4] = -l3 * i2;
@@ -95,7 +95,7 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
         c[0] = i0 + l1 * l1 * i1 + k2 * c[2];
     } else {
         const vec i0 = R(1) / m[0], l1 = m[1] * i0, d1 = m[2] - l1 * m[1], i1 = R(1) / d1;
-        pivots = (m[0] > zero) & (d1 > zero);
+        pivots = less(zero, m[0]) & less(zero, d1);
         trace = m[0] + m[2];
         c[2] = i1;
         c[1] = -l1 * i1;
@@ -103,7 +103,7 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
     }
     *square = square_norm(c, three);
     const vec bound = eps_high + R(80 * UNIT_ROUNDOFF) * trace;
-    const mask exact = (mask)(*square > splat(REAL_IS_F64 ? R(0x1p-800) : R(0x1p-80)));
+    const mask exact = less(splat(REAL_IS_F64 ? R(0x1p-800) : R(0x1p-80)), *square);
     return pivots & exact & less(*square * (bound * bound), splat(R(1)));
 }
 
@@ -326,7 +326,7 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
                *dx = wxx + pairs * SPHGI_WIDTH;
     const real *dxx = dx + d * SPHGI_WIDTH, *dxxx = dxx + pairs * SPHGI_WIDTH;
     const vec s0 = load(sums) + load(self);
-    const mask some = s0 >= splat(REAL_IS_F64 ? R(0x1p-1000) : R(0x1p-106));
+    const mask some = at_most(splat(REAL_IS_F64 ? R(0x1p-1000) : R(0x1p-106)), s0);
     const vec inverse = where(some, R(1) / s0), inverse_mu2 = splat(R(1 / mu2));
     vec mean[3]; /* xb = - sum w x / S0 */
     vec m[6], c[6];

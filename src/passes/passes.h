@@ -16,10 +16,11 @@
 
 enum {
     SPHGI_ROW = 4,         /* numbers in a row */
-    SPHGI_PAD = 8,         /* pairs of a target are padded to a multiple of this */
+    SPHGI_PAD = 8,         /* lists are padded to a multiple of this */
     SPHGI_ID_STEP = 2,     /* 16-bit ids are staged numbers times this: a row of f32 then stands at
                               base + 8 * id [byte], which needs no shift */
-    SPHGI_PIECE = 512,     /* pairs in a piece, at most */
+    SPHGI_PIECE = 1040,    /* pairs in a piece, at most: sixteen targets with twice the usual number
+                              each; no power of two, lest the arrays share lines of the cache */
     SPHGI_LANES_MOST = 16, /* of any scalar type and instruction set */
     SPHGI_WIDTH = 32,      /* targets that are finished together */
     SPHGI_FIND_MOST = 16   /* targets that share one set of candidates */
@@ -65,11 +66,12 @@ struct sphgi_piece {
     void *arrays;
     int32_t parts;                       /* runs of pairs, one per target at most */
     int32_t lane[SPHGI_LANES_MOST];      /* whose pairs they are */
-    int32_t begin[SPHGI_LANES_MOST + 1]; /* multiples of SPHGI_PAD */
+    int32_t begin[SPHGI_LANES_MOST + 1]; /* multiples of SPHGI_PAD and of all lanes at work */
     int32_t count[SPHGI_LANES_MOST];     /* without the padding */
     bool fresh[SPHGI_LANES_MOST];        /* the lane's first: its sums begin at 0 */
-    const void *ids[SPHGI_LANES_MOST];   /* of the pairs, padded */
+    const void *ids[SPHGI_LANES_MOST];   /* of the pairs, padded to SPHGI_PAD with the dummy */
     bool wide;                           /* ids are uint32_t, else uint16_t */
+    uint32_t dummies[SPHGI_PAD];         /* ids of a row of zeros; 0 if ids are narrow */
 };
 
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
@@ -266,6 +268,9 @@ struct sphgi_passes {
 extern const struct sphgi_passes sphgi_passes_f32_base, sphgi_passes_f64_base;
 #ifdef SPHG_HAVE_V3
 extern const struct sphgi_passes sphgi_passes_f32_v3, sphgi_passes_f64_v3;
+#endif
+#ifdef SPHG_HAVE_V4
+extern const struct sphgi_passes sphgi_passes_f32_v4, sphgi_passes_f64_v4;
 #endif
 
 #endif

@@ -7,6 +7,7 @@
 #include "../kernel_list.h"
 
 #include "vec.inl.h"
+#include "lanes.inl.h"
 #include "kernels.inl.h"
 #include "rows.inl.h"
 #include "gather.inl.h"

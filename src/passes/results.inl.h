@@ -80,12 +80,12 @@ static void scale_lanes(int32_t width, int32_t count, const void *in, double fac
 static bool valid_volumes(int32_t width, const void *volumes)
 {
     const vec zero = splat(R(0));
-    mask valid = (mask)(zero == zero);
+    mask valid = first_lanes(LANES);
     for (int32_t l = 0; l < width; l += LANES) {
         const vec v = load((const real *)volumes + l);
-        valid &= (mask)(v >= zero) & (mask)(v - v == zero);
+        valid &= at_most(zero, v) & ~differ(v - v, zero);
     }
-    return bits_of(valid) == (1u << LANES) - 1;
+    return bits_of(valid) == ALL;
 }
 
 /* out[c] = in[c] / divisor */
@@ -110,7 +110,7 @@ static void quotient(int32_t width, const void *a, const void *b, void *out)
         if (a)
             numerator = load((const real *)a + l);
         const vec denominator = load((const real *)b + l);
-        store((real *)out + l, where((mask)(denominator != splat(R(0))), numerator / denominator));
+        store((real *)out + l, where(differ(denominator, splat(R(0))), numerator / denominator));
     }
 }
 

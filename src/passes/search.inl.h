@@ -21,9 +21,59 @@ static void transpose_rows(const void *rows, int32_t count, void *x, void *y, vo
 
 /* ---- Packing -------------------------------------------------------------------------------- */
 
-/* Each of these moves what belongs to the set bits to the front, and writes a whole vector. order:
- * the positions of the set bits, a byte each. pack_numbers moves numbers, pack_ids SPHGI_PAD ids;
- * number_ids makes the ids of staged numbers, of which `first` holds the first one's. */
+/* Each of these moves what belongs to the set bits of LANES to the front, and writes a whole
+ * vector. A packing is made of the bits: pack_numbers moves numbers, number_ids makes the ids of
+ * staged numbers, of which `first` holds the first one's. pack_tested moves TESTED ids, and returns
+ * where the next ones go. */
+enum { TESTED = 2 * SPHGI_PAD }; /* candidates that are tested at a time */
+
+#if defined(__AVX512F__)
+typedef __mmask16 packing;
+typedef __m512i id_base; /* the ids of LANES numbers; the rest goes on */
+SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, unsigned bits)
+{
+    (void)find;
+    return (__mmask16)bits;
+}
+SPHGI_TEMPLATE id_base ids_from(int32_t number)
+{
+    const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    return SPHGI_ID_STEP * _mm512_add_epi32(lanes, _mm512_set1_epi32(number));
+}
+SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
+{
+    return _mm512_add_epi32(first, _mm512_set1_epi32(SPHGI_ID_STEP * numbers));
+}
+SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing lanes)
+{
+#if REAL_IS_F64
+    store(to, (vec)_mm512_maskz_compress_pd((__mmask8)lanes, (__m512d)v));
+#else
+    store(to, (vec)_mm512_maskz_compress_ps(lanes, (__m512)v));
+#endif
+}
+SPHGI_TEMPLATE void write_ids(uint16_t *to, __m512i ids)
+{
+    _mm256_storeu_si256((__m256i *)(void *)to, _mm512_cvtepi32_epi16(ids));
+}
+SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing lanes)
+{
+    write_ids(to, _mm512_maskz_compress_epi32(lanes, first));
+}
+SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to,
+                                     const uint16_t *ids, uint16_t bits)
+{
+    (void)find;
+    const __m256i narrow = _mm256_loadu_si256((const __m256i *)(const void *)ids);
+    write_ids(to, _mm512_maskz_compress_epi32(bits, _mm512_cvtepu16_epi32(narrow)));
+    return to + __builtin_popcount(bits);
+}
+#else
+typedef uint64_t packing; /* the positions of the set bits, a byte each */
+SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, unsigned bits)
+{
+    return find->pack_order[bits];
+}
 #if defined(__AVX2__)
 typedef __m128i id_base;
 SPHGI_TEMPLATE id_base ids_from(int32_t number)
@@ -34,7 +84,7 @@ SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
 {
     return _mm_add_epi16(first, ids_from(numbers));
 }
-SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
+SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing order)
 {
 #if REAL_IS_F64
     const __m256i pairs = _mm256_cvtepu8_epi64(_mm_cvtsi64_si128((long long)(order + order)));
@@ -45,17 +95,18 @@ SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
 #endif
     store(to, (vec)_mm256_permutevar8x32_ps((__m256)v, lanes));
 }
-SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, uint64_t order)
+SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing order)
 {
     const __m128i places = _mm_cvtepu8_epi16(_mm_cvtsi64_si128((long long)order));
     _mm_storeu_si128((__m128i *)(void *)to, _mm_add_epi16(first, _mm_add_epi16(places, places)));
 }
-SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits,
-                             const uint8_t (*pack_bytes)[16])
+SPHGI_TEMPLATE uint16_t *pack_ids(const struct sphgi_find *find, uint16_t *to, const uint16_t *ids,
+                                  unsigned bits)
 {
     const __m128i eight = _mm_loadu_si128((const __m128i *)(const void *)ids);
-    const __m128i order = _mm_load_si128((const __m128i *)(const void *)pack_bytes[bits]);
+    const __m128i order = _mm_load_si128((const __m128i *)(const void *)find->pack_bytes[bits]);
     _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(eight, order));
+    return to + __builtin_popcount(bits);
 }
 #else
 typedef int32_t id_base;
@@ -67,37 +118,43 @@ SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
 {
     return first + ids_from(numbers);
 }
-SPHGI_TEMPLATE void pack_numbers(real *to, vec v, uint64_t order)
+SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing order)
 {
     for (int k = 0; k < LANES; ++k)
         to[k] = v[order >> (8 * k) & (unsigned)(LANES - 1)];
 }
-SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, uint64_t order)
+SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing order)
 {
     for (int k = 0; k < LANES; ++k)
         to[k] = (uint16_t)(first + SPHGI_ID_STEP * (int32_t)(order >> (8 * k) & 255));
 }
-SPHGI_TEMPLATE void pack_ids(uint16_t *to, const uint16_t *ids, unsigned bits,
-                             const uint8_t (*pack_bytes)[16])
+SPHGI_TEMPLATE uint16_t *pack_ids(const struct sphgi_find *find, uint16_t *to, const uint16_t *ids,
+                                  unsigned bits)
 {
-    (void)pack_bytes;
+    (void)find;
     for (int k = 0; k < SPHGI_PAD; ++k) { /* branch-free: a wrong one is overwritten */
         *to = ids[k];
         to += bits >> k & 1;
     }
+    return to;
+}
+#endif
+SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to,
+                                     const uint16_t *ids, uint16_t bits)
+{
+    to = pack_ids(find, to, ids, bits & 255);
+    return pack_ids(find, to, ids + SPHGI_PAD, bits >> SPHGI_PAD);
 }
 #endif
 
 /* ---- Candidates ----------------------------------------------------------------------------- */
 
-enum { TESTED = 2 * SPHGI_PAD }; /* candidates that are tested at a time */
-
 /* The packed candidates of a few targets. If these are sources, they come first. */
 struct candidates {
     real *x, *y, *z;
     uint16_t *ids;
-    uint8_t *bits; /* of the target in hand */
-    int32_t count; /* rounded up to TESTED with NaN */
+    uint16_t *bits; /* of the target in hand, one number for TESTED candidates */
+    int32_t count;  /* rounded up to TESTED with NaN */
 };
 
 SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most)
@@ -107,7 +164,7 @@ SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most)
     c.y = c.x + room;
     c.z = c.y + room;
     c.ids = (uint16_t *)(void *)(c.z + room);
-    c.bits = (uint8_t *)(void *)(c.ids + room);
+    c.bits = c.ids + room;
     return c;
 }
 
@@ -155,7 +212,7 @@ SPHGI_TEMPLATE unsigned bits_near(const struct box *box, const vec *at, const st
             d = at[a] - vmin(vmax(at[a], box->low[a]), box->high[a]);
         square += d * d;
     }
-    return bits_of((mask)(square <= box->square_reach)); /* both may be infinite */
+    return bits_of(at_most(square, box->square_reach)); /* both may be infinite */
 }
 
 /* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
@@ -164,18 +221,17 @@ SPHGI_TEMPLATE int32_t collect_run(const struct sphgi_find *find, const struct c
                                    const struct wraps *w, bool periodic)
 {
     const real *x = find->x, *y = find->y, *z = find->z;
-    const uint64_t *pack_order = find->pack_order;
     unsigned bits = 0;
     int32_t k = begin;
     id_base first = ids_from(begin);
     for (; k < end; k += LANES) {
         const vec at[3] = {load(x + k), load(y + k), load(z + k)};
         bits = bits_near(box, at, w, periodic);
-        const uint64_t order = pack_order[bits];
-        pack_numbers(c->x + n, at[0], order);
-        pack_numbers(c->y + n, at[1], order);
-        pack_numbers(c->z + n, at[2], order);
-        number_ids(c->ids + n, first, order);
+        const packing moved = packing_of(find, bits);
+        pack_numbers(c->x + n, at[0], moved);
+        pack_numbers(c->y + n, at[1], moved);
+        pack_numbers(c->z + n, at[2], moved);
+        number_ids(c->ids + n, first, moved);
         first = ids_after(first, LANES);
         n += __builtin_popcount(bits);
     }
@@ -203,11 +259,12 @@ SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
 
 /* ---- Neighbours ----------------------------------------------------------------------------- */
 
-SPHGI_TEMPLATE unsigned bits_within(const struct candidates *c, int32_t k, const vec *x,
+/* A bit for each of TESTED candidates from k on. */
+SPHGI_TEMPLATE uint16_t bits_within(const struct candidates *c, int32_t k, const vec *x,
                                     vec square_reach, const struct wraps *w, bool periodic)
 {
     unsigned bits = 0;
-    for (int l = 0; l < SPHGI_PAD; l += LANES) {
+    for (int l = 0; l < TESTED; l += LANES) {
         vec dx = x[0] - load(c->x + k + l);
         vec dy = x[1] - load(c->y + k + l);
         vec dz = x[2] - load(c->z + k + l);
@@ -218,31 +275,22 @@ SPHGI_TEMPLATE unsigned bits_within(const struct candidates *c, int32_t k, const
         }
         bits |= bits_of(less(square_distance(dx, dy, dz), square_reach)) << l;
     }
-    return bits;
+    return (uint16_t)bits;
 }
 
 SPHGI_TEMPLATE void test(const struct candidates *c, const vec *x, vec square_reach,
                          const struct wraps *w, bool periodic)
 {
-    uint8_t *bits = c->bits;
-    for (int32_t k = 0; k < c->count; k += TESTED) {
-        *bits++ = (uint8_t)bits_within(c, k, x, square_reach, w, periodic);
-        *bits++ = (uint8_t)bits_within(c, k + SPHGI_PAD, x, square_reach, w, periodic);
-    }
+    uint16_t *bits = c->bits;
+    for (int32_t k = 0; k < c->count; k += TESTED)
+        *bits++ = bits_within(c, k, x, square_reach, w, periodic);
 }
 
-SPHGI_TEMPLATE uint16_t *pack(const struct candidates *c, const uint8_t (*pack_bytes)[16],
+SPHGI_TEMPLATE uint16_t *pack(const struct sphgi_find *find, const struct candidates *c,
                               uint16_t *to)
 {
-    const uint16_t *ids = c->ids;
-    for (const uint8_t *bits = c->bits, *end = bits + c->count / SPHGI_PAD; bits < end; bits += 2) {
-        const unsigned low = bits[0], high = bits[1];
-        pack_ids(to, ids, low, pack_bytes);
-        to += __builtin_popcount(low);
-        pack_ids(to, ids + SPHGI_PAD, high, pack_bytes);
-        to += __builtin_popcount(high);
-        ids += TESTED;
-    }
+    for (int32_t k = 0; k < c->count; k += TESTED)
+        to = pack_tested(find, to, c->ids + k, c->bits[k / TESTED]);
     __builtin_memset(to, 0, SPHGI_PAD * sizeof *to);
     return to;
 }
@@ -253,7 +301,6 @@ SPHGI_TEMPLATE int64_t find_as(const struct sphgi_find *find, const struct sphgi
 {
     const struct wraps w = wraps_of(find->period);
     const vec square_reach = square_of(find->reach);
-    const uint8_t(*pack_bytes)[16] = find->pack_bytes;
     const struct box box = bounding_box(find, targets, count);
     const struct candidates c = collect(find, runs, &box, self, &w, periodic);
     uint16_t *out = ids;
@@ -261,8 +308,8 @@ SPHGI_TEMPLATE int64_t find_as(const struct sphgi_find *find, const struct sphgi
         const vec x[3] = {splat(targets[0]), splat(targets[1]), splat(targets[2])};
         test(&c, x, square_reach, &w, periodic);
         if (self >= 0)
-            c.bits[t / SPHGI_PAD] &= (uint8_t) ~(1u << t % SPHGI_PAD);
-        const uint16_t *end = pack(&c, pack_bytes, out);
+            c.bits[t / TESTED] &= (uint16_t) ~(1u << t % TESTED);
+        const uint16_t *end = pack(find, &c, out);
         lengths[t] = (uint16_t)(end - out);
         out += sphgi_round_up((size_t)(end - out), SPHGI_PAD);
     }

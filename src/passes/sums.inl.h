@@ -74,15 +74,15 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_vectors
     const int32_t d = three ? 3 : 2;
     for (int32_t p = 0; p < piece->parts; ++p) {
         const int32_t lane = piece->lane[p], begin = piece->begin[p];
-        const char *ids = piece->ids[p];
+        struct listed list = listed_in(piece, p, begin);
+        list.wide = wide;
         vec sum[12], a[4];
         for (int32_t c = 0; c < count; ++c)
             a[c] = splat(at_target[c * SPHGI_WIDTH + lane]);
         for (int32_t c = 0; c < count * d; ++c)
             sum[c] = begin_sum(piece, p, partial, c);
-        for (int32_t k = begin; k < piece->begin[p + 1];
-             k += LANES, ids += LANES * (wide ? 4 : 2)) {
-            const struct four row = gather_rows(rows, ids, wide);
+        for (int32_t k = begin; k < piece->begin[p + 1]; k += LANES, list = after(list, LANES)) {
+            const struct four row = gather_rows(rows, list);
             const vec value[4] = {row.x, row.y, row.z, row.w};
             vec g[3];
             vectors_at(piece, k, vectors, three, g);
@@ -146,14 +146,6 @@ static void sum_field(const struct sphgi_piece *piece, int32_t dimension,
         field_in(piece, vectors, rows, count, at_target, partial, false);
 }
 
-/* Components of row k's source. */
-SPHGI_TEMPLATE struct four row_at(const struct sphgi_piece *piece, int32_t p, int32_t k,
-                                  const void *rows)
-{
-    const ptrdiff_t offset = (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
-    return gather_rows(rows, (const char *)piece->ids[p] + offset, piece->wide);
-}
-
 /* sum A_j PHI_j */
 static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t count,
                       void *partial)
@@ -163,7 +155,7 @@ static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t
         for (int32_t c = 0; c < 4; ++c)
             sum[c] = c < count ? begin_sum(piece, p, partial, c) : splat(R(0));
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            const struct four row = row_at(piece, p, k, rows);
+            const struct four row = gather_rows(rows, listed_in(piece, p, k));
             const vec phi = from(piece, SPHGI_PHI, k);
             sum[0] += row.x * phi;
             sum[1] += row.y * phi;
@@ -189,7 +181,7 @@ static void sum_vectors(const struct sphgi_piece *piece, int32_t dimension,
                 else
                     vectors_at(piece, k, vectors, false, g);
                 if (rows)
-                    g[c] *= row_at(piece, p, k, rows).x;
+                    g[c] *= gather_rows(rows, listed_in(piece, p, k)).x;
                 sum += g[c];
             }
             *partial_of(partial, c, piece->lane[p]) = sum;
@@ -228,15 +220,13 @@ static void reduce(const void *partial, int32_t sums, void *reduced)
 SPHGI_TEMPLATE vec weight_of(const struct sphgi_piece *piece, int32_t p, int32_t k,
                              const void *density, enum sphgi_weight kind)
 {
-    const char *ids =
-        (const char *)piece->ids[p] + (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
     vec weight = splat(R(1));
     if (kind == SPHGI_WEIGHT_V || kind == SPHGI_WEIGHT_V_PER_DENSITY)
         weight = from(piece, SPHGI_V, k);
     if (kind == SPHGI_WEIGHT_PER_DENSITY || kind == SPHGI_WEIGHT_V_PER_DENSITY) {
-        const vec rho = gather_rows(density, ids, piece->wide).x;
+        const vec rho = gather_rows(density, listed_in(piece, p, k)).x;
         /* the dummy row's density is 0, its weight must be, too */
-        weight = where(rho != splat(R(0)), weight / rho);
+        weight = where(differ(rho, splat(R(0))), weight / rho);
     }
     return weight;
 }
@@ -247,8 +237,7 @@ static void transposed(const struct sphgi_piece *piece, int32_t dimension,
     const bool three = dimension == 3;
     for (int32_t p = 0; p < piece->parts; ++p)
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            const char *ids = (const char *)piece->ids[p] +
-                              (ptrdiff_t)(k - piece->begin[p]) * (piece->wide ? 4 : 2);
+            const struct listed list = listed_in(piece, p, k);
             const vec weight = weight_of(piece, p, k, density, kind);
             const vec s = weight * from(piece, SPHGI_S, k);
             const vec gx = s * from(piece, SPHGI_X, k), gy = s * from(piece, SPHGI_Y, k);
@@ -260,9 +249,9 @@ static void transposed(const struct sphgi_piece *piece, int32_t dimension,
                     store(t + 2 * SPHGI_PIECE, s * from(piece, SPHGI_Z, k));
                 continue;
             }
-            const struct four c = gather_rows(rows[0], ids, piece->wide);
+            const struct four c = gather_rows(rows[0], list);
             if (three) {
-                const struct four e = gather_rows(rows[1], ids, piece->wide);
+                const struct four e = gather_rows(rows[1], list);
                 const vec gz = s * from(piece, SPHGI_Z, k);
                 store(t, c.x * gx + c.y * gy + c.z * gz);
                 store(t + SPHGI_PIECE, c.y * gx + c.w * gy + e.x * gz);

@@ -1,13 +1,21 @@
 /* Vectors of REAL: GCC and Clang vector extensions, and the few operations that those lack.
- * Parameters: REAL_IS_F64. Gives real, vec, mask, LANES, U (unit roundoff). */
+ * Parameters: REAL_IS_F64. Gives real, vec, mask, LANES, UNIT_ROUNDOFF. */
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
-#ifdef __AVX2__
-#define VECTOR_BYTES 32
+#if defined(__AVX512F__)
+#define VECTOR_BYTES   64
+#define VECTOR_TYPE(x) __m512##x
+#define VECTOR_OP(x)   _mm512_##x
+#elif defined(__AVX2__)
+#define VECTOR_BYTES   32
+#define VECTOR_TYPE(x) __m256##x
+#define VECTOR_OP(x)   _mm256_##x
 #else
-#define VECTOR_BYTES 16
+#define VECTOR_BYTES   16
+#define VECTOR_TYPE(x) __m128##x
+#define VECTOR_OP(x)   _mm_##x
 #endif
 
 #define R(x) ((real)(x))
@@ -15,15 +23,22 @@
 typedef double real;
 typedef int64_t lane_int;
 #define UNIT_ROUNDOFF 0x1p-53
+#define NATIVE        VECTOR_TYPE(d)
+#define OP(name)      VECTOR_OP(name##_pd)
+#define OP_MASK(name) VECTOR_OP(name##_pd_mask)
 #else
 typedef float real;
 typedef int32_t lane_int;
 #define UNIT_ROUNDOFF 0x1p-24
+#define NATIVE        VECTOR_TYPE()
+#define OP(name)      VECTOR_OP(name##_ps)
+#define OP_MASK(name) VECTOR_OP(name##_ps_mask)
 #endif
 #define LANES ((int)(VECTOR_BYTES / sizeof(real)))
+#define ALL   ((1u << LANES) - 1)
 
 typedef real vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
-typedef lane_int mask __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef lane_int bit_pattern __attribute__((vector_size(VECTOR_BYTES), may_alias));
 typedef real vec_anywhere
     __attribute__((vector_size(VECTOR_BYTES), aligned(__alignof__(real)), may_alias));
 
@@ -42,78 +57,110 @@ SPHGI_TEMPLATE vec splat(real x)
     return x - (vec){0};
 }
 
+SPHGI_TEMPLATE vec vabs(vec v)
+{
+    return (vec)((bit_pattern)v & ~(bit_pattern)splat(R(-0.0)));
+}
+
+/* ---- Masks: which lanes. They are joined by & | ~ ---------------------------------------------
+ */
+
+#if defined(__AVX512F__)
+typedef uint32_t mask; /* a bit a lane; those beyond the lanes mean nothing */
+
+SPHGI_TEMPLATE mask less(vec a, vec b)
+{
+    return OP_MASK(cmp)((NATIVE)a, (NATIVE)b, _CMP_LT_OQ);
+}
+SPHGI_TEMPLATE mask at_most(vec a, vec b)
+{
+    return OP_MASK(cmp)((NATIVE)a, (NATIVE)b, _CMP_LE_OQ);
+}
+SPHGI_TEMPLATE mask differ(vec a, vec b)
+{
+    return OP_MASK(cmp)((NATIVE)a, (NATIVE)b, _CMP_NEQ_UQ);
+}
+SPHGI_TEMPLATE mask first_lanes(int32_t count) /* the lanes below count, which may be any number */
+{
+    return count >= LANES ? ALL : count > 0 ? (1u << count) - 1 : 0;
+}
+SPHGI_TEMPLATE unsigned bits_of(mask m)
+{
+    return m & ALL;
+}
+#else
+typedef bit_pattern mask; /* all bits of a lane */
+
+SPHGI_TEMPLATE mask less(vec a, vec b)
+{
+    return (mask)(a < b);
+}
+SPHGI_TEMPLATE mask at_most(vec a, vec b)
+{
+    return (mask)(a <= b);
+}
+SPHGI_TEMPLATE mask differ(vec a, vec b)
+{
+    return (mask)(a != b);
+}
+SPHGI_TEMPLATE mask first_lanes(int32_t count) /* the lanes below count, which may be any number */
+{
+    mask numbers;
+    for (int k = 0; k < LANES; ++k)
+        numbers[k] = k;
+    return (mask)(numbers < (mask){0} + (lane_int)count);
+}
+SPHGI_TEMPLATE unsigned bits_of(mask m)
+{
+#if defined(__SSE2__)
+    return (unsigned)OP(movemask)((NATIVE)m);
+#else
+    unsigned bits = 0;
+    for (int k = 0; k < LANES; ++k)
+        bits |= (unsigned)(m[k] & 1) << k;
+    return bits;
+#endif
+}
+#endif
+
 SPHGI_TEMPLATE vec where(mask m, vec v) /* v where m, else +0 */
 {
-    return (vec)(m & (mask)v);
+#if defined(__AVX512F__) && REAL_IS_F64
+    return (vec)_mm512_maskz_mov_pd((__mmask8)m, (__m512d)v);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_maskz_mov_ps((__mmask16)m, (__m512)v);
+#else
+    return (vec)(m & (bit_pattern)v);
+#endif
 }
 
 SPHGI_TEMPLATE vec select(mask m, vec a, vec b) /* whole lanes: a where m, else b */
 {
-#if defined(__AVX2__) && REAL_IS_F64
-    return (vec)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)m);
+#if defined(__AVX512F__) && REAL_IS_F64
+    return (vec)_mm512_mask_blend_pd((__mmask8)m, (__m512d)b, (__m512d)a);
+#elif defined(__AVX512F__)
+    return (vec)_mm512_mask_blend_ps((__mmask16)m, (__m512)b, (__m512)a);
 #elif defined(__AVX2__)
-    return (vec)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)m);
+    return (vec)OP(blendv)((NATIVE)b, (NATIVE)a, (NATIVE)m);
 #else
-    return (vec)((m & (mask)a) | (~m & (mask)b));
+    return (vec)((m & (bit_pattern)a) | (~m & (bit_pattern)b));
 #endif
 }
 
-SPHGI_TEMPLATE vec vabs(vec v)
-{
-    return (vec)((mask)v & ~(mask)splat(R(-0.0)));
-}
+/* ---- Functions ------------------------------------------------------------------------------- */
 
-#if defined(__AVX2__) && REAL_IS_F64
+#if defined(__SSE2__)
 SPHGI_TEMPLATE vec vsqrt(vec v)
 {
-    return (vec)_mm256_sqrt_pd((__m256d)v);
+    return (vec)OP(sqrt)((NATIVE)v);
 }
 SPHGI_TEMPLATE vec vmax(vec a, vec b)
 {
-    return (vec)_mm256_max_pd((__m256d)a, (__m256d)b);
+    return (vec)OP(max)((NATIVE)a, (NATIVE)b);
 }
-SPHGI_TEMPLATE unsigned bits_of(mask m)
+SPHGI_TEMPLATE vec vmin(vec a, vec b)
 {
-    return (unsigned)_mm256_movemask_pd((__m256d)m);
-}
-#elif defined(__AVX2__)
-SPHGI_TEMPLATE vec vsqrt(vec v)
-{
-    return (vec)_mm256_sqrt_ps((__m256)v);
-}
-SPHGI_TEMPLATE vec vmax(vec a, vec b)
-{
-    return (vec)_mm256_max_ps((__m256)a, (__m256)b);
-}
-SPHGI_TEMPLATE unsigned bits_of(mask m)
-{
-    return (unsigned)_mm256_movemask_ps((__m256)m);
-}
-#elif defined(__SSE2__) && REAL_IS_F64
-SPHGI_TEMPLATE vec vsqrt(vec v)
-{
-    return (vec)_mm_sqrt_pd((__m128d)v);
-}
-SPHGI_TEMPLATE vec vmax(vec a, vec b)
-{
-    return (vec)_mm_max_pd((__m128d)a, (__m128d)b);
-}
-SPHGI_TEMPLATE unsigned bits_of(mask m)
-{
-    return (unsigned)_mm_movemask_pd((__m128d)m);
-}
-#elif defined(__SSE2__)
-SPHGI_TEMPLATE vec vsqrt(vec v)
-{
-    return (vec)_mm_sqrt_ps((__m128)v);
-}
-SPHGI_TEMPLATE vec vmax(vec a, vec b)
-{
-    return (vec)_mm_max_ps((__m128)a, (__m128)b);
-}
-SPHGI_TEMPLATE unsigned bits_of(mask m)
-{
-    return (unsigned)_mm_movemask_ps((__m128)m);
+    return (vec)OP(min)((NATIVE)a, (NATIVE)b);
 }
 #else
 SPHGI_TEMPLATE vec vsqrt(vec v)
@@ -124,178 +171,24 @@ SPHGI_TEMPLATE vec vsqrt(vec v)
 }
 SPHGI_TEMPLATE vec vmax(vec a, vec b)
 {
-    return select(a > b, a, b);
+    return select(less(b, a), a, b);
 }
-SPHGI_TEMPLATE unsigned bits_of(mask m)
-{
-    unsigned bits = 0;
-    for (int k = 0; k < LANES; ++k)
-        bits |= (unsigned)(m[k] & 1) << k;
-    return bits;
-}
-#endif
-
 SPHGI_TEMPLATE vec vmin(vec a, vec b)
 {
-#if defined(__AVX2__) && REAL_IS_F64
-    return (vec)_mm256_min_pd((__m256d)a, (__m256d)b);
-#elif defined(__AVX2__)
-    return (vec)_mm256_min_ps((__m256)a, (__m256)b);
-#elif defined(__SSE2__) && REAL_IS_F64
-    return (vec)_mm_min_pd((__m128d)a, (__m128d)b);
-#elif defined(__SSE2__)
-    return (vec)_mm_min_ps((__m128)a, (__m128)b);
-#else
     return -vmax(-a, -b);
+}
 #endif
-}
-
-SPHGI_TEMPLATE mask less(vec a, vec b)
-{
-    return (mask)(a < b);
-}
-
-SPHGI_TEMPLATE mask first_lanes(int32_t count) /* the lanes below count, which may be any number */
-{
-    mask numbers;
-    for (int k = 0; k < LANES; ++k)
-        numbers[k] = k;
-    return (mask)(numbers < (mask){0} + (lane_int)count);
-}
 
 /* Keeps the compiler from fusing a product into a following sum: the neighbour predicate is
  * defined without FMA (docs/theory.md, section 1). */
 SPHGI_TEMPLATE vec rounded(vec v)
 {
-#ifdef __FMA__
+#if defined(__AVX512F__)
+    __asm__("" : "+v"(v));
+#elif defined(__FMA__)
     __asm__("" : "+x"(v));
 #elif defined(__aarch64__)
     __asm__("" : "+w"(v));
 #endif
     return v;
-}
-
-/* sum over the lanes of a[k], for k = 0 .. LANES - 1, in lane k. */
-SPHGI_TEMPLATE vec sum_across(const vec *a)
-{
-#if REAL_IS_F64 && VECTOR_BYTES == 16
-    return __builtin_shufflevector(a[0], a[1], 0, 2) + __builtin_shufflevector(a[0], a[1], 1, 3);
-#elif REAL_IS_F64
-    const vec ab = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) +
-                   __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
-    const vec cd = __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) +
-                   __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
-    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
-           __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-#elif VECTOR_BYTES == 16
-    const vec ab = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5) +
-                   __builtin_shufflevector(a[0], a[1], 2, 6, 3, 7);
-    const vec cd = __builtin_shufflevector(a[2], a[3], 0, 4, 1, 5) +
-                   __builtin_shufflevector(a[2], a[3], 2, 6, 3, 7);
-    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
-           __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-#else
-    vec pair[4], four[2];
-    for (int k = 0; k < 4; ++k)
-        pair[k] = __builtin_shufflevector(a[2 * k], a[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13) +
-                  __builtin_shufflevector(a[2 * k], a[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-    for (int k = 0; k < 2; ++k)
-        four[k] = __builtin_shufflevector(pair[2 * k], pair[2 * k + 1], 0, 1, 8, 9, 4, 5, 12, 13) +
-                  __builtin_shufflevector(pair[2 * k], pair[2 * k + 1], 2, 3, 10, 11, 6, 7, 14, 15);
-    return __builtin_shufflevector(four[0], four[1], 0, 1, 2, 3, 8, 9, 10, 11) +
-           __builtin_shufflevector(four[0], four[1], 4, 5, 6, 7, 12, 13, 14, 15);
-#endif
-}
-
-/* Four numbers each of LANES rows, as four vectors. at(k) is the k-th row. */
-struct four {
-    vec x, y, z, w;
-};
-
-typedef real quad
-    __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
-
-#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes of f32 */
-SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
-{
-    return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-/* [row][number] to [number][row] in each half, and back. */
-SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
-{
-    const vec ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-    const vec AB = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-    const vec cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-    const vec CD = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-    return (struct four){__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
-                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
-}
-SPHGI_TEMPLATE struct four transpose(const real *const *row)
-{
-    return turned(two_rows(row[0], row[4]), two_rows(row[1], row[5]), two_rows(row[2], row[6]),
-                  two_rows(row[3], row[7]));
-}
-SPHGI_TEMPLATE quad half_of(vec v, int half)
-{
-    return half ? __builtin_shufflevector(v, v, 4, 5, 6, 7)
-                : __builtin_shufflevector(v, v, 0, 1, 2, 3);
-}
-SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
-{
-    const struct four t = turned(v.x, v.y, v.z, v.w);
-    for (int half = 0; half < 2; ++half) {
-        rows[4 * half] = half_of(t.x, half);
-        rows[4 * half + 1] = half_of(t.y, half);
-        rows[4 * half + 2] = half_of(t.z, half);
-        rows[4 * half + 3] = half_of(t.w, half);
-    }
-}
-#elif REAL_IS_F64 && VECTOR_BYTES == 16
-SPHGI_TEMPLATE struct four transpose(const real *const *row)
-{
-    const vec a = load(row[0]), A = load(row[0] + 2), b = load(row[1]), B = load(row[1] + 2);
-    return (struct four){__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3),
-                         __builtin_shufflevector(A, B, 0, 2), __builtin_shufflevector(A, B, 1, 3)};
-}
-SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
-{
-    for (int l = 0; l < 2; ++l)
-        rows[l] = (quad){v.x[l], v.y[l], v.z[l], v.w[l]};
-}
-#else /* four lanes */
-SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
-{
-    const vec ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-    const vec AB = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const vec cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    const vec CD = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    return (struct four){
-        __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(AB, CD, 0, 1, 4, 5),
-        __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(AB, CD, 2, 3, 6, 7)};
-}
-SPHGI_TEMPLATE struct four transpose(const real *const *row)
-{
-    return turned(load(row[0]), load(row[1]), load(row[2]), load(row[3]));
-}
-SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
-{
-    const struct four t = turned(v.x, v.y, v.z, v.w);
-    rows[0] = (quad)t.x;
-    rows[1] = (quad)t.y;
-    rows[2] = (quad)t.z;
-    rows[3] = (quad)t.w;
-}
-#endif
-
-/* The rows that ids[0 .. LANES) stand for. */
-SPHGI_TEMPLATE struct four gather_rows(const real *rows, const void *ids, bool wide)
-{
-    const real *row[LANES];
-    for (int k = 0; k < LANES; ++k) {
-        const size_t id = wide ? ((const uint32_t *)ids)[k] : ((const uint16_t *)ids)[k];
-        row[k] = rows + SPHGI_ROW / SPHGI_ID_STEP * id;
-    }
-    return transpose(row);
 }

@@ -19,6 +19,7 @@ sphg_context *fixture_context_of(int threads)
 {
     sphg_config config = {0};
     config.threads = threads;
+    config.isa = test_isa();
     sphg_context *context = NULL;
     FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
     test_at_end(destroy_context, context);

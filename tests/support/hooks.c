@@ -1,4 +1,5 @@
 #include "hooks.h"
+#include "test.h"
 #include <stdalign.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,6 +110,7 @@ sphg_config hooks_config(hooks *host, int32_t threads)
 {
     sphg_config config = {0};
     config.threads = threads;
+    config.isa = test_isa();
     config.allocate = hooks_allocate;
     config.release = hooks_release;
     config.log = hooks_log;

@@ -1,5 +1,6 @@
 #include "test.h"
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,6 +85,43 @@ static void release_all(void)
         entry->release(entry->object);
         free(entry);
     }
+}
+
+static bool is_here(sphg_isa isa)
+{
+    const sphg_config config = {.threads = 1, .isa = isa};
+    sphg_context *context = NULL;
+    const bool here = sphg_context_create(SPHG_VERSION, &config, &context) == SPHG_OK;
+    sphg_context_destroy(context);
+    return here;
+}
+
+static sphg_isa wanted_isa(void)
+{
+    static const struct {
+        const char *name;
+        sphg_isa isa;
+    } known[] = {{"base", SPHG_ISA_BASE},
+                 {"v3", SPHG_ISA_X86_V3},
+                 {"v4", SPHG_ISA_X86_V4},
+                 {"neon", SPHG_ISA_NEON}};
+    const char *wanted = getenv("SPHG_TEST_ISA");
+    for (size_t k = 0; wanted && k < sizeof known / sizeof known[0]; k++)
+        if (strcmp(wanted, known[k].name) == 0 && is_here(known[k].isa))
+            return known[k].isa;
+    if (wanted && *wanted)
+        printf("instruction set %s: not here, the best one instead\n", wanted);
+    return SPHG_ISA_BEST;
+}
+
+sphg_isa test_isa(void)
+{
+    static bool known;
+    static sphg_isa isa;
+    if (!known)
+        isa = wanted_isa();
+    known = true;
+    return isa;
 }
 
 const char *test_text(const char *format, ...)

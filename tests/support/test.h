@@ -52,6 +52,10 @@ typedef struct test_entry {
 /* A property without parameters. */
 #define TEST_ONCE(property) TEST_ENTRY(property, 0, 0, 0, 0)
 
+/* The instruction set that contexts of tests ask for: the best one, unless SPHG_TEST_ISA says base,
+ * v3, v4 or neon and this machine has that; if it has not, the run says so. */
+sphg_isa test_isa(void);
+
 /* Runs everything, or what matches the pattern in argv[1] ('*' and '?' are wildcards), and prints
  * the worst value measured against each tolerance. Returns main's result. */
 int test_run(int argc, char **argv, const test_entry *entries, size_t count);

@@ -1,0 +1,255 @@
+/* What crosses the lanes of vectors: sums over them, and rows of four numbers turned into vectors
+ * and back. */
+
+#if VECTOR_BYTES == 64
+/* Sums over the quarters of a, b in each half of the result, two by two; twice gives a sum. */
+SPHGI_TEMPLATE vec sum_quarters(vec a, vec b)
+{
+#if REAL_IS_F64
+    return (vec)_mm512_shuffle_f64x2((__m512d)a, (__m512d)b, 0x88) +
+           (vec)_mm512_shuffle_f64x2((__m512d)a, (__m512d)b, 0xdd);
+#else
+    return (vec)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0x88) +
+           (vec)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0xdd);
+#endif
+}
+SPHGI_TEMPLATE vec unpacked_sum(vec a, vec b)
+{
+    return (vec)OP(unpacklo)((NATIVE)a, (NATIVE)b) + (vec)OP(unpackhi)((NATIVE)a, (NATIVE)b);
+}
+#endif
+
+/* sum over the lanes of a[k], for k = 0 .. LANES - 1, in lane k. */
+SPHGI_TEMPLATE vec sum_across(const vec *a)
+{
+#if VECTOR_BYTES == 64
+    vec quarter[4]; /* a 128-bit quarter sums the same quarter of as many vectors as it has lanes */
+#if REAL_IS_F64
+    for (int k = 0; k < 4; ++k)
+        quarter[k] = unpacked_sum(a[2 * k], a[2 * k + 1]);
+#else
+    for (int k = 0; k < 4; ++k) {
+        const __m512 low = (__m512)unpacked_sum(a[4 * k], a[4 * k + 1]);
+        const __m512 high = (__m512)unpacked_sum(a[4 * k + 2], a[4 * k + 3]);
+        quarter[k] =
+            (vec)_mm512_shuffle_ps(low, high, 0x44) + (vec)_mm512_shuffle_ps(low, high, 0xee);
+    }
+#endif
+    return sum_quarters(sum_quarters(quarter[0], quarter[1]), sum_quarters(quarter[2], quarter[3]));
+#elif REAL_IS_F64 && VECTOR_BYTES == 16
+    return __builtin_shufflevector(a[0], a[1], 0, 2) + __builtin_shufflevector(a[0], a[1], 1, 3);
+#elif REAL_IS_F64
+    const vec ab = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) +
+                   __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
+    const vec cd = __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) +
+                   __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
+    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
+           __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+#elif VECTOR_BYTES == 16
+    const vec ab = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5) +
+                   __builtin_shufflevector(a[0], a[1], 2, 6, 3, 7);
+    const vec cd = __builtin_shufflevector(a[2], a[3], 0, 4, 1, 5) +
+                   __builtin_shufflevector(a[2], a[3], 2, 6, 3, 7);
+    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
+           __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+#else
+    vec pair[4], four[2];
+    for (int k = 0; k < 4; ++k)
+        pair[k] = __builtin_shufflevector(a[2 * k], a[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13) +
+                  __builtin_shufflevector(a[2 * k], a[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    for (int k = 0; k < 2; ++k)
+        four[k] = __builtin_shufflevector(pair[2 * k], pair[2 * k + 1], 0, 1, 8, 9, 4, 5, 12, 13) +
+                  __builtin_shufflevector(pair[2 * k], pair[2 * k + 1], 2, 3, 10, 11, 6, 7, 14, 15);
+    return __builtin_shufflevector(four[0], four[1], 0, 1, 2, 3, 8, 9, 10, 11) +
+           __builtin_shufflevector(four[0], four[1], 4, 5, 6, 7, 12, 13, 14, 15);
+#endif
+}
+
+/* Four numbers each of LANES rows, as four vectors. at(k) is the k-th row. */
+struct four {
+    vec x, y, z, w;
+};
+
+typedef real quad
+    __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
+
+#if VECTOR_BYTES == 64 && REAL_IS_F64
+SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
+{
+    return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+/* [row][number] to [number][row] in each half, and back. */
+SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
+{
+    const vec ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    const vec AB = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    const vec cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+    const vec CD = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    return (struct four){__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
+                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
+                         __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+                         __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
+}
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    return turned(two_rows(row[0], row[4]), two_rows(row[1], row[5]), two_rows(row[2], row[6]),
+                  two_rows(row[3], row[7]));
+}
+SPHGI_TEMPLATE void put_parts(vec v, quad *to)
+{
+    to[0] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
+    to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    put_parts(t.x, rows);
+    put_parts(t.y, rows + 1);
+    put_parts(t.z, rows + 2);
+    put_parts(t.w, rows + 3);
+}
+#elif VECTOR_BYTES == 64
+SPHGI_TEMPLATE vec four_rows(const real *const *row)
+{
+    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(row[0]));
+    v = _mm512_insertf32x4(v, _mm_loadu_ps(row[4]), 1);
+    v = _mm512_insertf32x4(v, _mm_loadu_ps(row[8]), 2);
+    return (vec)_mm512_insertf32x4(v, _mm_loadu_ps(row[12]), 3);
+}
+/* [row][number] to [number][row] in each quarter, and back. */
+SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
+{
+    const __m512 ab = _mm512_unpacklo_ps((__m512)a, (__m512)b);
+    const __m512 AB = _mm512_unpackhi_ps((__m512)a, (__m512)b);
+    const __m512 cd = _mm512_unpacklo_ps((__m512)c, (__m512)d);
+    const __m512 CD = _mm512_unpackhi_ps((__m512)c, (__m512)d);
+    return (struct four){(vec)_mm512_shuffle_ps(ab, cd, 0x44), (vec)_mm512_shuffle_ps(ab, cd, 0xee),
+                         (vec)_mm512_shuffle_ps(AB, CD, 0x44),
+                         (vec)_mm512_shuffle_ps(AB, CD, 0xee)};
+}
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    return turned(four_rows(row), four_rows(row + 1), four_rows(row + 2), four_rows(row + 3));
+}
+SPHGI_TEMPLATE void put_parts(vec v, quad *to)
+{
+    to[0] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
+    to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    to[8] = __builtin_shufflevector(v, v, 8, 9, 10, 11);
+    to[12] = __builtin_shufflevector(v, v, 12, 13, 14, 15);
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    put_parts(t.x, rows);
+    put_parts(t.y, rows + 1);
+    put_parts(t.z, rows + 2);
+    put_parts(t.w, rows + 3);
+}
+#elif VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes of f32 */
+SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
+{
+    return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+/* [row][number] to [number][row] in each half, and back. */
+SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
+{
+    const vec ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const vec AB = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const vec cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const vec CD = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    return (struct four){__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
+                         __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
+                         __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
+}
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    return turned(two_rows(row[0], row[4]), two_rows(row[1], row[5]), two_rows(row[2], row[6]),
+                  two_rows(row[3], row[7]));
+}
+SPHGI_TEMPLATE quad half_of(vec v, int half)
+{
+    return half ? __builtin_shufflevector(v, v, 4, 5, 6, 7)
+                : __builtin_shufflevector(v, v, 0, 1, 2, 3);
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    for (int half = 0; half < 2; ++half) {
+        rows[4 * half] = half_of(t.x, half);
+        rows[4 * half + 1] = half_of(t.y, half);
+        rows[4 * half + 2] = half_of(t.z, half);
+        rows[4 * half + 3] = half_of(t.w, half);
+    }
+}
+#elif REAL_IS_F64 && VECTOR_BYTES == 16
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    const vec a = load(row[0]), A = load(row[0] + 2), b = load(row[1]), B = load(row[1] + 2);
+    return (struct four){__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3),
+                         __builtin_shufflevector(A, B, 0, 2), __builtin_shufflevector(A, B, 1, 3)};
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    for (int l = 0; l < 2; ++l)
+        rows[l] = (quad){v.x[l], v.y[l], v.z[l], v.w[l]};
+}
+#else /* four lanes */
+SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
+{
+    const vec ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    const vec AB = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const vec cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const vec CD = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    return (struct four){
+        __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(AB, CD, 0, 1, 4, 5),
+        __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(AB, CD, 2, 3, 6, 7)};
+}
+SPHGI_TEMPLATE struct four transpose(const real *const *row)
+{
+    return turned(load(row[0]), load(row[1]), load(row[2]), load(row[3]));
+}
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    rows[0] = (quad)t.x;
+    rows[1] = (quad)t.y;
+    rows[2] = (quad)t.z;
+    rows[3] = (quad)t.w;
+}
+#endif
+
+/* Ids of a list, padded to SPHGI_PAD. Long vectors read beyond that: there they see the dummies. */
+struct listed {
+    const void *ids;
+    int32_t count;
+    const void *dummies; /* SPHGI_PAD ids */
+    bool wide;
+};
+
+SPHGI_TEMPLATE struct listed after(struct listed list, int32_t ids)
+{
+    list.ids = (const char *)list.ids + ids * (list.wide ? 4 : 2);
+    list.count -= ids;
+    return list;
+}
+
+SPHGI_TEMPLATE size_t id_at(const void *ids, int k, bool wide)
+{
+    return wide ? ((const uint32_t *)ids)[k] : ((const uint16_t *)ids)[k];
+}
+
+/* The rows that the first LANES ids stand for. */
+SPHGI_TEMPLATE struct four gather_rows(const real *rows, struct listed list)
+{
+    const real *row[LANES];
+    for (int k = 0; k < LANES; k += SPHGI_PAD) {
+        const void *ids = after(list, k).ids;
+        if (VECTOR_BYTES == 64)
+            ids = list.count > k ? ids : list.dummies;
+        for (int l = k; l < LANES && l < k + SPHGI_PAD; ++l)
+            row[l] = rows + SPHGI_ROW / SPHGI_ID_STEP * id_at(ids, l - k, list.wide);
+    }
+    return transpose(row);
+}

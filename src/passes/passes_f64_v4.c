@@ -1,0 +1,4 @@
+/* All passes for double, x86-64-v4 (AVX-512 F, BW, DQ, VL). */
+#define REAL_IS_F64 1
+#define SUFFIX      f64_v4
+#include "passes.inl.h"
