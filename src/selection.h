@@ -6,10 +6,11 @@
 struct sphgi_selection {
     const sphg_subset *subset; /* NULL: all targets */
     int32_t target_count;
-    int32_t begin, end; /* of the items to look at: targets, or entries of indices */
-    uint8_t *active;    /* by place in grid order; NULL: all */
-    int32_t *blocks;    /* with an active target; NULL: all */
-    int32_t block_count;
+    int32_t begin, end;  /* of the items to look at: targets, or entries of indices */
+    uint8_t *active;     /* by place in grid order; NULL: the subset says it target by target */
+    int32_t *blocks;     /* with an active target, ~block if those are few; NULL: all */
+    int32_t block_count; /* of the list */
+    int32_t full_blocks; /* those with more than a few */
 };
 
 struct sphgi_selection sphgi_selection_of(const sphg_subset *subset, int32_t target_count);
@@ -22,10 +23,23 @@ static inline int32_t sphgi_selected(const struct sphgi_selection *selection, in
     return subset && subset->mask && !subset->mask[target] ? -1 : target;
 }
 
-/* Marks places and blocks of a searched object's grid; costs as much as is selected. False: out of
- * memory. Marks are taken back by sphgi_selection_unmark(). */
-bool sphgi_selection_mark(sphg_context *context, struct sphgi_selection *selection,
+/* Is that target, which has this place in grid order, selected? After sphgi_selection_open(). */
+static inline bool sphgi_is_selected(const struct sphgi_selection *selection, int32_t place,
+                                     int32_t target)
+{
+    const sphg_subset *subset = selection->subset;
+    if (!subset)
+        return true;
+    if (selection->active)
+        return selection->active[place];
+    return target >= selection->begin && target < selection->end &&
+           (!subset->mask || subset->mask[target]);
+}
+
+/* Lists the blocks of a searched object's grid that hold a selected target. Costs as much as is
+ * selected where that is little, else a look at each place. False: out of memory. */
+bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selection,
                           const sphg_neighbors *neighbors);
-void sphgi_selection_unmark(struct sphgi_selection *selection, const sphg_neighbors *neighbors);
+void sphgi_selection_close(struct sphgi_selection *selection, const sphg_neighbors *neighbors);
 
 #endif

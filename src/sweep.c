@@ -8,7 +8,7 @@
 
 enum {
     LEAST_TARGETS = 512, /* of a task: fewer are not worth a thread */
-    PACK_WORTH = 4       /* fields are packed when at least a 4th of the targets is selected */
+    PACK_WORTH = 4       /* fields are packed when at least a 4th of them is read */
 };
 
 /* ---- One sweep ------------------------------------------------------------------------------ */
@@ -72,23 +72,25 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     sphg_context *context = sweep->context;
     const sphg_neighbors *n = sweep->set->neighbors;
     const int32_t items = selection->end - selection->begin;
+    const bool searched = n->kind == SPHGI_SEARCHED, some = searched && selection->subset;
     sweep->position_passes = sphgi_passes_of(context, n->position_type);
-    sweep->packed = (int64_t)items * PACK_WORTH >= n->source_count;
     look_at_volumes(sweep, tally);
-    const bool searched = n->kind == SPHGI_SEARCHED;
-    const bool marks = searched && selection->subset;
-    if ((sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) || !open_workers(sweep) ||
-        (marks && !sphgi_selection_mark(context, selection, n)))
+    if (some && !sphgi_selection_open(context, selection, n))
         return SPHG_ERROR_MEMORY;
-    const int32_t blocks = marks      ? selection->block_count
-                           : searched ? sphgi_target_grid(n)->block_count
-                                      : 0;
-    if (searched)
-        sphgi_parallel_for(context, sphgi_block_task, task, blocks, grain_of(blocks, items));
-    else
+    const int32_t all = searched ? sphgi_target_grid(n)->block_count : n->source_count;
+    const int32_t work = some ? selection->block_count : searched ? all : items;
+    const int32_t reading = some ? selection->full_blocks : work;
+    sweep->packed = (int64_t)reading * PACK_WORTH >= all;
+    const bool ready =
+        !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) && open_workers(sweep);
+    if (ready && searched)
+        sphgi_parallel_for(context, sphgi_block_task, task, work, grain_of(all, n->target_count));
+    else if (ready)
         sphgi_parallel_for(context, sphgi_list_task, task, items, LEAST_TARGETS);
-    if (marks)
-        sphgi_selection_unmark(selection, n);
+    if (some)
+        sphgi_selection_close(selection, n);
+    if (!ready)
+        return SPHG_ERROR_MEMORY;
     close_workers(sweep, tally);
     return SPHG_OK;
 }

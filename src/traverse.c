@@ -47,22 +47,58 @@ static int32_t target_at(const sphg_neighbors *n, int32_t place)
 
 static bool is_active(const struct sphgi_task *task, int32_t place)
 {
-    return !task->selection->active || task->selection->active[place];
+    return sphgi_is_selected(task->selection, place, target_at(task->sweep.set->neighbors, place));
 }
 
-static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
-                      int32_t end, const uint16_t *ids, const uint16_t *lengths)
+static int32_t padded(int32_t length)
+{
+    return (length + SPHGI_PAD - 1) & -SPHGI_PAD;
+}
+
+static void sweep_all_of(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
+                         int32_t end, const uint16_t *ids, const uint16_t *lengths)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const int32_t *order = sphgi_target_grid(n)->order.data;
     const size_t row_size = SPHGI_ROW * sphgi_size_of_type(n->position_type);
     const char *row = sphgi_target_row(n, begin);
-    const uint8_t *active = task->selection->active;
     for (int32_t t = begin; t < end; ++t, ++lengths, row += row_size) {
-        if (!active || active[t])
-            add_listed(w, order[t], t, row, ids, *lengths, false);
-        ids += (*lengths + SPHGI_PAD - 1) & -SPHGI_PAD;
+        add_listed(w, order[t], t, row, ids, *lengths, false);
+        ids += padded(*lengths);
     }
+}
+
+/* The selected ones are picked first, without a branch that nobody could foresee. */
+static void sweep_some_of(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
+                          int32_t end, const uint16_t *ids, const uint16_t *lengths)
+{
+    enum { PICKED = 64 };
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    int32_t place[PICKED + 1];
+    const uint16_t *list[PICKED + 1];
+    for (int32_t t = begin; t < end;) {
+        const int32_t stop = sphgi_min32(t + PICKED, end);
+        int32_t picked = 0;
+        for (; t < stop; ++t) {
+            place[picked] = t;
+            list[picked] = ids;
+            ids += padded(lengths[t - begin]);
+            picked += is_active(task, t);
+        }
+        for (int32_t k = 0; k < picked; ++k)
+            add_listed(w, target_at(n, place[k]), place[k], sphgi_target_row(n, place[k]), list[k],
+                       lengths[place[k] - begin], false);
+    }
+}
+
+/* Targets [begin, end), whose lists follow one another. */
+static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
+                      int32_t end, const uint16_t *ids, const uint16_t *lengths)
+{
+    if (task->selection->subset)
+        sweep_some_of(task, w, begin, end, ids, lengths);
+    else
+        sweep_all_of(task, w, begin, end, ids, lengths);
 }
 
 static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block)
@@ -76,6 +112,64 @@ static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker 
     sphgi_stage_block(w, &around);
     sweep_run(task, w, first, end, ids, lengths + first);
     run_rest(w, false);
+}
+
+/* Staged numbers to those of rows: ranges follow one another among the staged ones. */
+static void unstage(const struct sphgi_surroundings *around, const uint16_t *ids, int32_t count,
+                    uint32_t *rows)
+{
+    int32_t range = 0, first = 1; /* the staged number of its first row */
+    for (int32_t k = 0; k < count; ++k) {
+        const int32_t number = ids[k] / SPHGI_ID_STEP;
+        if (number < first) /* lists go up but for one step back */
+            range = 0, first = 1;
+        while (number >= first + around->count[range])
+            first += around->count[range++];
+        rows[k] = (uint32_t)(around->begin[range] + number - first);
+    }
+}
+
+/* What is far apart in memory should be on its way before the first of it is read. */
+static void ask_for_rows(const sphg_neighbors *n, const uint32_t *rows, int32_t count)
+{
+    const size_t size = SPHGI_ROW * sphgi_size_of_type(n->position_type);
+    const char *position = n->sources.rows.data;
+    const int32_t *order = n->sources.order.data;
+    for (int32_t k = 0; k < count; ++k) {
+        __builtin_prefetch(position + rows[k] * size);
+        __builtin_prefetch(order + rows[k]);
+    }
+    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
+}
+
+/* So few targets that it does not pay to stage everything around them: their rows alone. */
+static void sweep_sparse_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+                               const struct sphgi_finder *finder)
+{
+    enum { ROOM = SPHGI_UNITS_MOST / 2 }; /* numbers */
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const uint16_t *lengths = n->found.lengths.data;
+    uint32_t *rows = (uint32_t *)(void *)finder->ids;
+    int32_t used = 0;
+    struct sphgi_surroundings around;
+    const uint16_t *ids = sphgi_kept_ids(n, block, &around);
+    sphgi_use_local_rows(w);
+    for (int32_t t = grid->blocks[block].first; t < grid->blocks[block + 1].first; ++t) {
+        const int32_t length = lengths[t];
+        if (is_active(task, t)) {
+            if (used + length > ROOM) {
+                run_rest(w, true);
+                used = 0;
+            }
+            unstage(&around, ids, length, rows + used);
+            ask_for_rows(n, rows + used, length);
+            add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), rows + used, length, true);
+            used += length;
+        }
+        ids += padded(length);
+    }
+    run_rest(w, true);
 }
 
 /* Nothing is kept: pairs are found cell by cell and used at once; they only have to stay until the
@@ -172,15 +266,19 @@ static void sweep_unkept_block(const struct sphgi_task *task, struct sphgi_worke
     }
 }
 
-static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
+static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t number,
                         const struct sphgi_finder *finder)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
+    const bool sparse = number < 0;
+    const int32_t block = sparse ? ~number : number;
     if (!sphgi_is_kept(n, block)) {
         sweep_unkept_block(task, w, block, finder);
     } else if (sphgi_is_kept_wide(n, block)) {
         sphgi_use_local_rows(w);
         sweep_kept_wide_block(task, w, block);
+    } else if (sparse) {
+        sweep_sparse_block(task, w, block, finder);
     } else {
         sweep_kept_block(task, w, block);
     }

@@ -225,8 +225,7 @@ static void mirror_images_have_mirrored_bits(const test_case *test)
     }
 }
 
-/* ---- Subsets and threads
- * ---------------------------------------------------------------------------- */
+/* ---- Subsets and threads ------------------------------------------------------------------ */
 
 static void require_subset(const stage *on, const stage_field *field, const stage_result *full,
                            const sphg_subset *subset, const uint8_t *expected)
@@ -244,29 +243,39 @@ static void require_subset(const stage *on, const stage_field *field, const stag
     }
 }
 
+/* One of so many, by mask and by list, picked at random and in a row. */
+static void require_share(const stage *on, const stage_field *field, const stage_result *full,
+                          int share, random_state *random)
+{
+    const int n = on->points.count;
+    uint8_t *mask = test_memory((size_t)n), *range = test_memory((size_t)n);
+    int32_t *indices = test_memory((size_t)n * sizeof *indices), count = 0;
+    const int32_t begin = random_index(random, n - n / share), end = begin + n / share;
+    for (int i = n - 1; i >= 0; i--) {
+        mask[i] = (uint8_t)(random_index(random, share) == 0);
+        range[i] = i >= begin && i < end;
+        if (mask[i])
+            indices[count++] = i;
+    }
+    const sphg_subset by_mask = {0, n, NULL, mask}, by_range = {begin, end, NULL, NULL};
+    const sphg_subset by_list = {0, count, indices, NULL};
+    require_subset(on, field, full, &by_mask, mask);
+    require_subset(on, field, full, &by_range, range);
+    require_subset(on, field, full, &by_list, mask);
+}
+
 static void subsets_have_the_bits_of_the_full_run(const test_case *test)
 {
-    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    static const int shares[] = {2, 3, 40, 300};
+    random_state jitter = random_seeded(52);
+    const int d = test->dimension;
+    const cloud points = cloud_jittered(d, d == 2 ? 40 : 12, 1, .3, &jitter); /* several blocks */
+    stage on = stage_of(test, "several blocks", points, 2.25);
     stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_VECTOR, 6)};
     stage_result full = stage_apply(&on, &field, NULL);
-    int n = on.points.count;
-    uint8_t *mask = test_memory((size_t)n), *range = test_memory((size_t)n);
-    uint8_t *listed = test_memory((size_t)n);
-    int32_t *indices = test_memory((size_t)n * sizeof *indices), count = 0;
     random_state random = random_seeded(53);
-    for (int i = 0; i < n; i++) {
-        mask[i] = (uint8_t)(random_index(&random, 3) == 0);
-        range[i] = i >= 5 && i < n - 9;
-        listed[i] = i % 3 == 1;
-    }
-    for (int i = n - 1; i >= 0; i--)
-        if (listed[i])
-            indices[count++] = i;
-    sphg_subset by_mask = {0, n, NULL, mask}, by_range = {5, n - 9, NULL, NULL};
-    sphg_subset by_list = {0, count, indices, NULL};
-    require_subset(&on, &field, &full, &by_mask, mask);
-    require_subset(&on, &field, &full, &by_range, range);
-    require_subset(&on, &field, &full, &by_list, listed);
+    for (size_t k = 0; k < sizeof shares / sizeof shares[0]; k++)
+        require_share(&on, &field, &full, shares[k], &random);
 }
 
 static void threads_do_not_change_a_bit(const test_case *test)
