@@ -84,8 +84,7 @@ static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w, int32_t t
     return (struct sphgi_cleaning){.mask = n->lists.index_mask ? (uint32_t)n->lists.index_mask
                                                                : UINT32_MAX,
                                    .sources = (uint32_t)n->source_count,
-                                   .self = n->part_of ? (uint32_t)target : UINT32_MAX,
-                                   .dummy = w->gather.dummy};
+                                   .self = n->part_of ? (uint32_t)target : UINT32_MAX};
 }
 
 /* Remembers the first target whose list holds what is no source, and what that is. */

@@ -72,6 +72,12 @@ static void stage_positions(struct sphgi_worker *w, const struct sphgi_surroundi
     }
 }
 
+/* NaN: nobody is near. What is read of it is dropped, which costs more than a row that is far. */
+static void make_dummy(char *row, sphg_type type)
+{
+    memset(row, 0xff, row_size(type));
+}
+
 /* Moves the dummy away from everything around the block, so that padding has no weight. False: its
  * distance, squared, could leave the range of the type. */
 static bool move_away(struct sphgi_worker *w, double reach)
@@ -105,6 +111,8 @@ void sphgi_stage_block(struct sphgi_worker *w, const struct sphgi_surroundings *
     w->gather.dummy = 0;
     w->gather.guarded = w->gather.periodic || w->gather.superset || around->staged < 2 ||
                         !move_away(w, n->radius + n->skin);
+    if (w->gather.guarded)
+        make_dummy(w->staged_positions, n->position_type);
     w->local = false;
 }
 
@@ -112,9 +120,9 @@ void sphgi_stage_block(struct sphgi_worker *w, const struct sphgi_surroundings *
 void sphgi_use_local_rows(struct sphgi_worker *w)
 {
     const struct sphgi_sweep *sweep = w->sweep;
-    const size_t position = row_size(sweep->set->neighbors->position_type);
+    const sphg_type type = sweep->set->neighbors->position_type;
     const size_t size = row_size(sweep->plan->type);
-    memset(w->staged_positions + SPHGI_PIECE * position, 0, position);
+    make_dummy(w->staged_positions + SPHGI_PIECE * row_size(type), type);
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
         char *rows = w->staged_rows + (size_t)s * (SPHGI_PIECE + 1) * size;
         memset(rows + SPHGI_PIECE * size, 0, size);
@@ -194,8 +202,8 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
     for (size_t s = 0; s < streams; ++s) /* the dummy rows */
         memset(packing.rows + ((s + 1) * rows - 1) * row_size(type), 0, row_size(type));
-    if (positions) /* NaN: no target is near the dummy */
-        memset(memory + (rows - 1) * row_size(n->position_type), 0xff, row_size(n->position_type));
+    if (positions)
+        make_dummy(memory + (rows - 1) * row_size(n->position_type), n->position_type);
     sweep->packed_positions = packing.positions;
     sweep->packed_rows = packing.rows;
     *bad_volume |= atomic_load(&packing.bad_volume);

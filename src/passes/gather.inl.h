@@ -97,37 +97,64 @@ SPHGI_TEMPLATE struct listed listed_in(const struct sphgi_piece *piece, int32_t 
 
 typedef uint32_t eight_ids __attribute__((vector_size(32), aligned(4), may_alias));
 
-/* Eight of the host's numbers to ids of rows: what is no source, and `self`, becomes the dummy. */
-SPHGI_TEMPLATE void clean_eight(const void *list, const struct sphgi_cleaning *how, uint32_t *out,
-                                eight_ids *bad)
+/* *a becomes the larger, or the smaller, of both. */
+SPHGI_TEMPLATE void raise_ids(eight_ids *a, const eight_ids *b)
 {
-    const eight_ids id = *(const eight_ids *)list & how->mask;
-    const eight_ids outside = (eight_ids)(id >= (eight_ids){0} + how->sources);
-    const eight_ids drop = outside | (eight_ids)(id == how->self);
-    *bad |= outside;
-    *(eight_ids *)out = ((SPHGI_ID_STEP * id) & ~drop) | (how->dummy & drop);
+#if defined(__AVX2__)
+    *a = (eight_ids)_mm256_max_epu32((__m256i)*a, (__m256i)*b);
+#else
+    const eight_ids first = (eight_ids)(*a > *b);
+    *a = (*a & first) | (*b & ~first);
+#endif
+}
+
+SPHGI_TEMPLATE void lower_ids(eight_ids *a, const eight_ids *b)
+{
+#if defined(__AVX2__)
+    *a = (eight_ids)_mm256_min_epu32((__m256i)*a, (__m256i)*b);
+#else
+    const eight_ids first = (eight_ids)(*a < *b);
+    *a = (*a & first) | (*b & ~first);
+#endif
+}
+
+struct cleaning {
+    eight_ids mask, sources, self, largest;
+};
+
+/* Eight of the host's numbers to ids of rows: what is no source, and `self`, becomes the dummy, the
+ * row behind the last source. */
+SPHGI_TEMPLATE void clean_eight(const void *list, struct cleaning *how, uint32_t *out)
+{
+    eight_ids number = *(const eight_ids *)list & how->mask;
+    raise_ids(&how->largest, &number);
+    number |= (eight_ids)(number == how->self);
+    lower_ids(&number, &how->sources);
+    *(eight_ids *)out = number + number; /* SPHGI_ID_STEP */
 }
 
 /* A list, padded with the dummy. True: there was a number that is no source. */
 static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out)
 {
-    eight_ids bad = {0};
+    const eight_ids zero = {0};
+    struct cleaning own = {zero + how->mask, zero + how->sources, zero + how->self, zero};
     if (count % SPHGI_PAD)
-        *(eight_ids *)(out + count / SPHGI_PAD * SPHGI_PAD) = (eight_ids){0} + how->dummy;
+        *(eight_ids *)(out + count / SPHGI_PAD * SPHGI_PAD) = own.sources + own.sources;
     if (count >= 8) {
         for (int32_t k = 0; k + 8 <= count; k += 8)
-            clean_eight(list + k, how, out + k, &bad);
+            clean_eight(list + k, &own, out + k);
         /* the last eight: some of them once more */
-        clean_eight(list + count - 8, how, out + count - 8, &bad);
+        clean_eight(list + count - 8, &own, out + count - 8);
     } else if (count) {
         uint32_t in[8], clean[8];
         for (int l = 0; l < 8; ++l)
             in[l] = (uint32_t)list[l < count ? l : 0];
-        clean_eight(in, how, clean, &bad);
+        clean_eight(in, &own, clean);
         for (int32_t l = 0; l < count; ++l)
             out[l] = clean[l];
     }
+    const eight_ids bad = (eight_ids)(own.largest >= own.sources);
     uint64_t any[4];
     __builtin_memcpy(any, &bad, sizeof any);
     return any[0] | any[1] | any[2] | any[3];

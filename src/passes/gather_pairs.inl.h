@@ -24,19 +24,20 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
 {
     const vec xi = splat(x[0]), yi = splat(x[1]), zi = splat(x[2]);
     const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
+    const vec far = splat(R(2 * g->cutoff));
     const struct wraps w = wraps_of(g->period);
     list.wide = how.wide;
     for (int32_t k = 0; k < padded; k += LANES, at += LANES, list = after(list, LANES)) {
         const struct four row = gather_rows(g->rows, list);
         vec dx = xi - row.x, dy = yi - row.y, dz = zi - row.z;
-        mask inside = first_lanes(list.count);
+        mask inside = first_lanes(0);
         if (how.periodic) {
             dx = wrapped(dx, w.axis[0]);
             dy = wrapped(dy, w.axis[1]);
             dz = wrapped(dz, w.axis[2]);
         }
         if (how.guarded) {
-            inside &= less(square_distance(dx, dy, dz), cutoff);
+            inside = less(square_distance(dx, dy, dz), cutoff);
             keep_ids(inside, list, masked);
             masked += LANES * (how.wide ? 4 : 2);
             dx = where(inside, dx);
@@ -48,7 +49,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
             square += dz * dz;
         vec r = vsqrt(square);
         if (how.guarded)
-            r = select(inside, r, splat(R(2 * g->cutoff)));
+            r = select(inside, r, far);
         if (how.scaled) {
             dx *= unit;
             dy *= unit;
@@ -84,10 +85,10 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void
 
 SPHGI_TEMPLATE void OUT_NAME(gather_guarded)(const struct sphgi_gather *g, const void *const *x,
                                              struct sphgi_piece *piece, int32_t first, char *masked,
-                                             bool three, bool periodic)
+                                             struct OUT_NAME(how) how)
 {
-    struct OUT_NAME(how)
-        how = {.wide = true, .guarded = true, .periodic = periodic, .three = three, .scaled = true};
+    how.guarded = true;
+    how.wide = true;
     if (piece->wide) {
         OUT_NAME(gather_as)(g, x, piece, first, masked, how);
         return;
@@ -96,23 +97,12 @@ SPHGI_TEMPLATE void OUT_NAME(gather_guarded)(const struct sphgi_gather *g, const
     OUT_NAME(gather_as)(g, x, piece, first, masked, how);
 }
 
-/* The ordinary case in every combination; the guarded one looks at its rarer choices as it goes. */
+/* Every combination; whether volumes differ the guarded ones ask as they go. */
 static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x,
                              struct sphgi_piece *piece, int32_t first, void *masked)
 {
-    const bool three = g->dimension == 3;
-    if (g->guarded || piece->wide) {
-        if (three && g->periodic)
-            OUT_NAME(gather_guarded)(g, x, piece, first, masked, true, true);
-        else if (three)
-            OUT_NAME(gather_guarded)(g, x, piece, first, masked, true, false);
-        else if (g->periodic)
-            OUT_NAME(gather_guarded)(g, x, piece, first, masked, false, true);
-        else
-            OUT_NAME(gather_guarded)(g, x, piece, first, masked, false, false);
-        return;
-    }
-    const int way = (three ? 4 : 0) | (g->unit != 1 ? 2 : 0) | (g->volumes ? 1 : 0);
+    const bool guarded = g->guarded || piece->wide, last = guarded ? g->periodic : g->volumes;
+    const int way = (guarded ? 8 : 0) | (g->dimension == 3 ? 4 : 0) | (g->unit != 1 ? 2 : 0) | last;
     switch (way) {
 #define WAY(number)                                                                                \
     case number:                                                                                   \
@@ -121,7 +111,18 @@ static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x,
          (struct OUT_NAME(how)){                                                                   \
              .three = number >> 2 & 1, .scaled = number >> 1 & 1, .volumes = number & 1});         \
         break;
-        WAY(0) WAY(1) WAY(2) WAY(3) WAY(4) WAY(5) WAY(6) WAY(7)
+        WAY(0)
+        WAY(1)
+        WAY(2) WAY(3) WAY(4) WAY(5) WAY(6) WAY(7)
+#undef WAY
+#define WAY(number)                                                                                \
+    case 8 + number:                                                                               \
+        OUT_NAME(gather_guarded)                                                                   \
+        (g, x, piece, first, masked,                                                               \
+         (struct OUT_NAME(how)){                                                                   \
+             .three = number >> 2 & 1, .scaled = number >> 1 & 1, .periodic = number & 1});        \
+        break;
+            WAY(0) WAY(1) WAY(2) WAY(3) WAY(4) WAY(5) WAY(6) WAY(7)
 #undef WAY
     }
 }

@@ -75,8 +75,7 @@ struct sphgi_piece {
 };
 
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
- * its weight is 0, and with fields of 0. If that cannot be (guarded), padding is told by its place.
- */
+ * its weight is 0, and with fields of 0. Guarded ones test each pair; their dummy is NaN. */
 struct sphgi_gather {
     const void *rows; /* x y z V of the sources */
     double unit;      /* what x_ij is multiplied with: 1, classic 1 / H */
@@ -89,9 +88,9 @@ struct sphgi_gather {
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
 };
 
-/* What becomes of the host's numbers of sources. dummy: an id. */
+/* What becomes of the host's numbers of sources; the dummy is the row behind these. */
 struct sphgi_cleaning {
-    uint32_t mask, sources, self, dummy;
+    uint32_t mask, sources, self;
 };
 
 /* A smoothing kernel with everything multiplied into its two factors. */
