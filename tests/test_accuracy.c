@@ -152,23 +152,12 @@ static void corrections_match_the_oracle(const test_case *test)
     }
 }
 
-/* An eigenvalue this near a limit of the policy may be judged either way. */
-static int is_close_call(const stage *on, const oracle_point *point)
-{
-    quad limit = on->scheme.policy == SPHG_BLEND ? 4 * point->filter.eps : point->filter.eps;
-    quad blur = 16 * on->scene.unit * point->spread / point->scale;
-    for (int k = 0; k < on->points.dimension; k++)
-        if (quad_abs(point->filter.lambda[k] - limit) <= blur)
-            return 1;
-    return 0;
-}
-
 static void require_rank_and_moment(const stage *on, int i, double rank, double lambda)
 {
     const oracle_point *point = oracle_at(on->reference, i);
     double exact = (double)point->filter.lambda_min, u = on->scene.unit;
     double blur = point->scale > 0 ? 16 * u * (double)(point->spread / point->scale) : 0;
-    TEST_REQUIRE(is_close_call(on, point) || (int)rank == point->rank,
+    TEST_REQUIRE(oracle_rank_is_open(&on->scene, point) || (int)rank == point->rank,
                  "rank %g, not %d, lambda %g: particle %d, %s", rank, point->rank, exact, i,
                  on->name);
     double lowest = exact / sqrt(on->points.dimension);

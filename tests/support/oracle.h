@@ -1,11 +1,12 @@
 /* The reference: every result by brute force in quadruple precision, written from docs/theory.md
  * and sharing no code with the library, on the same rounded inputs. Beside each result stands
- * its bound D (docs/theory.md, errors): what one rounding of everything could do to it. Tests
- * compare |error| / D with a gate. */
+ * its bound D (docs/theory.md, errors): what one rounding of everything could do to it. Tests and
+ * sphgrad-bench stability compare |error| / D with a gate. */
 #ifndef TESTS_SUPPORT_ORACLE_H
 #define TESTS_SUPPORT_ORACLE_H
 #include "oracle_kernel.h"
 #include "oracle_matrix.h"
+#include <stddef.h>
 
 /* One source set; its first target_count particles are the targets unless `targets` is set. */
 typedef struct oracle_scene {
@@ -53,11 +54,18 @@ typedef struct oracle_point {
     quad z_bound; /* k |z| and what cancels in z */
 } oracle_point;
 
+/* Zeroed memory, never NULL: each program that links the oracle has one, and releases it when it
+ * is done with the references. */
+void *oracle_memory(size_t bytes);
+
 typedef struct oracle oracle;
-/* The scene is copied, the arrays are borrowed. Released when the test case ends. */
+/* The scene is copied, the arrays are borrowed. */
 oracle *oracle_of(const oracle_scene *scene);
 /* Target i, solved on first use. */
 const oracle_point *oracle_at(oracle *reference, int i);
+
+/* An eigenvalue so near a limit of the policy that it may be judged either way. */
+int oracle_rank_is_open(const oracle_scene *scene, const oracle_point *point);
 
 typedef struct oracle_field {
     sphg_shape shape;
@@ -74,6 +82,8 @@ typedef struct oracle_result {
 } oracle_result;
 
 oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i);
+/* |found - exact| / bound of `width` numbers; NaN where one found is not a number. */
+double oracle_ratio(int width, const double *found, const quad *exact, quad bound);
 
 /* G_ij for target i's neighbour given as a pair of its list, from coefficients of `point`; used
  * for G_ji with the pair seen from the other side. */

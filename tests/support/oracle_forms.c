@@ -1,7 +1,6 @@
 /* Sums over pairs: every form, contracted to every operator, with its bound. */
 #include "oracle.h"
 #include "oracle_internal.h"
-#include "fixture.h"
 
 struct oracle {
     oracle_scene scene;
@@ -12,12 +11,12 @@ struct oracle {
 
 oracle *oracle_of(const oracle_scene *scene)
 {
-    oracle *reference = test_memory(sizeof *reference);
+    oracle *reference = oracle_memory(sizeof *reference);
     reference->scene = *scene;
     reference->point_count = scene->targets ? scene->target_count : scene->source_count;
     size_t count = (size_t)reference->point_count;
-    reference->points = test_memory(count * sizeof *reference->points);
-    reference->solved = test_memory(count);
+    reference->points = oracle_memory(count * sizeof *reference->points);
+    reference->solved = oracle_memory(count);
     return reference;
 }
 
@@ -37,9 +36,20 @@ typedef struct item {
     quad a[9];
 } item;
 
+static int width_of(sphg_shape shape, int d)
+{
+    const int widths[] = {
+        [SPHG_SCALAR] = 1,
+        [SPHG_VECTOR] = d,
+        [SPHG_SYM_TENSOR] = d * (d + 1) / 2,
+        [SPHG_TENSOR] = d * d,
+    };
+    return widths[shape];
+}
+
 static item read_item(int d, sphg_shape shape, const double *numbers, int i)
 {
-    const double *first = numbers + i * fixture_width(shape, d);
+    const double *first = numbers + i * width_of(shape, d);
     item full = {0};
     if (shape == SPHG_SYM_TENSOR) {
         full.count = d * d;
@@ -48,7 +58,7 @@ static item read_item(int d, sphg_shape shape, const double *numbers, int i)
                 full.a[a * d + b] = full.a[b * d + a] = first[k];
         return full;
     }
-    full.count = fixture_width(shape, d);
+    full.count = width_of(shape, d);
     for (int k = 0; k < full.count; k++)
         full.a[k] = first[k];
     return full;
@@ -224,7 +234,7 @@ static quad interpolation_weight(const oracle_scene *scene, const oracle_point *
 static void add_value(const oracle_scene *scene, const oracle_field *field, const oracle_pair *pair,
                       const oracle_point *point, oracle_result *result)
 {
-    int d = scene->scheme.dimension, width = fixture_width(field->shape, d);
+    int d = scene->scheme.dimension, width = width_of(field->shape, d);
     const double *a = field->at_sources + pair->j * width;
     quad bound, weight = interpolation_weight(scene, point, pair, &bound), square = 0;
     for (int c = 0; c < width; c++) {
@@ -257,4 +267,17 @@ oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i)
         (reference->scene.volume || oracle_is_classic(reference->scene.scheme.method)))
         sum_values(&reference->scene, field, i, point, &result);
     return result;
+}
+
+double oracle_ratio(int width, const double *found, const quad *exact, quad bound)
+{
+    quad square = 0;
+    for (int k = 0; k < width; k++) {
+        quad error = (quad)found[k] - exact[k];
+        square += error * error;
+    }
+    if (square == 0)
+        return 0;
+    /* Norms of errors near the rim of f64's range still have their squares in quad. */
+    return square != square ? NAN : (double)(quad_sqrt(square) / bound);
 }

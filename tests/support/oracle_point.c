@@ -1,7 +1,6 @@
 /* One target: neighbours, moments, corrections, G_ij. */
 #include "oracle.h"
 #include "oracle_internal.h"
-#include "test.h"
 
 /* ---- Neighbours ----------------------------------------------------------------------------- */
 
@@ -52,10 +51,11 @@ static int measure(const oracle_scene *scene, const double *x, int j, oracle_pai
     for (int k = 0; k < d; k++) {
         double plain = single ? (double)((float)x[k] - (float)other[k]) : x[k] - other[k];
         difference[k] = shifted(plain, scene->period[k], single);
-        pair->x[k] = exact_difference(x[k], other[k], difference[k], scene->period[k]);
     }
     if (!is_inside(difference, d, scene->scheme.support_radius, single))
         return 0;
+    for (int k = 0; k < d; k++)
+        pair->x[k] = exact_difference(x[k], other[k], difference[k], scene->period[k]);
     pair->j = j;
     pair->r = quad_norm(pair->x, d);
     return 1;
@@ -65,7 +65,7 @@ static int measure(const oracle_scene *scene, const double *x, int j, oracle_pai
 static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
 {
     const double *x = oracle_target(scene, i);
-    point->pairs = test_memory((size_t)scene->source_count * sizeof *point->pairs);
+    point->pairs = oracle_memory((size_t)scene->source_count * sizeof *point->pairs);
     for (int j = 0; j < scene->source_count; j++) {
         oracle_pair pair = {0};
         if (!(point->has_self && j == i) && measure(scene, x, j, &pair))
@@ -450,4 +450,14 @@ void oracle_solve(const oracle_scene *scene, int i, oracle_point *point)
         solve_linearised(scene, point);
     for (int k = 0; k < point->pair_count; k++)
         point->pairs[k].bound = oracle_gradient_of(scene, point, &point->pairs[k]);
+}
+
+int oracle_rank_is_open(const oracle_scene *scene, const oracle_point *point)
+{
+    quad limit = scene->scheme.policy == SPHG_BLEND ? 4 * point->filter.eps : point->filter.eps;
+    quad blur = 16 * scene->unit * point->spread / point->scale;
+    for (int k = 0; k < scene->scheme.dimension; k++)
+        if (quad_abs(point->filter.lambda[k] - limit) <= blur)
+            return 1;
+    return 0;
 }
