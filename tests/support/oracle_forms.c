@@ -223,7 +223,7 @@ static quad interpolation_weight(const oracle_scene *scene, const oracle_point *
             sum += point->y[k + 1] * xi;
             square += xi * xi;
         }
-        *bound = point->condition * pair->spread * quad_sqrt(square) * point->y_norm;
+        *bound = pair->spread * quad_sqrt(square) * point->y_bound;
         return pair->s * sum;
     }
     oracle_weights at = oracle_weights_at(scheme->kernel, d, scheme->support_radius, pair->r);

@@ -110,25 +110,38 @@ static quad smallest(int n, const quad *values)
     return least;
 }
 
+/* The steepest f within `blur` of an eigenvalue. Beside a band of the policy that is hardly wider
+ * than what rounding does to lambda, the slope at lambda itself says little. */
+static quad steepest(sphg_policy policy, const oracle_filter *filter, int k, int below, quad blur)
+{
+    enum { steps = 8 };
+    quad largest = 0;
+    for (int step = -steps; step <= steps; step++) {
+        quad near = filter->lambda[k] + blur * step / steps;
+        policy_value value = apply(policy, near, filter->lambda_min, filter->eps, below);
+        largest = quad_max(largest, quad_abs(value.derivative));
+    }
+    return largest;
+}
+
 oracle_filter oracle_filtered(int n, oracle_matrix normalised, sphg_policy policy, quad eps,
-                              int below)
+                              int below, quad blur)
 {
     oracle_filter filter = {.n = n, .eps = eps};
-    quad derivative[oracle_rows];
     oracle_eigen(n, normalised, filter.lambda, filter.axes);
     filter.lambda_min = smallest(n, filter.lambda);
     for (int k = 0; k < n; k++) {
         policy_value value = apply(policy, filter.lambda[k], filter.lambda_min, eps, below);
         filter.f[k] = value.f;
         filter.rank += value.kept;
-        derivative[k] = value.derivative;
     }
     for (int k = 0; k < n; k++)
         for (int l = 0; l < n; l++) {
             quad gap = filter.lambda[k] - filter.lambda[l];
             quad size = quad_abs(filter.lambda[k]) + quad_abs(filter.lambda[l]);
-            filter.divided[k][l] =
-                quad_abs(gap) <= size * 0x1p-50 ? derivative[k] : (filter.f[k] - filter.f[l]) / gap;
+            filter.divided[k][l] = quad_abs(gap) <= size * 0x1p-50
+                                       ? steepest(policy, &filter, k, below, blur)
+                                       : quad_abs((filter.f[k] - filter.f[l]) / gap);
         }
     return filter;
 }

@@ -18,15 +18,16 @@ typedef struct oracle_filter {
     quad eps;                               /* eps_i */
     quad lambda[oracle_rows];               /* ascending is not promised */
     quad f[oracle_rows];                    /* f(lambda) */
-    quad divided[oracle_rows][oracle_rows]; /* f[lambda_k, lambda_l] */
+    quad divided[oracle_rows][oracle_rows]; /* |f[lambda_k, lambda_l]| */
     oracle_matrix axes;                     /* column k for lambda_k */
     int rank;
     quad lambda_min;
 } oracle_filter;
 
-/* below: f of a direction that is dropped, 1 for linearised and 0 for classic methods. */
+/* below: f of a direction that is dropped, 1 for linearised and 0 for classic methods. blur: how
+ * far rounding may move an eigenvalue. */
 oracle_filter oracle_filtered(int n, oracle_matrix normalised, sphg_policy policy, quad eps,
-                              int below);
+                              int below, quad blur);
 /* Q diag(f) Q^T. */
 void oracle_recompose(const oracle_filter *filter, oracle_matrix result);
 

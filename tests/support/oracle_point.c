@@ -168,13 +168,13 @@ static void filter_moments(const oracle_scene *scene, int below, oracle_point *p
         for (int b = 0; b < d; b++)
             normalised[a][b] = point->moment[a][b] / point->scale;
     quad eps = threshold(scene, d, normalised);
-    point->filter = oracle_filtered(d, normalised, scene->scheme.policy, eps, below);
+    quad blur = 8 * scene->unit * point->spread / point->scale;
+    point->filter = oracle_filtered(d, normalised, scene->scheme.policy, eps, below, blur);
     point->rank = point->filter.rank;
     oracle_recompose(&point->filter, point->correction);
     for (int a = 0; a < d; a++)
         for (int b = 0; b < d; b++)
             point->correction[a][b] /= point->scale;
-    quad blur = 8 * scene->unit * point->spread / point->scale;
     for (int k = 0; k < d; k++)
         if (scene->scheme.policy != SPHG_BLEND && quad_abs(point->filter.lambda[k] - eps) <= blur)
             point->undecided = 1;
@@ -184,7 +184,7 @@ static quad largest_divided(const oracle_filter *filter, int l)
 {
     quad largest = 0;
     for (int k = 0; k < filter->n; k++)
-        largest = quad_max(largest, quad_abs(filter->divided[k][l]));
+        largest = quad_max(largest, filter->divided[k][l]);
     return largest;
 }
 
@@ -296,6 +296,18 @@ static void bordered_inverse(int d, const oracle_point *point, const quad *centr
     inverse[0][0] = 1 / point->mass + product;
 }
 
+/* e_k / H - B_k y */
+static void right_side(const oracle_scene *scene, const classic_sums *sums,
+                       const oracle_point *point, int k, quad *right)
+{
+    int n = scene->scheme.dimension + 1;
+    for (int a = 0; a < n; a++) {
+        right[a] = a == k + 1 ? 1 / (quad)scene->scheme.support_radius : 0;
+        for (int b = 0; b < n; b++)
+            right[a] -= sums->b[k][a][b] * point->y[b];
+    }
+}
+
 /* y = A^-1 e_0, z_k = A^-1 (e_k / H - B_k y). */
 static void solve_coefficients(const oracle_scene *scene, oracle_matrix inverse,
                                const classic_sums *sums, oracle_point *point)
@@ -304,11 +316,8 @@ static void solve_coefficients(const oracle_scene *scene, oracle_matrix inverse,
     for (int a = 0; a < n; a++)
         point->y[a] = inverse[a][0];
     for (int k = 0; k < d; k++) {
-        quad right[oracle_rows] = {0};
-        right[k + 1] = 1 / (quad)scene->scheme.support_radius;
-        for (int a = 0; a < n; a++)
-            for (int b = 0; b < n; b++)
-                right[a] -= sums->b[k][a][b] * point->y[b];
+        quad right[oracle_rows];
+        right_side(scene, sums, point, k, right);
         for (int a = 0; a < n; a++) {
             point->z[k][a] = 0;
             for (int b = 0; b < n; b++)
@@ -340,6 +349,27 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
         sum += pair->slope_spread * pair->r * quad_abs(value) * size;
     }
     return sum + unit_part / scene->scheme.support_radius;
+}
+
+/* Where the policy's f acts, its slope may be much steeper than that of 1 / lambda, as at the lower
+ * end of blend, and the condition of A knows nothing of it: what a change of C does to y and z. */
+static void add_blur_of_filter(const oracle_scene *scene, oracle_matrix inverse,
+                               const classic_sums *sums, const quad *centre, oracle_point *point)
+{
+    int d = scene->scheme.dimension;
+    quad steepest = 0, size = 0, largest = 0, border = 1 + quad_norm(centre, d);
+    for (int l = 0; l < d; l++)
+        steepest = quad_max(steepest, largest_divided(&point->filter, l));
+    quad change = steepest * point->spread / (point->scale * point->scale) * border * border;
+    point->y_bound += change;
+    for (int k = 0; k < d; k++) {
+        quad right[oracle_rows];
+        right_side(scene, sums, point, k, right);
+        largest = quad_max(largest, quad_norm(right, d + 1));
+        for (int a = 0; a <= d; a++)
+            size = quad_max(size, quad_norm(sums->b[k][a], d + 1));
+    }
+    point->z_bound += change * (largest + oracle_spectral_norm(d + 1, inverse) * size);
 }
 
 /* tr A |A^-1| in the basis (1, xi / sqrt(mu2)). */
@@ -386,7 +416,10 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
         point->z_norm = quad_max(point->z_norm, quad_norm(point->z[k], d + 1));
         point->self_gradient[k] = point->self_weight * point->z[k][0];
     }
+    point->y_bound = point->condition * point->y_norm;
     point->z_bound = point->condition * point->z_norm + blur_of_slopes(scene, inverse, point);
+    if (point->rank < d)
+        add_blur_of_filter(scene, inverse, &sums, centre, point);
     point->self_bound = scene->unit * point->self_weight * point->z_bound;
 }
 
@@ -422,8 +455,7 @@ static quad classic_gradient(const oracle_scene *scene, const oracle_point *poin
         pair->gradient[k] = pair->slope * pair->x[k] * value + pair->s * slope;
     }
     return scene->unit * quad_norm(p, d + 1) *
-           (point->condition * pair->slope_spread * pair->r * point->y_norm +
-            pair->spread * point->z_bound);
+           (pair->slope_spread * pair->r * point->y_bound + pair->spread * point->z_bound);
 }
 
 quad oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair)
