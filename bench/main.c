@@ -24,6 +24,8 @@ static const struct command commands[] = {
      command_frontier},
     {"scaling", "time a particle over sizes, threads, neighbours, orders and clouds",
      command_scaling},
+    {"stability", "sweeps into degenerate, distant and uneven particles: tables, CSV, pictures",
+     command_stability},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 

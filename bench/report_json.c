@@ -113,6 +113,17 @@ void report_benchmark(struct report *report, const char *name, const struct samp
     report->families++;
 }
 
+void report_once(struct report *report, const char *name, struct moment time,
+                 const struct counter *counters)
+{
+    cJSON *entry = add_entry(report, name, name, "iteration");
+    cJSON_AddNumberToObject(entry, "repetitions", 1);
+    cJSON_AddNumberToObject(entry, "repetition_index", 0);
+    cJSON_AddNumberToObject(entry, "iterations", 1);
+    add_measured(entry, time.wall, time.cpu, "ms", counters);
+    report->families++;
+}
+
 static int write_text(const char *text, const char *path)
 {
     FILE *file = fopen(path, "w");

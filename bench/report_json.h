@@ -20,6 +20,10 @@ struct counter {
 void report_benchmark(struct report *report, const char *name, const struct samples *samples,
                       const struct counter *counters);
 
+/* One entry for what is not timed again and again. */
+void report_once(struct report *report, const char *name, struct moment time,
+                 const struct counter *counters);
+
 /* Writes the file and destroys the report; ends the program where that fails. */
 void report_write(struct report *report, const char *path);
 #endif

@@ -67,6 +67,32 @@ case $command in
         [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 23 ]
         ! grep -q 'scaling.png' "$work/output" || [ -s "$work/scaling/scaling.png" ]
         ;;
+    stability)
+        measure --quick --threads 2 --output "$work/stability"
+        "$checker" "$work/report.json" stability/ not_finite 0 0 stability/ wrong_ranks 0 0 \
+            stability/ other_bits 0 0 stability/ compared 2 1e6 stability/ targets 32 1e9 \
+            stability/ ratio_full 0 10 stability/ ratio_touched 0 16 \
+            stability/slab/blend/KGC/f32/1e+12 rank_mean 2 2 \
+            stability/slab/blend/CRKPM/f64/1e+12 decomposed_share 1 1 \
+            stability/threshold/replace/KGC/f32/0.3 noise 1 100 \
+            stability/threshold/replace/KGC/f32/1e-06 noise 500 1e6 \
+            stability/offset/blend/KGC/f32/1e+08 linear_error_mean 0.1 10 \
+            stability/offset/blend/KGC/f64/1e+08 linear_error_mean 0 1e-6 \
+            stability/offset/blend/RKPM/mixed/1e+08 linear_error_mean 0 1e-5 \
+            stability/neighbours/blend/KGC/f32/300 rank_mean 3 3 \
+            stability/merging/blend/KGC/f64/1.1 correction_jump_left 0 0.5 \
+            stability/merging/replace/KGC/f64/1.1 correction_jump_left 50 150
+        # every place of every sweep for every method and precision, and a rank that only falls
+        [ "$(grep -cE '^(slab|offset|neighbours|volumes|jitter),' "$work/stability/stability.csv")" -eq 360 ]
+        [ "$(grep -cE '^(threshold|merging|scale),' "$work/stability/stability.csv")" -eq 474 ]
+        awk -F, '$1 == "slab" && $3 != "SPH" { key = $3 $4; seen++
+                     if (key == last && $8 > rank) exit failed = 1; last = key; rank = $8 }
+                 END { exit failed || seen != 60 }' "$work/stability/stability.csv"
+        ! grep -q 'pictures' "$work/output" || [ -s "$work/stability/stability_reading.png" ]
+        # a sweep alone, with other numbers
+        measure --quick --sweep jitter --repetitions 2 --particles 64 --threads 1 --output "$work/one"
+        [ "$(grep -c '^jitter,' "$work/one/stability.csv")" -eq 72 ]
+        ;;
     *)
         echo "no check of $command" >&2
         exit 1

@@ -1,0 +1,20 @@
+/* The particles at one place of a sweep. */
+#ifndef SPHGRAD_BENCH_STABILITY_CLOUD_H
+#define SPHGRAD_BENCH_STABILITY_CLOUD_H
+#include "stability.h"
+
+/* Spacing 1. The first target_count particles are the targets. */
+struct stability_cloud {
+    int32_t count, target_count;
+    double support; /* H, rounded to f32 */
+    double (*x)[3];
+    double *volume;
+    double shift[3]; /* of the whole cloud: linear fields are taken before it */
+    int64_t random;  /* numbers drawn */
+};
+
+/* round: other random numbers, the same for every method, precision and policy. */
+struct stability_cloud stability_cloud_create(const struct settings *settings,
+                                              enum stability_sweep sweep, double at, int32_t round);
+void stability_cloud_destroy(struct stability_cloud *cloud);
+#endif

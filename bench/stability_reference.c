@@ -1,0 +1,142 @@
+#include "stability_reference.h"
+#include "support/oracle.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- Memory of one comparison --------------------------------------------------------------- */
+
+struct owned {
+    struct owned *next;
+    void *memory;
+};
+
+static _Thread_local struct owned *all_owned;
+
+void *oracle_memory(size_t bytes)
+{
+    struct owned *entry = allocate_or_exit(1, sizeof *entry);
+    *entry = (struct owned){all_owned, allocate_or_exit(bytes, 1)};
+    all_owned = entry;
+    return entry->memory;
+}
+
+static void release(void)
+{
+    while (all_owned) {
+        struct owned *entry = all_owned;
+        all_owned = entry->next;
+        free(entry->memory);
+        free(entry);
+    }
+}
+
+/* ---- The same inputs ------------------------------------------------------------------------- */
+
+static double *doubles_of(const struct numbers *numbers)
+{
+    double *doubles =
+        oracle_memory((size_t)numbers->count * (size_t)numbers->width * sizeof *doubles);
+    for (int32_t i = 0; i < numbers->count; i++)
+        for (int32_t k = 0; k < numbers->width; k++)
+            doubles[i * numbers->width + k] = numbers_get(numbers, i, k);
+    return doubles;
+}
+
+static oracle_scene scene_of(const struct trial *trial)
+{
+    return (oracle_scene){.scheme = trial->scheme,
+                          .unit = trial->volumes.type == SPHG_F64 ? 0x1p-53 : 0x1p-24,
+                          .single_positions = trial->positions.type == SPHG_F32,
+                          .source_count = trial->count,
+                          .target_count = trial->target_count,
+                          .sources = doubles_of(&trial->positions),
+                          .volume = doubles_of(&trial->volumes)};
+}
+
+/* ---- Which targets --------------------------------------------------------------------------- */
+
+static int32_t find_smallest(const struct trial *trial, const uint8_t *taken)
+{
+    int32_t smallest = -1;
+    for (int32_t i = 0; i < trial->target_count; i++)
+        if (!taken[i] && (smallest < 0 || numbers_get(&trial->lambda_min, i, 0) <
+                                              numbers_get(&trial->lambda_min, smallest, 0)))
+            smallest = i;
+    return smallest;
+}
+
+/* 1 for each that is taken. */
+static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
+{
+    const int32_t count = trial->target_count, most = wanted < count ? wanted : count;
+    uint8_t *taken = allocate_or_exit((size_t)count, 1);
+    const int32_t even = trial->corrected ? (most + 1) / 2 : most;
+    for (int32_t k = 0; k < even; k++)
+        taken[(int64_t)k * count / even] = 1;
+    for (int32_t k = even; k < most; k++)
+        taken[find_smallest(trial, taken)] = 1;
+    return taken;
+}
+
+/* ---- Comparison ------------------------------------------------------------------------------ */
+
+/* NaN is worst. */
+static double worse(double a, double b)
+{
+    return b <= a ? a : b;
+}
+
+static void note_ratio(const struct trial *trial, const oracle_result *exact, int32_t i,
+                       struct stability_case *one)
+{
+    double found[9];
+    for (int k = 0; k < 9; k++)
+        found[k] = numbers_get(&trial->jacobians[TRIAL_RANDOM], i, k);
+    const double ratio = oracle_ratio(9, found, exact->gradient, exact->bound);
+    double *worst = exact->touched ? &one->ratio_touched : &one->ratio_full;
+    *worst = worse(*worst, ratio);
+}
+
+static void note_condition(const oracle_point *point, struct stability_case *one)
+{
+    quad least = point->filter.lambda[0], most = least;
+    for (int k = 1; k < 3; k++) {
+        least = point->filter.lambda[k] < least ? point->filter.lambda[k] : least;
+        most = quad_max(most, point->filter.lambda[k]);
+    }
+    const double condition = least > 0 ? (double)(most / least) : 0;
+    if (isfinite(condition))
+        one->condition = fmax(one->condition, condition);
+}
+
+static void compare_target(const struct trial *trial, const oracle_scene *scene, oracle *reference,
+                           const oracle_field *field, int32_t i, struct stability_case *one)
+{
+    const oracle_result exact = oracle_apply(reference, field, i);
+    const oracle_point *point = oracle_at(reference, i);
+    one->compared++;
+    if (exact.undecided)
+        one->undecided++;
+    else
+        note_ratio(trial, &exact, i, one);
+    if (!trial->corrected)
+        return;
+    note_condition(point, one);
+    one->wrong_ranks += trial->ranks[i] != point->rank && !oracle_rank_is_open(scene, point);
+}
+
+void reference_compare(const struct trial *trial, int32_t wanted, struct stability_case *one)
+{
+    const oracle_scene scene = scene_of(trial);
+    oracle *reference = oracle_of(&scene);
+    const oracle_field field = {.shape = SPHG_VECTOR,
+                                .form = SPHG_DIFFERENCE,
+                                .at_sources = doubles_of(&trial->fields[TRIAL_RANDOM])};
+    uint8_t *taken = choose_targets(trial, wanted);
+    for (int32_t i = 0; i < trial->target_count; i++)
+        if (taken[i])
+            compare_target(trial, &scene, reference, &field, i, one);
+    free(taken);
+    release();
+}
