@@ -171,7 +171,7 @@ static bool draw_ratios(const struct stability *stability)
             "dashed: 10, the limit at full rank; dotted: 16, the limit where the "
             "threshold acts; equal marks cover each other\"\n",
             stability->settings.support, machine_cpu());
-    fprintf(script, "set logscale y\nset yrange [5e-4:40]\nset format y '10^{%%T}'\n"
+    fprintf(script, "set logscale y\nset yrange [1e-4:40]\nset format y '10^{%%T}'\n"
                     "set key at screen 0.5, screen 0.035 center center vertical maxrows 1 "
                     "samplen 1.5 width 2\n");
     for (int sweep = 0; sweep < SWEEPS; sweep++)
@@ -262,7 +262,8 @@ static void write_threshold_panels(FILE *script)
     axis.title = "what a larger eps costs: error of a linear field";
     write_place(script, 0, 3, 0);
     write_axis(script, &axis);
-    fprintf(script, "set ylabel 'mean |J_i - J| / |J|'\nset yrange [0:*]\nset key left top\n");
+    fprintf(script, "set ylabel 'mean |J_i - J| / |J|'\nset yrange [0:*]\nset key left top Left "
+                    "reverse samplen 2\n");
     write_policies(script, SWEEP_THRESHOLD, PRECISION_F32, LINEAR_MEAN);
     fputc('\n', script);
     axis.title = "what a smaller eps costs: noise of a random field";
@@ -286,7 +287,7 @@ static void write_distance_panel(FILE *script)
     write_place(script, 3, 3, 0);
     write_axis(script, &axis);
     fprintf(script, "set ylabel 'mean |J_i - J| / |J|, linear field'\nset yrange [1e-17:10]\n"
-                    "set key left top\n");
+                    "set key left top Left reverse samplen 2\n");
     write_precisions(script, SWEEP_OFFSET, LINEAR_MEAN);
 }
 
@@ -298,7 +299,7 @@ static void write_jump_panel(FILE *script)
     write_axis(script, &axis);
     fprintf(script,
             "set ylabel 'largest change of C in a step of H / 1000'\nset yrange [1e-4:1e6]\n"
-            "set key center top vertical maxrows 3 samplen 2\n");
+            "set key center top vertical maxrows 3 Right noreverse samplen 1.5 font ',10'\n");
     write_policies(script, SWEEP_MERGING, PRECISION_F64, CORRECTION_JUMP);
     char y[32];
     snprintf(y, sizeof y, "$%d > 0 ? $%d : NaN", CORRECTION_JUMP_LEFT, CORRECTION_JUMP_LEFT);
@@ -319,8 +320,9 @@ static void write_neighbour_panel(FILE *script)
     axis.title = "few neighbours: error of a linear field";
     write_place(script, 5, 3, 0);
     write_axis(script, &axis);
-    fprintf(script, "set ylabel 'mean |J_i - J| / |J|'\nunset logscale y\nset format y '%%g'\n"
-                    "set yrange [0:1.2]\nset key right top maxrows 6 samplen 4\nplot \\\n");
+    fprintf(script,
+            "set ylabel 'mean |J_i - J| / |J|'\nunset logscale y\nset format y '%%g'\n"
+            "set yrange [0:1.2]\nset key right top maxrows 6 samplen 2 font ',12'\nplot \\\n");
     char y[32];
     snprintf(y, sizeof y, "$%d", LINEAR_MEAN);
     for (int method = 0; method < STABILITY_METHODS; method++) {
