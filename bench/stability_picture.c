@@ -135,7 +135,7 @@ static void write_ratio_panel(FILE *script, enum stability_sweep sweep)
 {
     char y[64];
     snprintf(y, sizeof y, "worse($%d, $%d)", FULL_RATIO, TOUCHED_RATIO);
-    write_place(script, sweep, 4, 0.07);
+    write_place(script, (int)sweep, 4, 0.07);
     write_axis(script, &axes[sweep]);
     fprintf(
         script,
