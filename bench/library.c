@@ -1,13 +1,44 @@
 #include "library.h"
+#include "names.h"
 #include "options.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+static sphg_isa chosen = SPHG_ISA_BEST;
+
+static bool runs_here(sphg_isa isa)
+{
+    sphg_context *context = NULL;
+    const sphg_config config = {.threads = 1, .isa = isa};
+    const sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
+    sphg_context_destroy(context);
+    return result == SPHG_OK;
+}
+
+void library_choose_isa(const char *name)
+{
+    chosen = (sphg_isa)option_choice("isa", name, isa_names);
+    if (!runs_here(chosen))
+        options_refuse("--isa: %s does not run here", name);
+}
+
+/* The library does not name its choice, but says which ones it could not serve. */
+const char *library_isa(void)
+{
+    static const sphg_isa best_first[] = {SPHG_ISA_X86_V4, SPHG_ISA_X86_V3, SPHG_ISA_NEON,
+                                          SPHG_ISA_BASE};
+    int k = 0;
+    while (chosen == SPHG_ISA_BEST && !runs_here(best_first[k]))
+        k++;
+    return isa_names[chosen == SPHG_ISA_BEST ? best_first[k] : chosen];
+}
 
 sphg_context *library_open(int32_t threads)
 {
     sphg_context *context = NULL;
-    const sphg_config config = {.threads = threads};
+    const sphg_config config = {.threads = threads, .isa = chosen};
     const sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
     if (result != SPHG_OK) {
         fprintf(stderr, "sphgrad-bench: no context: %s\n", sphg_result_string(result));
@@ -31,25 +62,6 @@ const char *library_version(void)
     const int version = sphg_version();
     snprintf(text, sizeof text, "%d.%d.%d", version / 10000, version / 100 % 100, version % 100);
     return text;
-}
-
-/* The library does not name its choice, but says which ones it could not serve. */
-const char *library_isa(void)
-{
-    static const struct {
-        sphg_isa isa;
-        const char *name;
-    } best_first[] = {
-        {SPHG_ISA_X86_V4, "x86-64-v4"}, {SPHG_ISA_X86_V3, "x86-64-v3"}, {SPHG_ISA_NEON, "NEON"}};
-    for (size_t k = 0; k < sizeof best_first / sizeof best_first[0]; k++) {
-        sphg_context *context = NULL;
-        const sphg_config config = {.threads = 1, .isa = best_first[k].isa};
-        const sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
-        sphg_context_destroy(context);
-        if (result == SPHG_OK)
-            return best_first[k].name;
-    }
-    return "baseline";
 }
 
 void library_volumes(sphg_context *context, const sphg_scheme *scheme,

@@ -7,7 +7,10 @@ sphg_context *library_open(int32_t threads); /* 0: the library's default */
 void library_check(const sphg_context *context, sphg_result result);
 
 const char *library_version(void);
-const char *library_isa(void); /* the best instruction set that runs here */
+/* The instruction set of contexts opened from here on, by its name; refused where it does not run.
+ */
+void library_choose_isa(const char *name);
+const char *library_isa(void); /* the one chosen, at first the best that runs here */
 
 /* V_j = 1 / sum_k W_jk, j itself included: volumes from the positions alone. */
 void library_volumes(sphg_context *context, const sphg_scheme *scheme,

@@ -1,9 +1,10 @@
 #include "settings.h"
+#include "library.h"
 #include "options.h"
 
 #include <math.h>
 
-enum { KEY_PARTICLES = 512, KEY_THREADS, KEY_REPETITIONS, KEY_SUPPORT, KEY_JITTER, KEY_JSON };
+enum { KEY_PARTICLES = 512, KEY_THREADS, KEY_REPETITIONS, KEY_SUPPORT, KEY_JITTER, KEY_JSON, KEY_ISA };
 
 static const struct argp_option option_list[] = {
     {"particles", KEY_PARTICLES, "N", 0, "in the nearest cube or square", 0},
@@ -11,6 +12,7 @@ static const struct argp_option option_list[] = {
     {"jitter", KEY_JITTER, "SHARE", 0, "move each coordinate by up to this share of the spacing",
      0},
     {"threads", KEY_THREADS, "N", 0, "(OMP_NUM_THREADS, or one per processor)", 0},
+    {"isa", KEY_ISA, "NAME", 0, "baseline, x86-64-v3, x86-64-v4 or neon (the best)", 0},
     {"repetitions", KEY_REPETITIONS, "N", 0, "rounds through everything, after a warm-up", 0},
     {"json", KEY_JSON, "FILE", 0, "write all repetitions in Google Benchmark's format", 0},
     {0}};
@@ -24,6 +26,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case KEY_THREADS:
         settings->threads = option_integer("threads", text, 1, 1024);
+        return 0;
+    case KEY_ISA:
+        library_choose_isa(text);
         return 0;
     case KEY_REPETITIONS:
         settings->repetitions = option_integer("repetitions", text, 1, 10000);

@@ -1,6 +1,7 @@
 /* The command `table1`. */
 #include "table1.h"
 #include "commands.h"
+#include "library.h"
 #include "machine.h"
 #include "options.h"
 
@@ -18,6 +19,7 @@ enum {
     OPTION_KERNEL,
     OPTION_PRECISION,
     OPTION_THREADS,
+    OPTION_ISA,
     OPTION_REPETITIONS,
     OPTION_JSON
 };
@@ -40,6 +42,7 @@ static const struct argp_option option_list[] = {
     {"precision", OPTION_PRECISION, "TYPE", 0,
      "f32, f64, or mixed: positions f64, the rest f32 (f32)", 0},
     {"threads", OPTION_THREADS, "N", 0, "(OMP_NUM_THREADS, or one per processor)", 0},
+    {"isa", OPTION_ISA, "NAME", 0, "baseline, x86-64-v3, x86-64-v4 or neon (the best)", 0},
     {"repetitions", OPTION_REPETITIONS, "N", 0, "of each measurement, after one warm-up (9)", 0},
     {"json", OPTION_JSON, "FILE", 0, "write all repetitions in Google Benchmark's format", 0},
     {0}};
@@ -94,6 +97,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case OPTION_THREADS:
         options->threads = option_integer("threads", text, 1, 1024);
+        return 0;
+    case OPTION_ISA:
+        library_choose_isa(text);
         return 0;
     case OPTION_REPETITIONS:
         options->repetitions = option_integer("repetitions", text, 1, 10000);

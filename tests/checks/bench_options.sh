@@ -28,7 +28,9 @@ refuses --repetitions 0
 refuses --jitter -1
 refuses fields --input /nonexistent.csv
 refuses --input /nonexistent.csv
+refuses --isa sse9
 refuses limit --support 1
+refuses limit --isa neon-v9
 refuses limit --threads 0
 refuses limit --particles 1.5
 refuses limit --json /nonexistent/report.json
