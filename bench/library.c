@@ -2,7 +2,6 @@
 #include "names.h"
 #include "options.h"
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,11 +16,10 @@ static bool runs_here(sphg_isa isa)
     return result == SPHG_OK;
 }
 
-void library_choose_isa(const char *name)
+bool library_choose_isa(sphg_isa isa)
 {
-    chosen = (sphg_isa)option_choice("isa", name, isa_names);
-    if (!runs_here(chosen))
-        options_refuse("--isa: %s does not run here", name);
+    chosen = isa;
+    return runs_here(isa);
 }
 
 /* The library does not name its choice, but says which ones it could not serve. */

@@ -2,14 +2,14 @@
 #ifndef SPHGRAD_BENCH_LIBRARY_H
 #define SPHGRAD_BENCH_LIBRARY_H
 #include "numbers.h"
+#include <stdbool.h>
 
 sphg_context *library_open(int32_t threads); /* 0: the library's default */
 void library_check(const sphg_context *context, sphg_result result);
 
 const char *library_version(void);
-/* The instruction set of contexts opened from here on, by its name; refused where it does not run.
- */
-void library_choose_isa(const char *name);
+/* The instruction set of contexts opened from here on; false: it does not run here. */
+bool library_choose_isa(sphg_isa isa);
 const char *library_isa(void); /* the one chosen, at first the best that runs here */
 
 /* V_j = 1 / sum_k W_jk, j itself included: volumes from the positions alone. */

@@ -26,12 +26,8 @@ const char *const method_names[] = {
 };
 
 const char *const isa_names[] = {
-    [SPHG_ISA_BEST] = "best",
-    [SPHG_ISA_BASE] = "baseline",
-    [SPHG_ISA_X86_V3] = "x86-64-v3",
-    [SPHG_ISA_X86_V4] = "x86-64-v4",
-    [SPHG_ISA_NEON] = "neon",
-    NULL,
+    [SPHG_ISA_BEST] = "best",        [SPHG_ISA_BASE] = "baseline", [SPHG_ISA_X86_V3] = "x86-64-v3",
+    [SPHG_ISA_X86_V4] = "x86-64-v4", [SPHG_ISA_NEON] = "neon",     NULL,
 };
 
 const char *kernel_title(sphg_kernel kernel)

@@ -1,10 +1,19 @@
 #include "settings.h"
 #include "library.h"
+#include "names.h"
 #include "options.h"
 
 #include <math.h>
 
-enum { KEY_PARTICLES = 512, KEY_THREADS, KEY_REPETITIONS, KEY_SUPPORT, KEY_JITTER, KEY_JSON, KEY_ISA };
+enum {
+    KEY_PARTICLES = 512,
+    KEY_THREADS,
+    KEY_REPETITIONS,
+    KEY_SUPPORT,
+    KEY_JITTER,
+    KEY_JSON,
+    KEY_ISA
+};
 
 static const struct argp_option option_list[] = {
     {"particles", KEY_PARTICLES, "N", 0, "in the nearest cube or square", 0},
@@ -17,6 +26,12 @@ static const struct argp_option option_list[] = {
     {"json", KEY_JSON, "FILE", 0, "write all repetitions in Google Benchmark's format", 0},
     {0}};
 
+void settings_choose_isa(const char *name)
+{
+    if (!library_choose_isa((sphg_isa)option_choice("isa", name, isa_names)))
+        options_refuse("--isa: %s does not run here", name);
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
     struct settings *settings = state->input;
@@ -28,7 +43,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         settings->threads = option_integer("threads", text, 1, 1024);
         return 0;
     case KEY_ISA:
-        library_choose_isa(text);
+        settings_choose_isa(text);
         return 0;
     case KEY_REPETITIONS:
         settings->repetitions = option_integer("repetitions", text, 1, 10000);

@@ -14,6 +14,9 @@ struct settings {
 /* A child of a command's own argp; its input is a struct settings that holds the defaults. */
 extern const struct argp settings_argp;
 
+/* Refuses what is no instruction set or does not run here. */
+void settings_choose_isa(const char *name);
+
 /* The side of the square or cube nearest to so many particles. */
 int32_t settings_side(int32_t particles, int32_t dimension);
 #endif

@@ -1,9 +1,9 @@
 /* The command `table1`. */
 #include "table1.h"
 #include "commands.h"
-#include "library.h"
 #include "machine.h"
 #include "options.h"
+#include "settings.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -99,7 +99,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         options->threads = option_integer("threads", text, 1, 1024);
         return 0;
     case OPTION_ISA:
-        library_choose_isa(text);
+        settings_choose_isa(text);
         return 0;
     case OPTION_REPETITIONS:
         options->repetitions = option_integer("repetitions", text, 1, 10000);

@@ -97,22 +97,6 @@ void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neigh
         stage_rows(finder, neighbors, around->begin[r], around->count[r], at);
 }
 
-bool sphgi_is_crowded(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around)
-{
-    const int32_t cells = neighbors->sources.cells;
-    const int32_t *start = around->start;
-    int64_t units = (int64_t)(start[cells] - start[0]) * (around->staged + SPHGI_PAD);
-    if (around->staged > SPHGI_STAGED_MOST || units <= SPHGI_UNITS_MOST)
-        return around->staged > SPHGI_STAGED_MOST;
-    units = 0;
-    for (int32_t c = 0; c < cells; ++c) {
-        struct sphgi_runs runs;
-        sphgi_candidate_runs(&neighbors->sources.lattice, around, c, &runs);
-        units += (int64_t)(start[c + 1] - start[c]) * (runs.candidates + SPHGI_PAD);
-    }
-    return units > SPHGI_UNITS_MOST;
-}
-
 /* Staged number of a target of that cell, if it is a source, or -1. Targets that are part of the
  * sources come first among them: in a cell, both stand in the order of their numbers. */
 static int32_t staged_self(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around,

@@ -31,8 +31,11 @@ void sphgi_prefetch_rows(const sphg_neighbors *neighbors, const struct sphgi_sur
 void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
                              const struct sphgi_surroundings *around);
 
-/* Is the block too crowded for 16-bit ids, or for being collected at once? */
-bool sphgi_is_crowded(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around);
+/* Too many around the block for 16-bit ids? */
+static inline bool sphgi_is_crowded(const struct sphgi_surroundings *around)
+{
+    return around->staged > SPHGI_STAGED_MOST;
+}
 
 /* Pairs of targets [begin, end) in grid order, all of cell `cell` of the staged block, at most
  * SPHGI_FIND_MOST. Returns the ids written, padding included. */

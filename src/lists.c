@@ -47,7 +47,14 @@ static void write_head(const struct sphgi_surroundings *around, uint16_t *to)
     memcpy(head + 2 + around->ranges, around->count, (size_t)around->ranges * sizeof *head);
 }
 
-static void build_block(struct build *build, const struct sphgi_finder *finder,
+/* Units that one batch of targets takes at most. */
+static int64_t most_units(const struct sphgi_runs *runs)
+{
+    return (int64_t)SPHGI_FIND_MOST * (runs->candidates + SPHGI_PAD);
+}
+
+/* False: the lists of the block are too long to be collected at once. */
+static bool build_block(struct build *build, const struct sphgi_finder *finder,
                         const struct sphgi_surroundings *around)
 {
     sphg_neighbors *n = build->neighbors;
@@ -63,6 +70,8 @@ static void build_block(struct build *build, const struct sphgi_finder *finder,
         sphgi_candidate_runs(&grid->lattice, around, c, &runs);
         for (int32_t t = start[c]; t < start[c + 1]; t += SPHGI_FIND_MOST) {
             const int32_t end = sphgi_min32(t + SPHGI_FIND_MOST, start[c + 1]);
+            if (used && used + most_units(&runs) > SPHGI_UNITS_MOST)
+                return false;
             used += sphgi_find_targets(finder, n, around, &runs, c, t, end, finder->ids + used,
                                        lengths + t);
         }
@@ -73,9 +82,10 @@ static void build_block(struct build *build, const struct sphgi_finder *finder,
     const int64_t head = head_units(around);
     const int64_t place = claim(build, around->block, head + used, false);
     if (place < 0)
-        return;
+        return true;
     write_head(around, n->found.ids + place);
     memcpy(n->found.ids + place + head, finder->ids, (size_t)used * sizeof(uint16_t));
+    return true;
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
@@ -159,10 +169,8 @@ static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
             sphgi_block_surroundings(n, (b + 1) * build->step, &around[(b + 1) & 1]);
             sphgi_prefetch_rows(n, &around[(b + 1) & 1]);
         }
-        if (sphgi_is_crowded(n, own))
+        if (sphgi_is_crowded(own) || !build_block(build, &finder, own))
             build_wide_block(build, &finder, own);
-        else
-            build_block(build, &finder, own);
     }
 }
 

@@ -257,7 +257,7 @@ static void sweep_unkept_block(const struct sphgi_task *task, struct sphgi_worke
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_surroundings around;
     sphgi_block_surroundings(n, block, &around);
-    if (sphgi_is_crowded(n, &around)) {
+    if (sphgi_is_crowded(&around)) {
         sphgi_use_local_rows(w);
         sweep_found_wide_block(task, w, finder, &around);
     } else {

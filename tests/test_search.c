@@ -207,22 +207,29 @@ static void far_offsets_have_the_pairs_of_brute_force(const test_case *test)
         }
 }
 
-static void crowded_cells_have_the_pairs_of_brute_force(const test_case *test)
+/* count: the lists of one block fit its worker's memory, or are too long for it. */
+static void require_crowd(const test_case *test, int count)
 {
     sphg_context *context = fixture_context();
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(37);
-    scene particles = empty_scene(test, 600);
-    scatter(&particles, 600, particles.sources, 0.4, 0.01, &random);
-    assert_int_equal(rows_require_search_exact(context, neighbors, &particles, 1, "one cell"),
-                     600 * 599);
-    for (int k = 0; k < 600 * test->dimension; k++)
+    scene particles = empty_scene(test, count);
+    const int64_t all = (int64_t)count * (count - 1);
+    scatter(&particles, count, particles.sources, 0.4, 0.01, &random);
+    assert_int_equal(rows_require_search_exact(context, neighbors, &particles, 1, "one cell"), all);
+    for (int k = 0; k < count * test->dimension; k++)
         particles.sources[k] = 0.375;
     assert_int_equal(rows_require_search_exact(context, neighbors, &particles, 1, "coincident"),
-                     600 * 599);
-    for (int k = 0; k < 600 * test->dimension; k++)
+                     all);
+    for (int k = 0; k < count * test->dimension; k++)
         particles.sources[k] = k / test->dimension % 7;
     rows_require_search_exact(context, neighbors, &particles, 1, "seven places");
+}
+
+static void crowded_cells_have_the_pairs_of_brute_force(const test_case *test)
+{
+    require_crowd(test, 600);
+    require_crowd(test, 1300);
 }
 
 /* ---- Relation ----------------------------------------------------------------------------- */
