@@ -1,0 +1,305 @@
+/* One number for all results of a scene: the same for 1 to 64 threads, for every executor and
+ * wherever the arrays begin; and, on the baseline path, the same for every compiler and machine. */
+#include "support/fixture.h"
+#include "support/hooks.h"
+#include "support/long.h"
+#include "support/pairs.h"
+#include <string.h>
+
+enum { COUNT = 1600, DIMENSION = 3 };
+
+typedef enum supply { KEPT, LIST_FREE, HOST_LISTS, SUPPLIES } supply;
+
+static const char *const supply_names[] = {"kept lists", "list-free", "the host's lists"};
+
+typedef struct hashes {
+    uint64_t of[SUPPLIES];
+} hashes;
+
+/* ---- Scene -------------------------------------------------------------------------------- */
+
+typedef struct setting {
+    const test_case *test;
+    sphg_scheme scheme;
+    fixture_array position, volume, density, scalar, vector;
+    rows lists;
+    const sphg_config *config;
+    random_state *shifts; /* NULL: arrays begin at cache lines */
+} setting;
+
+static fixture_array numbers_of(sphg_type type, int width, double low, double high,
+                                random_state *random)
+{
+    double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
+    for (int k = 0; k < COUNT * width; k++)
+        numbers[k] = random_between(random, low, high);
+    return fixture_numbers(type, COUNT, width, numbers);
+}
+
+/* Thin at one side and full at the other, so that some particles are isolated and some moments are
+ * decomposed. */
+static setting setting_of(const test_case *test)
+{
+    random_state random = random_seeded(191);
+    setting own = {.test = test, .scheme = fixture_scheme(test, 2)};
+    cloud points = cloud_random(DIMENSION, COUNT, 11, &random);
+    for (int i = 0; i < COUNT; i++)
+        points.x[DIMENSION * i] *= points.x[DIMENSION * i] / 8;
+    own.position = fixture_positions(test, &points);
+    scene particles = scene_of_cloud(test, &points);
+    own.lists = rows_by_brute_force(&particles, 2);
+    own.volume = numbers_of(test_field_type(test), 1, .5, 1.5, &random);
+    own.density = numbers_of(test_field_type(test), 1, .5, 1.5, &random);
+    own.scalar = numbers_of(test_field_type(test), 1, -1, 1, &random);
+    own.vector = numbers_of(test_field_type(test), DIMENSION, -1, 1, &random);
+    return own;
+}
+
+/* A copy at a multiple of the number's size from a cache line, any of them. */
+static void *moved(const setting *own, const void *data, size_t bytes, size_t number)
+{
+    const size_t shift = own->shifts ? (size_t)random_index(own->shifts, (int)(64 / number)) : 0;
+    char *memory = test_memory(bytes + 128);
+    memory += (64 - (uintptr_t)memory % 64) % 64 + shift * number;
+    if (data)
+        memcpy(memory, data, bytes);
+    return memory;
+}
+
+static size_t bytes_of(const fixture_array *array, size_t *number)
+{
+    *number = array->type == SPHG_F64 ? 8 : array->type == SPHG_F32 ? 4 : 1;
+    return (size_t)array->count * (size_t)array->width * *number;
+}
+
+static sphg_view view_of(const setting *own, const fixture_array *array)
+{
+    fixture_array copy = *array;
+    size_t number;
+    const size_t bytes = bytes_of(array, &number);
+    copy.data = moved(own, array->data, bytes, number);
+    return fixture_view(&copy);
+}
+
+/* ---- Results ------------------------------------------------------------------------------ */
+
+enum { OUTPUTS_MOST = 16 };
+
+typedef struct outputs {
+    fixture_array arrays[OUTPUTS_MOST];
+    int count;
+} outputs;
+
+static sphg_view output_of(const setting *own, outputs *all, sphg_type type, int width)
+{
+    fixture_array array = {NULL, type, COUNT, width};
+    size_t number;
+    const size_t bytes = bytes_of(&array, &number);
+    array.data = moved(own, NULL, bytes, number);
+    all->arrays[all->count++] = array;
+    return fixture_view(&array);
+}
+
+static uint64_t hash_of(uint64_t hash, const void *data, size_t bytes) /* FNV-1a */
+{
+    const unsigned char *at = data;
+    for (size_t k = 0; k < bytes; k++)
+        hash = (hash ^ at[k]) * UINT64_C(1099511628211);
+    return hash;
+}
+
+static uint64_t hash_of_outputs(const outputs *all, const sphg_stats *stats)
+{
+    uint64_t hash = hash_of(UINT64_C(14695981039346656037), stats, sizeof *stats);
+    for (int k = 0; k < all->count; k++) {
+        size_t number;
+        const size_t bytes = bytes_of(&all->arrays[k], &number);
+        hash = hash_of(hash, all->arrays[k].data, bytes);
+    }
+    return hash;
+}
+
+static sphg_neighbors *neighbors_of(const setting *own, sphg_context *context, supply how)
+{
+    const size_t pairs = (size_t)own->lists.offsets[COUNT];
+    const sphg_geometry geometry = {.sources = view_of(own, &own->position),
+                                    .source_count = COUNT,
+                                    .target_count = COUNT,
+                                    .precision = test_field_type(own->test),
+                                    .list_free = how == LIST_FREE};
+    const sphg_lists lists = {
+        .offsets = moved(own, own->lists.offsets, (COUNT + 1) * sizeof(int64_t), sizeof(int64_t)),
+        .indices = moved(own, own->lists.indices, pairs * sizeof(int32_t), sizeof(int32_t))};
+    sphg_neighbors *neighbors = NULL;
+    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+    FIXTURE_OK(context,
+               how == HOST_LISTS
+                   ? sphg_neighbors_use_lists(context, neighbors, &own->scheme, &geometry, &lists)
+                   : sphg_neighbors_search(context, neighbors, &own->scheme, &geometry));
+    return neighbors;
+}
+
+/* The four forms; the two-sided ones read the table that the others leave. */
+static uint64_t hash_of_sweeps(const setting *own, sphg_context *context,
+                               const sphg_neighbors *neighbors)
+{
+    const sphg_type type = test_field_type(own->test);
+    const sphg_view scalar = view_of(own, &own->scalar), vector = view_of(own, &own->vector);
+    sphg_sources sources = {.neighbors = neighbors,
+                            .volume = view_of(own, &own->volume),
+                            .density = view_of(own, &own->density)};
+    outputs all = {.count = 0};
+    sphg_stats stats;
+    const sphg_field forward[] = {
+        {.shape = SPHG_SCALAR, .at_sources = &scalar, .gradient = output_of(own, &all, type, 3)},
+        {.shape = SPHG_VECTOR,
+         .at_sources = &vector,
+         .gradient = output_of(own, &all, type, 9),
+         .divergence = output_of(own, &all, type, 1),
+         .curl = output_of(own, &all, type, 3)},
+        {.shape = SPHG_VECTOR,
+         .form = SPHG_DIRECT,
+         .at_sources = &vector,
+         .value = output_of(own, &all, type, 3),
+         .gradient = output_of(own, &all, type, 9)}};
+    sphg_request request = {.sources = &sources,
+                            .set_count = 1,
+                            .fields = forward,
+                            .field_count = 3,
+                            .rank = output_of(own, &all, SPHG_U8, 1),
+                            .lambda_min = output_of(own, &all, type, 1),
+                            .stats = &stats};
+    request.correction = output_of(own, &all, type, sphg_correction_width(&own->scheme));
+    FIXTURE_OK(context, sphg_evaluate(context, &own->scheme, &request));
+    sources.correction = request.correction;
+    const sphg_field two_sided[] = {{.shape = SPHG_SCALAR,
+                                     .form = SPHG_ADJOINT,
+                                     .at_sources = &scalar,
+                                     .gradient = output_of(own, &all, type, 3)},
+                                    {.shape = SPHG_VECTOR,
+                                     .form = SPHG_SYMMETRIC,
+                                     .at_sources = &vector,
+                                     .gradient = output_of(own, &all, type, 9)}};
+    const sphg_request back = {
+        .sources = &sources, .set_count = 1, .fields = two_sided, .field_count = 2};
+    FIXTURE_OK(context, sphg_evaluate(context, &own->scheme, &back));
+    return hash_of_outputs(&all, &stats);
+}
+
+static hashes run(const setting *own)
+{
+    sphg_context *context = NULL;
+    hashes found;
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, own->config, &context));
+    for (supply how = KEPT; how < SUPPLIES; how++) {
+        sphg_neighbors *neighbors = neighbors_of(own, context, how);
+        found.of[how] = hash_of_sweeps(own, context, neighbors);
+        sphg_neighbors_destroy(neighbors);
+    }
+    sphg_context_destroy(context);
+    return found;
+}
+
+static hashes run_under(const setting *own, const sphg_config *config, random_state *shifts)
+{
+    setting other = *own;
+    other.config = config;
+    other.shifts = shifts;
+    return run(&other);
+}
+
+static void require_same(const hashes *found, const hashes *expected, const char *where)
+{
+    for (supply how = KEPT; how < SUPPLIES; how++)
+        TEST_REQUIRE(found->of[how] == expected->of[how], "%s, %s: %016llx, not %016llx", where,
+                     supply_names[how], (unsigned long long)found->of[how],
+                     (unsigned long long)expected->of[how]);
+}
+
+/* ---- Properties --------------------------------------------------------------------------- */
+
+static void try_threads(const setting *own, sphg_isa isa, const hashes *expected)
+{
+    static const int32_t some[] = {2, 3, 4, 5, 7, 8, 12, 16, 24, 33, 48, 64};
+    random_state shifts = random_seeded(193);
+    const int count = long_or(64, (int)(sizeof some / sizeof *some));
+    for (int k = 0; k < count; k++) {
+        const int32_t threads = count == 64 ? k + 1 : some[k];
+        const sphg_config config = {.isa = isa, .threads = threads};
+        const hashes found = run_under(own, &config, &shifts);
+        require_same(&found, expected, test_text("path %d, %d threads", (int)isa, threads));
+    }
+}
+
+static void try_executors(const setting *own, sphg_isa isa, const hashes *expected)
+{
+    hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    static const int32_t workers[] = {1, 3, 64};
+    random_state shifts = random_seeded(197);
+    for (int k = 0; k < 9; k++) {
+        hooks host;
+        hooks_open(&host);
+        host.workers = workers[k / 3];
+        sphg_config config = hooks_config(&host, host.workers);
+        config.parallel_for = executors[k % 3];
+        config.isa = isa;
+        const hashes found = run_under(own, &config, &shifts);
+        require_same(&found, expected,
+                     test_text("path %d, executor %d, %d workers", (int)isa, k % 3, host.workers));
+        hooks_close(&host);
+    }
+}
+
+static void results_have_one_hash_whoever_works_and_wherever_arrays_begin(const test_case *test)
+{
+    const setting own = setting_of(test);
+    int paths = 0;
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+        const sphg_config serial = {.isa = isa, .threads = 1};
+        if (!fixture_context_on(isa))
+            continue;
+        const hashes expected = run_under(&own, &serial, NULL);
+        TEST_REQUIRE(expected.of[KEPT] == expected.of[LIST_FREE], "path %d: list-free", (int)isa);
+        try_threads(&own, isa, &expected);
+        try_executors(&own, isa, &expected);
+        paths++;
+    }
+    assert_true(paths > 0);
+}
+
+/* The baseline of x86-64 has no FMA, so nothing is left to a compiler: these hold for all. A change
+ * that adds in another order changes them, and says so in its message. */
+static void baseline_results_are_those_of_any_compiler(const test_case *test)
+{
+#ifdef __x86_64__
+    /* [precision][method][lists of ours, the host's] */
+    static const uint64_t pinned[2][5][2] = {
+        {{UINT64_C(0x4f317aa15a7f5d57), UINT64_C(0xc8170ef96f1abfd3)},
+         {UINT64_C(0xaede3c014c2e5bdb), UINT64_C(0x5209ba0a18fa379a)},
+         {UINT64_C(0x5d49aa9fcbefc362), UINT64_C(0x137244d4d2df6fb0)},
+         {UINT64_C(0x87524bc9b3d5cc86), UINT64_C(0xbef7388a3e44af8b)},
+         {UINT64_C(0xc07e508c758704de), UINT64_C(0x868bb2a2a2ea9c66)}},
+        {{UINT64_C(0x954b937cadb9c62f), UINT64_C(0x7509a68697fed0e3)},
+         {UINT64_C(0xb9ecfecae608f3b2), UINT64_C(0x16f47edb975cec1e)},
+         {UINT64_C(0xa912b470c5154213), UINT64_C(0x1a142c38876aca5a)},
+         {UINT64_C(0x0e3c840c9126cbe8), UINT64_C(0x093b745995df1a3f)},
+         {UINT64_C(0xfc18583e3f6925c3), UINT64_C(0x8ad5eb10bb661679)}}};
+    const setting own = setting_of(test);
+    const sphg_config serial = {.isa = SPHG_ISA_BASE, .threads = 1};
+    const hashes found = run_under(&own, &serial, NULL);
+    const uint64_t *expected = pinned[test->precision == TEST_F64][test->method];
+    TEST_REQUIRE(found.of[KEPT] == expected[0] && found.of[HOST_LISTS] == expected[1],
+                 "{0x%016llx, 0x%016llx}", (unsigned long long)found.of[KEPT],
+                 (unsigned long long)found.of[HOST_LISTS]);
+#else
+    print_message("skipped: no pinned values for this machine (%d)\n", (int)test->precision);
+#endif
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(results_have_one_hash_whoever_works_and_wherever_arrays_begin,
+               TEST_SINGLE_AND_DOUBLE, 0, TEST_CORRECTED, 0),
+    TEST_ENTRY(baseline_results_are_those_of_any_compiler, TEST_SINGLE_AND_DOUBLE, 0,
+               TEST_CORRECTED, 0),
+};
+TEST_MAIN(entries)
