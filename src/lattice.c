@@ -12,7 +12,7 @@
  * have equal coordinates: any monotone map will do, the bits themselves serve. */
 static double far_cell(double a)
 {
-    const double first = 0x1p40, second = 0x1p54;
+    static const double first = 0x1p40, second = 0x1p54;
     if (a < second)
         return first + (a - first) * 0x1p-14;
     uint64_t bits, base;

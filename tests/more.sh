@@ -1,0 +1,67 @@
+# What tests/run does beside the tests (sourced by it, from the root of the sources): one function
+# for each option, run_<option>, with the words behind the option; and needs_of_<option>, the packages
+# that it takes, where these are not those of the tests.
+
+building=(build_essential cmake pkg_config cmocka lapacke cjson hdf5)
+needs_of_coverage() { printf '%s\n' "${building[@]}" gcovr; }
+needs_of_analyse() { printf '%s\n' "${building[@]}" clang clang_tidy cppcheck; }
+needs_of_mutants() { printf '%s\n' "${building[@]}" python3; }
+needs_of_soak() { printf '%s\n' "${building[@]}"; }
+
+# Archer tells ThreadSanitizer of OpenMP's synchronisation; the host's executor needs no such help.
+run_tsan() {
+    local archer
+    build_preset tsan -DSPHG_BUILD_TESTS=ON || return 1
+    archer=$(dirname "$(dirname "$(readlink -f "$(command -v clang)")")")/lib/libarcher.so
+    OMP_TOOL_LIBRARIES=$archer TSAN_OPTIONS='ignore_noninstrumented_modules=1 halt_on_error=1' \
+        ctest --preset tsan -R '^(threads|float_environment|host_process|memory_failures|sets)$'
+}
+
+# The areas that take SPHG_TEST_LONG=1.
+run_long() {
+    local area status=0
+    build_preset release -DSPHG_BUILD_TESTS=ON || return 1
+    for area in extremes golden metamorphic solver_ensembles; do
+        SPHG_TEST_LONG=1 "build/release/tests/test_$area" || status=1
+    done
+    run_tsan || status=1
+    return $status
+}
+
+# New inputs go to build/fuzz/corpus, the kept ones are only read.
+run_fuzz() {
+    local target status=0
+    build_preset fuzz -DSPHG_BUILD_TESTS=ON || return 1
+    for target in search lists matrices calls; do
+        mkdir -p "build/fuzz/corpus/$target"
+        printf '== %s\n' "$target"
+        "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="${SPHG_FUZZ_SECONDS:-60}" \
+            -max_len=1024 -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -verbosity=0 \
+            -artifact_prefix="build/fuzz/$target-" \
+            "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" || status=1
+    done
+    return $status
+}
+
+# run_soak [SECONDS]
+run_soak() {
+    build_preset release -DSPHG_BUILD_TESTS=ON -- --target test_soak || return 1
+    SPHG_SOAK_SECONDS=${1:-1800} build/release/tests/test_soak
+}
+
+# run_mutants [COUNT [SEED]], or `again` for those that survived the last time.
+run_mutants() {
+    local which=(--count "${1:-200}" --seed "${2:-1}")
+    [ "${1-}" != again ] || which=(--again)
+    build_preset release -DSPHG_BUILD_TESTS=ON || return 1
+    python3 -B tests/mutants/run.py build/release build/mutants "${which[@]}"
+}
+
+# What is compiled several times, the passes, counts as one: a line is reached if any copy of it is.
+run_coverage() {
+    build_preset coverage -DSPHG_BUILD_TESTS=ON || return 1
+    find build/coverage -name '*.gcda' -delete
+    ctest --preset coverage -L area -j "$(nproc)" || return 1
+    gcovr -j "$(nproc)" --object-directory build/coverage --filter src/ --filter include/ \
+        --gcov-ignore-parse-errors --branches --txt-metric branch --print-summary
+}

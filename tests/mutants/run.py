@@ -1,0 +1,228 @@
+#!/usr/bin/env python3
+"""Breaks the library on purpose, one place at a time, and counts which breaks the tests see.
+
+    run.py BUILD OUT [--count N] [--seed S] [--jobs J] [--again]
+
+BUILD holds the tests, built with a shared library; OUT gets copies of the sources, the broken
+libraries and report.jsonl. A mutant that does not compile, or compiles to the same machine code,
+is replaced by the next. The same seed on the same sources gives the same mutants. --again: only
+those that survived in OUT/report.jsonl, where their line still reads as it did."""
+import argparse
+import collections
+import concurrent.futures
+import glob
+import hashlib
+import json
+import os
+import queue
+import random
+import resource
+import shutil
+import subprocess
+import sys
+import time
+
+import operators
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+MEMORY = 6 << 30  # a mutant may ask for anything [byte]
+WALL = 900  # [s]; what counts is the time of the processor
+
+Test = collections.namedtuple("Test", "name command seconds")
+
+
+def run(command, **options):
+    return subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, **options)
+
+
+def limited(seconds):
+    def limit():
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return limit
+
+
+def run_test(command, library, seconds):
+    """None if the test passes, else how it failed."""
+    environment = dict(os.environ, LD_LIBRARY_PATH=library, OMP_NUM_THREADS="2",
+                       OMP_WAIT_POLICY="passive")
+    try:
+        code = run(command, env=environment, cwd=ROOT, preexec_fn=limited(seconds),
+                   timeout=WALL).returncode
+    except subprocess.TimeoutExpired:
+        return "time"
+    if code < 0:
+        return "time" if -code in (9, 24) else "signal %d" % -code
+    return "failed" if code else None
+
+
+def measured_tests(build):
+    """The areas and the replays, the quickest first."""
+    commands = {os.path.basename(path)[5:]: [path]
+                for path in glob.glob(build + "/tests/test_*") if os.access(path, os.X_OK)}
+    for path in glob.glob(build + "/tests/fuzz/fuzz_*"):
+        name = os.path.basename(path)
+        corpus = glob.glob("%s/tests/fuzz/corpus/%s/*" % (ROOT, name[5:]))
+        if os.access(path, os.X_OK) and corpus:
+            commands[name] = [path] + sorted(corpus)
+    tests = []
+    for name, command in sorted(commands.items()):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if run_test(command, build + "/src", 3600):
+            sys.exit("%s fails without any change" % name)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        tests.append(Test(name, command,
+                          after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime))
+    return sorted(tests, key=lambda test: test.seconds)
+
+
+class Tree:
+    """The sources once more, with a build of the library."""
+
+    def __init__(self, original, place):
+        self.source, self.build = place + "/source", place + "/build"
+        shutil.rmtree(place, ignore_errors=True)
+        shutil.copytree(original, self.source)
+        run(["cmake", "-S", self.source, "-B", self.build, "-DCMAKE_BUILD_TYPE=Release",
+             "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF", "-DSPHG_BUILD_EXAMPLES=OFF",
+             "-DSPHG_INSTALL=OFF"], check=True)
+        if not self.compile():
+            sys.exit("the library does not build without any change")
+        self.original = self.machine_code()
+
+    def compile(self):
+        return run(["cmake", "--build", self.build]).returncode == 0
+
+    def machine_code(self):
+        digest = hashlib.sha256()
+        for path in sorted(glob.glob(self.build + "/src/**/*.o", recursive=True)):
+            with open(path, "rb") as file:
+                digest.update(file.read())
+        return digest.digest()
+
+    def write(self, path, text):
+        with open("%s/%s" % (self.source, path), "w") as file:
+            file.write(text)
+
+
+def text_of(original, path):
+    with open("%s/%s" % (original, path)) as file:
+        return file.read()
+
+
+def verdict_of(tree, original, mutant, tests):
+    """(how the mutant ended, the test that saw it)."""
+    text = text_of(original, mutant.path)
+    lines = text.split("\n")
+    lines[mutant.line - 1] = mutant.after
+    tree.write(mutant.path, "\n".join(lines))
+    try:
+        if not tree.compile():
+            return "stillborn", None
+        if tree.machine_code() == tree.original:
+            return "same code", None
+        for test in tests:
+            end = run_test(test.command, tree.build + "/src", int(5 + 6 * test.seconds))
+            if end:
+                return end, test.name
+        return "survived", None
+    finally:
+        tree.write(mutant.path, text)
+
+
+def copied_sources(place):
+    """What the mutants are made from: the sources as they are now, whatever is edited meanwhile."""
+    shutil.rmtree(place, ignore_errors=True)
+    os.makedirs(place)
+    shutil.copy(ROOT + "/CMakeLists.txt", place)
+    for folder in ("src", "include"):
+        shutil.copytree("%s/%s" % (ROOT, folder), "%s/%s" % (place, folder))
+    return place
+
+
+def all_mutants(original, seed):
+    """Every place of every source once, in the order of the seed; of its mutants, one."""
+    choice = random.Random(seed)
+    places = collections.defaultdict(list)
+    for pattern in ("src/*.c", "src/*.h", "src/passes/*.h", "src/passes/*.c"):
+        for path in sorted(glob.glob("%s/%s" % (original, pattern))):
+            name = os.path.relpath(path, original)
+            for mutant in operators.mutants_of(name, text_of(original, name)):
+                places[name, mutant.line].append(mutant)
+    keys = sorted(places)
+    choice.shuffle(keys)
+    return [choice.choice(places[key]) for key in keys]
+
+
+def survivors_of(original, report):
+    with open(report) as file:
+        found = [json.loads(line) for line in file]
+    mutants = []
+    for entry in found:
+        mutant = operators.Mutant(*(entry[key] for key in operators.Mutant._fields))
+        lines = text_of(original, mutant.path).split("\n")
+        at = [k for k, line in enumerate(lines, 1) if line == mutant.before]
+        if entry["end"] == "survived" and at:
+            nearest = min(at, key=lambda k: abs(k - mutant.line))
+            mutants.append(mutant._replace(line=nearest))
+    return mutants
+
+
+def hunt(mutants, count, original, trees, tests, log):
+    """Verdicts until `count` of them say something of the tests."""
+    free, ends = queue.Queue(), collections.Counter()
+    for tree in trees:
+        free.put(tree)
+
+    def one(mutant):
+        if sum(ends.values()) - ends["stillborn"] - ends["same code"] >= count:
+            return
+        tree = free.get()
+        begin = time.time()
+        end, test = verdict_of(tree, original, mutant, tests)
+        free.put(tree)
+        ends[end] += 1
+        entry = dict(mutant._asdict(), end=end, test=test, seconds=round(time.time() - begin, 1))
+        log.write(json.dumps(entry) + "\n")
+        log.flush()
+        if end == "survived":
+            print("survived: %s:%d (%s)\n-%s\n+%s" % (mutant.path, mutant.line, mutant.kind,
+                                                       mutant.before, mutant.after), flush=True)
+
+    with concurrent.futures.ThreadPoolExecutor(len(trees)) as pool:
+        list(pool.map(one, mutants))
+    return ends
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build")
+    parser.add_argument("out")
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--again", action="store_true")
+    options = parser.parse_args()
+    options.build, options.out = os.path.abspath(options.build), os.path.abspath(options.out)
+    report = options.out + "/report.jsonl"
+    original = copied_sources(options.out + "/source")
+    mutants = (survivors_of(original, report) if options.again
+               else all_mutants(original, options.seed))
+    if options.again:
+        options.count, report = len(mutants), options.out + "/again.jsonl"
+    tests = measured_tests(options.build)
+    trees = [Tree(original, "%s/%d" % (options.out, k)) for k in range(options.jobs)]
+    with open(report, "w") as log:
+        ends = hunt(mutants, options.count, original, trees, tests, log)
+    valid = sum(ends.values()) - ends["stillborn"] - ends["same code"]
+    print("seed %d, %d mutants: %d killed, %d survived (%s)" % (
+        options.seed, valid, valid - ends["survived"], ends["survived"],
+        ", ".join("%d %s" % (ends[end], end) for end in sorted(ends))))
+    return 0 if ends["survived"] <= valid / 10 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
