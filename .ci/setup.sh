@@ -22,7 +22,7 @@ probe_gnuplot() { gnuplot -e 'set terminal pngcairo' >/dev/null 2>&1; }
 probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
 probe_clang_openmp() { probe_compiler clang c -fopenmp; }
 # Of tests/run --coverage, --analyse and --mutants alone.
-probe_gcovr() { command -v gcovr >/dev/null; }
+probe_llvm() { command -v llvm-cov llvm-profdata >/dev/null; }
 probe_clang_tidy() { command -v clang-tidy >/dev/null; }
 probe_cppcheck() { command -v cppcheck >/dev/null; }
 probe_python3() { python3 -c '' 2>/dev/null; }
@@ -39,7 +39,7 @@ package_of() {
         gnuplot) echo gnuplot-nox ;;
         clang) echo clang ;;
         clang_openmp) echo libomp-dev ;;
-        gcovr) echo gcovr ;;
+        llvm) echo llvm ;;
         clang_tidy) echo clang-tidy ;;
         cppcheck) echo cppcheck ;;
         python3) echo python3 ;;

@@ -18,9 +18,9 @@ struct layout {
 static struct layout layout_of(const sphg_neighbors *neighbors, int32_t room)
 {
     const size_t size = sphgi_size_of_type(neighbors->position_type);
-    const size_t padded = sphgi_round_up((size_t)room + 2 * SPHGI_PAD, SPHGI_ALIGNMENT);
+    const size_t padded = sphgi_round_up((size_t)room + (size_t)2 * SPHGI_PAD, SPHGI_ALIGNMENT);
     struct layout layout = {.coordinates = padded * size};
-    const size_t candidates = padded + 2 * SPHGI_ALIGNMENT;
+    const size_t candidates = padded + (size_t)2 * SPHGI_ALIGNMENT;
     layout.scratch = sphgi_round_up(candidates * (3 * size + 2 + 1), SPHGI_ALIGNMENT);
     const size_t targets = (size_t)sphgi_min32(SPHGI_FIND_MOST, neighbors->target_count);
     const size_t batch = targets * (padded + SPHGI_PAD) + SPHGI_PAD;

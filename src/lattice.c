@@ -32,6 +32,7 @@ static int64_t open_cell(double t)
     const double magic = 0x1.8p52, centred = t - 0.5;
     if (centred < SPHGI_CUT_MOST && centred > -SPHGI_CUT_MOST)
         return (int64_t)((centred + magic) - magic);
+    /* cppcheck-suppress incorrectLogicOperator ; it reads 0x1p40 as 0 */
     if (t < 0x1p40 && t > -0x1p40)
         return floor_to_int(t);
     return t > 0 ? floor_to_int(far_cell(t)) : floor_to_int(-far_cell(-t));

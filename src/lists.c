@@ -197,8 +197,9 @@ static bool place_lists(sphg_neighbors *n, int64_t units)
 {
     struct sphgi_buffer *shared = &n->shared;
     struct sphgi_grid *grids[] = {&n->sources, &n->targets};
-    size_t used = 0, at[2];
-    for (int g = 0; g < (n->same ? 1 : 2); ++g) {
+    const int grid_count = n->same ? 1 : 2;
+    size_t used = 0, at[2] = {0};
+    for (int g = 0; g < grid_count; ++g) {
         at[g] = used;
         used += sphgi_round_up(sphgi_grid_tables(grids[g]->block_count), SPHGI_ALIGNMENT);
     }
@@ -214,7 +215,7 @@ static bool place_lists(sphg_neighbors *n, int64_t units)
         *shared = more;
     }
     char *base = shared->data;
-    for (int g = 0; g < (n->same ? 1 : 2); ++g)
+    for (int g = 0; g < grid_count; ++g)
         sphgi_grid_use_tables(grids[g], base + at[g]);
     n->found.lists = (int64_t *)(void *)(base + lists);
     n->found.ids = (uint16_t *)(void *)(base + used);

@@ -261,10 +261,10 @@ static void classic_gradient(const sphg_scheme *scheme, int32_t d, const double 
         w *= volume;
         slope *= volume;
     }
-    for (int32_t m = 0; m <= d; ++m) {
-        polynomial[m] = c[m * (d + 1)];
+    for (int32_t m = 0; m <= d; ++m, c += d + 1) {
+        polynomial[m] = c[0];
         for (int32_t a = 0; a < d; ++a)
-            polynomial[m] -= c[m * (d + 1) + 1 + a] * x_ij[a] / scheme->support_radius;
+            polynomial[m] -= c[1 + a] * x_ij[a] / scheme->support_radius;
     }
     for (int32_t a = 0; a < d; ++a)
         gradient[a] = slope * x_ij[a] * polynomial[0] + w * polynomial[1 + a];

@@ -24,6 +24,7 @@ struct making {
 static const char *name_of(struct making *making, const char *format, int32_t a, int32_t b)
 {
     char *name = making->names[making->extent_count];
+    /* cppcheck-suppress wrongPrintfScanfArgNum ; formats of one number leave the second unread */
     snprintf(name, NAME_LENGTH, format, (int)a, (int)b);
     return name;
 }
@@ -273,7 +274,8 @@ static sphg_result take_field(struct making *making, int32_t k)
 static void add_streams(struct making *making, int32_t s, int32_t first,
                         const struct sphgi_columns *columns, int32_t components, int32_t width)
 {
-    struct sphgi_stream *stream = making->streams + s * making->plan->stream_count + first;
+    struct sphgi_stream *stream =
+        making->streams + (ptrdiff_t)s * making->plan->stream_count + first;
     for (int32_t c = 0; c < components; c += width, ++stream)
         *stream = (struct sphgi_stream){*columns, c, sphgi_min32(width, components - c)};
 }
@@ -343,7 +345,7 @@ static sphg_result take_streams(struct making *making)
     struct sphgi_plan *plan = making->plan;
     for (int32_t s = 0; s < plan->set_count; ++s) {
         sphg_result result = SPHG_OK;
-        plan->sets[s].streams = making->streams + s * plan->stream_count;
+        plan->sets[s].streams = making->streams + (ptrdiff_t)s * plan->stream_count;
         for (int32_t k = 0; k < plan->field_count && !result; ++k)
             result = take_field_at_sources(making, s, k);
         if (!result && plan->correction_stream >= 0)

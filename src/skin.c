@@ -10,8 +10,8 @@ bool sphgi_skin_asks_the_same(const sphg_neighbors *n, const struct sphgi_geomet
     return n->kind == SPHGI_SEARCHED && n->skin > 0 && n->skin == given->skin &&
            n->radius == radius && n->dimension == g->dimension && n->part_of == g->part_of &&
            n->position_type == g->position_type && n->source_count == g->source_count &&
-           n->target_count == g->target_count &&
-           memcmp(n->period, given->period, sizeof n->period) == 0;
+           n->target_count == g->target_count && n->period[0] == given->period[0] &&
+           n->period[1] == given->period[1] && n->period[2] == given->period[2];
 }
 
 struct moves {

@@ -166,8 +166,9 @@ static sphg_result check_inversion(struct sphgi_checker checker, const struct sp
     const bool in_place =
         moments->x == wanted->correction.x && moments->stride == wanted->correction.stride;
     const size_t size = sphgi_size_of_type(b->type);
+    const struct sphgi_columns none = {.count = 0};
     const struct sphgi_extent extents[] = {
-        {"moments", in_place ? (struct sphgi_columns){.count = 0} : b->in, b->count, size, false},
+        {"moments", in_place ? none : b->in, b->count, size, false},
         {"volume", b->volume, b->count, size, false},
         {"wanted.correction", b->out[0], b->count, size, true},
         {"wanted.lambda_min", b->out[1], b->count, size, true},

@@ -80,7 +80,7 @@ static void collect_cut(const struct sort *sort, struct chunk *chunk, int32_t be
 {
     int32_t b = -1;
     for (int32_t k = 0; k < count; ++k) {
-        if (!k || memcmp(block[k], block[k - 1], sizeof block[k])) {
+        if (!k || memcmp(block[k], block[k - 1], sizeof block[k]) != 0) {
             const int64_t at[3] = {block[k][0], block[k][1], block[k][2]};
             b = block_in_chunk(chunk, sphgi_key_of(at));
         }

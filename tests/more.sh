@@ -3,7 +3,7 @@
 # that it takes, where these are not those of the tests.
 
 building=(build_essential cmake pkg_config cmocka lapacke cjson hdf5)
-needs_of_coverage() { printf '%s\n' "${building[@]}" gcovr; }
+needs_of_coverage() { printf '%s\n' "${building[@]}" clang clang_openmp llvm python3; }
 needs_of_analyse() { printf '%s\n' "${building[@]}" clang clang_tidy cppcheck; }
 needs_of_mutants() { printf '%s\n' "${building[@]}" python3; }
 needs_of_soak() { printf '%s\n' "${building[@]}"; }
@@ -17,13 +17,24 @@ run_tsan() {
         ctest --preset tsan -R '^(threads|float_environment|host_process|memory_failures|sets)$'
 }
 
-# The areas that take SPHG_TEST_LONG=1.
+# The areas that take SPHG_TEST_LONG=1; of the ensembles, whose reference is in quad, one process for
+# each precision.
 run_long() {
-    local area status=0
+    local area precision process processes=() status=0
     build_preset release -DSPHG_BUILD_TESTS=ON || return 1
-    for area in extremes golden metamorphic solver_ensembles; do
-        SPHG_TEST_LONG=1 "build/release/tests/test_$area" || status=1
+    export SPHG_TEST_LONG=1
+    for area in extremes golden metamorphic; do
+        "build/release/tests/test_$area" || status=1
     done
+    for precision in f32 f64; do
+        build/release/tests/test_solver_ensembles "*$precision*" >"build/release/$precision.log" 2>&1 &
+        processes+=($!)
+    done
+    for process in "${processes[@]}"; do
+        wait "$process" || status=1
+    done
+    cat build/release/f32.log build/release/f64.log
+    unset SPHG_TEST_LONG
     run_tsan || status=1
     return $status
 }
@@ -57,11 +68,32 @@ run_mutants() {
     python3 -B tests/mutants/run.py build/release build/mutants "${which[@]}"
 }
 
-# What is compiled several times, the passes, counts as one: a line is reached if any copy of it is.
+# As Clang sees the source, not the machine code: a condition counts twice, taken and not. What is
+# compiled several times, the passes, counts as one: reached if any copy of it is.
 run_coverage() {
+    local profiles=build/coverage/profiles
     build_preset coverage -DSPHG_BUILD_TESTS=ON || return 1
-    find build/coverage -name '*.gcda' -delete
-    ctest --preset coverage -L area -j "$(nproc)" || return 1
-    gcovr -j "$(nproc)" --object-directory build/coverage --filter src/ --filter include/ \
-        --gcov-ignore-parse-errors --branches --txt-metric branch --print-summary
+    rm -rf "$profiles"
+    LLVM_PROFILE_FILE="$PWD/$profiles/%4m.profraw" ctest --preset coverage -L area -j "$(nproc)" || return 1
+    llvm-profdata merge -o "$profiles/all.profdata" "$profiles"/*.profraw &&
+        python3 -B tests/checks/coverage.py "$profiles/all.profdata" build/coverage/src/libsphgrad.so
+}
+
+# GCC's analyser and cppcheck do not follow vector extensions, so only clang-tidy sees the passes.
+run_analyse() {
+    local file status=0
+    quietly cmake --preset release || return 1
+    for file in src/*.c; do
+        gcc -std=c11 -Iinclude -DSPHG_HAVE_V3=1 -DSPHG_USE_OPENMP=1 -fopenmp -O0 -fanalyzer -Werror \
+            -c "$file" -o /dev/null || status=1
+    done
+    for file in src/*.c src/passes/*.c; do
+        facts=(--extra-arg=-include --extra-arg="$PWD/tests/checks/analyser.h")
+        case $file in src/context.c | src/check.c) facts=() ;; esac
+        clang-tidy --quiet -p build/release "${facts[@]}" "$file" 2>/dev/null || status=1
+    done
+    cppcheck --quiet --std=c11 --enable=warning,portability,performance --inconclusive \
+        --inline-suppr --error-exitcode=1 -Iinclude -Isrc \
+        -DSPHG_HAVE_V3=1 -DSPHG_USE_OPENMP=1 -D__SSE2__=1 -D__GNUC__=12 src/*.c || status=1
+    return $status
 }
