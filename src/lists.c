@@ -191,21 +191,20 @@ static void find_blocks(sphg_context *context, struct build *build, int32_t step
 
 /* ---- Memory --------------------------------------------------------------------------------- */
 
+static size_t tables_of(const struct sphgi_grid *grid)
+{
+    return sphgi_round_up(sphgi_grid_tables(grid->block_count), SPHGI_ALIGNMENT);
+}
+
 /* Puts lists and ids behind the tables, with room for that many units: first what the memory holds
  * already, else more. The tables move along. */
 static bool place_lists(sphg_neighbors *n, int64_t units)
 {
     struct sphgi_buffer *shared = &n->shared;
-    struct sphgi_grid *grids[] = {&n->sources, &n->targets};
-    const int grid_count = n->same ? 1 : 2;
-    size_t used = 0, at[2] = {0};
-    for (int g = 0; g < grid_count; ++g) {
-        at[g] = used;
-        used += sphgi_round_up(sphgi_grid_tables(grids[g]->block_count), SPHGI_ALIGNMENT);
-    }
-    const size_t lists = used;
+    const size_t sources = tables_of(&n->sources);
+    const size_t lists = sources + (n->same ? 0 : tables_of(&n->targets));
     const size_t blocks = (size_t)sphgi_target_grid(n)->block_count;
-    used += sphgi_round_up(blocks * sizeof(int64_t), SPHGI_ALIGNMENT);
+    const size_t used = lists + sphgi_round_up(blocks * sizeof(int64_t), SPHGI_ALIGNMENT);
     if (units > 0 && used + (size_t)units * sizeof(uint16_t) > shared->size) {
         struct sphgi_buffer more = {NULL, 0};
         if (!sphgi_reserve(&n->allocator, &more, used + (size_t)units * sizeof(uint16_t), 1))
@@ -215,8 +214,9 @@ static bool place_lists(sphg_neighbors *n, int64_t units)
         *shared = more;
     }
     char *base = shared->data;
-    for (int g = 0; g < grid_count; ++g)
-        sphgi_grid_use_tables(grids[g], base + at[g]);
+    sphgi_grid_use_tables(&n->sources, base);
+    if (!n->same)
+        sphgi_grid_use_tables(&n->targets, base + sources);
     n->found.lists = (int64_t *)(void *)(base + lists);
     n->found.ids = (uint16_t *)(void *)(base + used);
     n->found.room = (int64_t)((shared->size - used) / sizeof(uint16_t));

@@ -6,7 +6,8 @@
 BUILD holds the tests, built with a shared library; OUT gets copies of the sources, the broken
 libraries and report.jsonl. A mutant that does not compile, or compiles to the same machine code,
 is replaced by the next. The same seed on the same sources gives the same mutants. --again: only
-those that survived in OUT/report.jsonl, where their line still reads as it did."""
+those that survived in OUT/report.jsonl, where their line still reads as it did. --resume: goes on
+behind those in OUT/report.jsonl."""
 import argparse
 import collections
 import concurrent.futures
@@ -85,12 +86,15 @@ class Tree:
         self.source, self.build = place + "/source", place + "/build"
         shutil.rmtree(place, ignore_errors=True)
         shutil.copytree(original, self.source)
-        run(["cmake", "-S", self.source, "-B", self.build, "-DCMAKE_BUILD_TYPE=Release",
-             "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF", "-DSPHG_BUILD_EXAMPLES=OFF",
+        # -O1: half of the time goes into compiling passes
+        run(["cmake", "-S", self.source, "-B", self.build, "-DCMAKE_BUILD_TYPE=Debug",
+             "-DCMAKE_C_FLAGS_DEBUG=-O1", "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF", "-DSPHG_BUILD_EXAMPLES=OFF",
              "-DSPHG_INSTALL=OFF"], check=True)
         if not self.compile():
             sys.exit("the library does not build without any change")
         self.original = self.machine_code()
+        self.kept = place + "/kept"
+        shutil.copytree(self.build + "/src", self.kept)
 
     def compile(self):
         return run(["cmake", "--build", self.build]).returncode == 0
@@ -106,6 +110,11 @@ class Tree:
         with open("%s/%s" % (self.source, path), "w") as file:
             file.write(text)
 
+    def restore(self, original, path):
+        """With their old times, so that nothing is compiled again."""
+        shutil.copy2("%s/%s" % (original, path), "%s/%s" % (self.source, path))
+        shutil.copytree(self.kept, self.build + "/src", dirs_exist_ok=True)
+
 
 def text_of(original, path):
     with open("%s/%s" % (original, path)) as file:
@@ -114,8 +123,7 @@ def text_of(original, path):
 
 def verdict_of(tree, original, mutant, tests):
     """(how the mutant ended, the test that saw it)."""
-    text = text_of(original, mutant.path)
-    lines = text.split("\n")
+    lines = text_of(original, mutant.path).split("\n")
     lines[mutant.line - 1] = mutant.after
     tree.write(mutant.path, "\n".join(lines))
     try:
@@ -129,7 +137,7 @@ def verdict_of(tree, original, mutant, tests):
                 return end, test.name
         return "survived", None
     finally:
-        tree.write(mutant.path, text)
+        tree.restore(original, mutant.path)
 
 
 def copied_sources(place):
@@ -156,12 +164,19 @@ def all_mutants(original, seed):
     return [choice.choice(places[key]) for key in keys]
 
 
-def survivors_of(original, report):
+def entries_of(report):
     with open(report) as file:
-        found = [json.loads(line) for line in file]
+        return [json.loads(line) for line in file]
+
+
+def mutant_in(entry):
+    return {key: entry[key] for key in operators.Mutant._fields}
+
+
+def survivors_of(original, report):
     mutants = []
-    for entry in found:
-        mutant = operators.Mutant(*(entry[key] for key in operators.Mutant._fields))
+    for entry in entries_of(report):
+        mutant = operators.Mutant(**mutant_in(entry))
         lines = text_of(original, mutant.path).split("\n")
         at = [k for k, line in enumerate(lines, 1) if line == mutant.before]
         if entry["end"] == "survived" and at:
@@ -170,9 +185,9 @@ def survivors_of(original, report):
     return mutants
 
 
-def hunt(mutants, count, original, trees, tests, log):
-    """Verdicts until `count` of them say something of the tests."""
-    free, ends = queue.Queue(), collections.Counter()
+def hunt(mutants, count, original, trees, tests, log, ends):
+    """Verdicts until `count` of them say something of the tests; `ends` counts them."""
+    free = queue.Queue()
     for tree in trees:
         free.put(tree)
 
@@ -205,6 +220,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--again", action="store_true")
+    parser.add_argument("--resume", action="store_true")
     options = parser.parse_args()
     options.build, options.out = os.path.abspath(options.build), os.path.abspath(options.out)
     report = options.out + "/report.jsonl"
@@ -213,10 +229,13 @@ def main():
                else all_mutants(original, options.seed))
     if options.again:
         options.count, report = len(mutants), options.out + "/again.jsonl"
+    done = entries_of(report) if options.resume else []
+    mutants = [mutant for mutant in mutants if mutant._asdict() not in map(mutant_in, done)]
     tests = measured_tests(options.build)
     trees = [Tree(original, "%s/%d" % (options.out, k)) for k in range(options.jobs)]
-    with open(report, "w") as log:
-        ends = hunt(mutants, options.count, original, trees, tests, log)
+    with open(report, "a" if options.resume else "w") as log:
+        ends = hunt(mutants, options.count, original, trees, tests, log,
+                    collections.Counter(entry["end"] for entry in done))
     valid = sum(ends.values()) - ends["stillborn"] - ends["same code"]
     print("seed %d, %d mutants: %d killed, %d survived (%s)" % (
         options.seed, valid, valid - ends["survived"], ends["survived"],
