@@ -55,11 +55,6 @@ double sphgi_kernel_w(sphg_kernel kernel, double q)
     return kernel_w(kernel, q);
 }
 
-double sphgi_kernel_d(sphg_kernel kernel, double q)
-{
-    return kernel_d(kernel, q);
-}
-
 double sphgi_power(double scale, int32_t power)
 {
     double result = 1;

@@ -7,7 +7,6 @@ bool sphgi_kernel_exists(sphg_kernel kernel);
 double sphgi_kernel_sigma(sphg_kernel kernel, int32_t dimension);
 double sphgi_kernel_mu2(sphg_kernel kernel, int32_t dimension);
 double sphgi_kernel_w(sphg_kernel kernel, double q); /* w(q) */
-double sphgi_kernel_d(sphg_kernel kernel, double q); /* w'(q)/q */
 
 /* scale^power for the whole powers needed of lengths: exact for powers of two. */
 double sphgi_power(double scale, int32_t power);

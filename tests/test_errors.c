@@ -167,6 +167,8 @@ static void refuse_bad_geometry(subject *own, subject_call *call)
             own->geometry.targets.type = other);
     REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = SPHG_U8);
     REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
+    if (own->test->precision == TEST_F32)
+        REFUSES(call, SPHG_ERROR_TYPE, "precision", own->geometry.precision = SPHG_F64);
     const double periods[] = {-4, NAN, INFINITY, 1.5};
     for (int k = 0; k < 4; k++)
         REFUSES(call, SPHG_ERROR_ARGUMENT, "period", own->geometry.period[1] = periods[k]);

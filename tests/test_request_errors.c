@@ -135,6 +135,16 @@ static void two_sided_forms_need_tables_and_densities(const test_case *test)
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "density", own->field.form = SPHG_SYMMETRIC;
             own->request.correction = own->request.rank = sphg_absent();
             own->sources[0].correction = own->table);
+#define APART                                                                                      \
+    own->sources[0].neighbors = own->lone;                                                         \
+    own->sources[0].density = own->volumes;                                                        \
+    own->sources[0].correction = own->request.target_correction = own->table;                      \
+    own->request.correction = own->request.rank = sphg_absent();                                   \
+    own->field.at_targets = own->scalars
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "target_volume", APART; own->field.form = SPHG_ADJOINT);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "target_density", APART;
+            own->field.form = SPHG_SYMMETRIC; own->request.target_volume = own->volumes);
+#undef APART
 }
 
 static void evaluate_refuses_bad_outputs_of_corrections(const test_case *test)
@@ -209,6 +219,14 @@ static void several_sets_must_agree(const test_case *test)
     own->request.set_count = 2;                                                                    \
     own->sources[1] = own->sources[0]
     REFUSES(evaluate, SPHG_ERROR_SIZE, "59 targets", TWO_SETS; own->sources[1].neighbors = fewer);
+    if (test->precision == TEST_F64) {
+        own->geometry.precision = SPHG_F32;
+        own->geometry.target_count = SUBJECT_COUNT;
+        FIXTURE_OK(own->context,
+                   sphg_neighbors_search(own->context, fewer, &own->scheme, &own->geometry));
+        REFUSES(evaluate, SPHG_ERROR_TYPE, "precision", TWO_SETS;
+                own->sources[1].neighbors = fewer);
+    }
 #undef TWO_SETS
     sphg_neighbors_destroy(fewer);
 }
@@ -250,6 +268,47 @@ static void bad_indices_are_found_where_operators_read_them(const test_case *tes
         own->indices[place] = 5;
         FIXTURE_OK(own->context, evaluate(own));
         subject_reset(own);
+    }
+}
+
+/* Lists of a length that cannot be, and lists that are not there: the first is named. */
+typedef struct bad_rows {
+    const int32_t *rows[SUBJECT_COUNT];
+    int32_t lengths[SUBJECT_COUNT];
+} bad_rows;
+
+static int32_t bad_row(int32_t target, int32_t worker, const int32_t **indices, void *user)
+{
+    const bad_rows *bad = user;
+    (void)worker;
+    *indices = bad->rows[target];
+    return bad->lengths[target];
+}
+
+static void lists_of_no_length_are_found_where_operators_read_them(const test_case *test)
+{
+    subject *own = subject_create(test);
+    for (int k = 0; k < 6; k++) {
+        bad_rows bad;
+        for (int i = 0; i < SUBJECT_COUNT; i++) {
+            bad.rows[i] = own->indices;
+            bad.lengths[i] = 3;
+        }
+        for (int i = 17; i < SUBJECT_COUNT; i += 11) {
+            bad.lengths[i] = k % 3 == 0 ? -1 : k % 3 == 1 ? INT32_MIN : 3;
+            bad.rows[i] = k % 3 == 2 ? NULL : own->indices;
+        }
+        bad.rows[5] = NULL; /* nothing is read there */
+        bad.lengths[5] = 0;
+        const sphg_lists rows = {.rows = bad.rows, .lengths = bad.lengths},
+                         function = {.row = bad_row, .user = &bad};
+        FIXTURE_OK(own->context,
+                   sphg_neighbors_use_lists(own->context, own->lone, &own->scheme, &own->geometry,
+                                            k < 3 ? &rows : &function));
+        own->sources[0].neighbors = own->lone;
+        assert_int_equal(evaluate(own), SPHG_ERROR_INDEX);
+        TEST_REQUIRE(strstr(sphg_last_message(own->context), "target 17 has"), "%s",
+                     sphg_last_message(own->context));
     }
 }
 
@@ -387,6 +446,7 @@ static const test_entry entries[] = {
     EACH(several_sets_must_agree),
     EACH(bad_volumes_are_found_and_named),
     EACH(bad_indices_are_found_where_operators_read_them),
+    EACH(lists_of_no_length_are_found_where_operators_read_them),
     EACH(context_in_use_is_busy),
     EACH(pairs_refuse_bad_arguments),
     EACH(pairs_report_the_capacity_they_need),

@@ -362,6 +362,33 @@ static void skin_keeps_lists_and_exactness(const test_case *test)
     }
 }
 
+/* Targets of their own walk through sources at rest, then the other way round: what moves decides
+ * what the skin has left. */
+static void moves_of_either_side_use_up_the_skin(const test_case *test)
+{
+    sphg_context *context = fixture_context_of(1);
+    random_state random = random_seeded(59);
+    for (int side = 0; side < 2; side++) {
+        sphg_neighbors *neighbors = pairs_neighbors(context);
+        scene particles = empty_scene(test, 200);
+        particles.skin = 0.25;
+        particles.target_count = 90;
+        particles.targets = test_memory(90 * 3 * sizeof(double));
+        scatter(&particles, 200, particles.sources, 0, 3, &random);
+        scatter(&particles, 90, particles.targets, 0, 3, &random);
+        double *moving = side ? particles.sources : particles.targets, start = moving[0];
+        for (int step = 0; step < 24; step++) {
+            sphg_neighbors_info info = {0};
+            rows_require_search_exact(context, neighbors, &particles, 0.75, "one side walks");
+            FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+            assert_int_equal(info.rebuilt, step % 4 == 0); /* 4 / 32 is half of the skin */
+            start = info.rebuilt ? moving[0] : start;
+            assert_true(fabs(info.skin_left - (0.125 - fabs(moving[0] - start))) <= 1e-3);
+            moving[0] = rounded(&particles, moving[0] + (step % 4 == 3 ? 0.04 : 0.03));
+        }
+    }
+}
+
 /* What is no small move asks for a rebuild: another radius, count, period, or a jump. */
 static void changed_arguments_rebuild(const test_case *test)
 {
@@ -389,6 +416,24 @@ static void changed_arguments_rebuild(const test_case *test)
     rows_require_search_exact(context, neighbors, &particles, 0.5, "jump");
 }
 
+/* Fields of another precision need rows of another type. */
+static void another_precision_rebuilds(const test_case *test)
+{
+    sphg_context *context = fixture_context_of(1);
+    sphg_neighbors *neighbors = pairs_neighbors(context);
+    random_state random = random_seeded(61);
+    scene particles = empty_scene(test, 200);
+    scatter(&particles, 200, particles.sources, 0, 4, &random);
+    particles.skin = 0.25;
+    for (int step = 0; step < 6; step++) {
+        sphg_neighbors_info info = {0};
+        particles.precision = step / 2 % 2 ? SPHG_F32 : SPHG_F64;
+        rows_require_search_exact(context, neighbors, &particles, 0.75, "precision");
+        FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+        assert_int_equal(info.rebuilt, step % 2 == 0);
+    }
+}
+
 #define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)
 
 static const test_entry entries[] = {
@@ -403,6 +448,8 @@ static const test_entry entries[] = {
     EACH(relation_is_symmetric_and_rows_ascend),
     EACH(smaller_radius_and_subsets_select_from_the_same_pairs),
     EACH(skin_keeps_lists_and_exactness),
+    EACH(moves_of_either_side_use_up_the_skin),
     EACH(changed_arguments_rebuild),
+    TEST_ENTRY(another_precision_rebuilds, TEST_BIT(TEST_F64), TEST_BOTH_DIMENSIONS, 0, 0),
 };
 TEST_MAIN(entries)

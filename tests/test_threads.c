@@ -276,6 +276,40 @@ static void first_bad_position_is_named_for_any_executor(const test_case *test)
     }
 }
 
+/* Of several lists that hold what is no source, the first is named. */
+static void first_bad_index_is_named_for_any_executor(const test_case *test)
+{
+    hooks_executor *const executors[] = {NULL, hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    const stage own = stage_of(test);
+    rows pairs;
+    serial_results(&own, 0, &pairs);
+    for (int32_t target = 211; target < COUNT; target += 97)
+        for (int64_t k = pairs.offsets[target]; k < pairs.offsets[target + 1]; k++)
+            pairs.indices[k] = COUNT + target;
+    for (int k = 0; k < 4; k++) {
+        hooks host;
+        hooks_open(&host);
+        sphg_config config = hooks_config(&host, host.workers);
+        config.parallel_for = executors[k];
+        sphg_context *context = NULL;
+        sphg_neighbors *neighbors = NULL;
+        FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+        FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+        const sphg_geometry geometry = scene_geometry(&own.particles);
+        const sphg_lists lists = {.offsets = pairs.offsets, .indices = pairs.indices};
+        FIXTURE_OK(context,
+                   sphg_neighbors_use_lists(context, neighbors, &own.scheme, &geometry, &lists));
+        const sphg_sources sources = sources_of(&own, neighbors);
+        results unused = results_for(&own);
+        assert_int_equal(sweep(context, &own, &sources, NULL, &unused), SPHG_ERROR_INDEX);
+        TEST_REQUIRE(strstr(sphg_last_message(context), "target 211 holds 1811"), "%s",
+                     sphg_last_message(context));
+        sphg_neighbors_destroy(neighbors);
+        sphg_context_destroy(context);
+        hooks_close(&host);
+    }
+}
+
 /* ---- Contexts at the same time ------------------------------------------------------------ */
 
 typedef struct helper {
@@ -376,6 +410,8 @@ static const test_entry entries[] = {
     EACH(results_do_not_depend_on_the_executor),
     TEST_ENTRY(search_does_not_depend_on_threads, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(first_bad_position_is_named_for_any_executor, TEST_SINGLE_AND_DOUBLE,
+               TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(first_bad_index_is_named_for_any_executor, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, 0, 0),
     EACH(contexts_may_share_neighbours_and_split_the_targets),
     EACH(subsets_have_the_bits_of_the_whole),

@@ -334,6 +334,43 @@ static void wide_positions_keep_their_differences(const test_case *test)
                     test_method_name(test->method));
 }
 
+/* ---- Many fields -------------------------------------------------------------------------- */
+
+/* More than a word has bits. */
+enum { FIELDS = 40 };
+
+static void many_fields_have_the_bits_of_each_alone(const test_case *test)
+{
+    const sphg_type type = test_field_type(test);
+    sphg_context *context = fixture_context();
+    random_state random = random_seeded(227);
+    cloud points = cloud_random(test->dimension, COUNT, 4, &random);
+    const sphg_scheme scheme = fixture_scheme(test, 1);
+    const fixture_array volume =
+        fixture_numbers(type, COUNT, 1, cloud_volumes(&points, .2, &random));
+    const sphg_sources sources = {.neighbors = fixture_neighbors(context, test, &scheme, &points),
+                                  .volume = fixture_view(&volume)};
+    sphg_view values[FIELDS];
+    fixture_array together[FIELDS], alone = fixture_output(type, COUNT, test->dimension);
+    sphg_field fields[FIELDS];
+    for (int k = 0; k < FIELDS; k++) {
+        const fixture_array numbers =
+            fixture_numbers(type, COUNT, 1, cloud_numbers(&points, -1, 1, &random));
+        values[k] = fixture_view(&numbers);
+        together[k] = fixture_output(type, COUNT, test->dimension);
+        fields[k] = (sphg_field){
+            .shape = SPHG_SCALAR, .at_sources = &values[k], .gradient = fixture_view(&together[k])};
+    }
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = fields, .field_count = FIELDS};
+    FIXTURE_OK(context, sphg_evaluate(context, &scheme, &request));
+    for (int k = 0; k < FIELDS; k++) {
+        FIXTURE_OK(context, sphg_gradient(context, &scheme, &sources, NULL, values[k],
+                                          fixture_view(&alone)));
+        TEST_REQUIRE(fixture_same_bits(&together[k], &alone), "field %d", k);
+    }
+}
+
 #define EACH(property, methods)                                                                    \
     TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, methods, 0)
 
@@ -342,6 +379,7 @@ static const test_entry entries[] = {
     EACH(stride_zero_is_one_item_for_all, TEST_LINEARISED),
     EACH(accumulation_adds_to_what_is_there, TEST_ALL_METHODS),
     EACH(accumulation_leaves_unselected_targets_alone, TEST_ALL_METHODS),
+    EACH(many_fields_have_the_bits_of_each_alone, TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_CMLS)),
     TEST_ENTRY(wide_positions_keep_their_differences, TEST_BIT(TEST_MIXED), TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
 };

@@ -45,17 +45,6 @@ SPHGI_TEMPLATE vec square_of(double length)
     return rounded(splat(R(length)) * splat(R(length)));
 }
 
-static bool is_neighbor(const void *a, const void *b, double reach, const double *period,
-                        int32_t dimension)
-{
-    const real *x = a, *y = b;
-    const struct wraps w = wraps_of(period);
-    vec d[3];
-    for (int k = 0; k < 3; ++k)
-        d[k] = wrapped(splat(k < dimension ? x[k] - y[k] : R(0)), w.axis[k]);
-    return bits_of(less(square_distance(d[0], d[1], d[2]), square_of(reach))) & 1;
-}
-
 /* The first LANES ids, at out: pairs that are none are replaced by the dummy row, for a field that
  * is not finite must not enter through 0 * NaN. */
 SPHGI_TEMPLATE void keep_ids(mask inside, struct listed list, void *out)

@@ -189,8 +189,6 @@ struct sphgi_passes {
     int64_t (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs,
                     const void *targets, int32_t count, int32_t self, uint16_t *ids,
                     uint16_t *lengths);
-    bool (*is_neighbor)(const void *a, const void *b, double reach, const double *period,
-                        int32_t dimension);
 
     /* Pairs of the parts from `first` on into the arrays of the piece; x: row of each lane's
      * target. [0]: f32 arrays, [1]: f64. masked: room for the ids of a piece; supersets leave

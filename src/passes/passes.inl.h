@@ -51,7 +51,6 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .transpose_rows = transpose_rows,
     .largest_move = largest_move,
     .find = find,
-    .is_neighbor = is_neighbor,
     .clean_ids = clean_ids,
     .shape_factors = shape_factors,
     .shape_weights = shape_weights,
