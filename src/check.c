@@ -81,8 +81,7 @@ sphg_result sphgi_check_range(struct sphgi_checker checker, const struct sphgi_s
                               sphg_type type)
 {
     const double h = scheme->radius;
-    if (!is_normal_in(h * h, type) || !is_normal_in(1 / h, type) ||
-        !is_normal_in(sphgi_power(1 / h, scheme->dimension), type))
+    if (!is_normal_in(h * h, type) || !is_normal_in(sphgi_power(1 / h, scheme->dimension), type))
         REFUSE(SPHG_ERROR_ARGUMENT,
                "%s: scheme.support_radius is %g, its powers leave the range of the precision",
                checker.function, h);

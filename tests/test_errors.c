@@ -88,6 +88,19 @@ static void context_refuses_bad_configurations(const test_case *test)
     expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_MEMORY);
 }
 
+static void no_configuration_is_the_default(const test_case *test)
+{
+    (void)test;
+    sphg_context *context = NULL;
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, NULL, &context));
+    const double matrix[6] = {2, 0, 0, 1, 0, 3}, sorted[3] = {3, 2, 1};
+    double values[3];
+    FIXTURE_OK(context, sphg_eigen(context, 3, 1, sphg_view_f64(matrix, sizeof matrix),
+                                   sphg_view_f64(values, sizeof values), sphg_absent()));
+    assert_memory_equal(values, sorted, sizeof sorted);
+    sphg_context_destroy(context);
+}
+
 /* On any machine one of the two foreign instruction sets is missing. */
 static void context_refuses_the_instruction_set_of_another_machine(const test_case *test)
 {
@@ -167,7 +180,16 @@ static void refuse_bad_geometry(subject *own, subject_call *call)
             own->geometry.targets.type = other);
     REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = SPHG_U8);
     REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
-    if (own->test->precision == TEST_F32)
+    const int d = own->test->dimension, single = own->test->precision == TEST_F32;
+    /* H and H^2 are in range, H^-d is not */
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius",
+            own->scheme.support_radius =
+                d == 3 ? (single ? 1e-13 : 1e-110) : (single ? 1.5e19 : 1.2e154));
+    for (int part = 1; part < 3 && d == 3; part++) /* one component of three is not aligned */
+        REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
+                own->geometry.sources.y = (const char *)own->positions.x + (part == 1);
+                own->geometry.sources.z = (const char *)own->positions.x + (part == 2));
+    if (single)
         REFUSES(call, SPHG_ERROR_TYPE, "precision", own->geometry.precision = SPHG_F64);
     const double periods[] = {-4, NAN, INFINITY, 1.5};
     for (int k = 0; k < 4; k++)
@@ -413,6 +435,7 @@ static void correction_width_is_that_of_the_method(const test_case *test)
 static const test_entry entries[] = {
     TEST_ONCE(every_result_has_a_text_of_its_own),
     TEST_ONCE(context_refuses_bad_configurations),
+    TEST_ONCE(no_configuration_is_the_default),
     TEST_ONCE(context_refuses_the_instruction_set_of_another_machine),
     TEST_ONCE(null_handles_are_refused_and_nothing_is_destroyed_twice),
     EACH(builds_refuse_bad_geometry),

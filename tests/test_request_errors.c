@@ -64,6 +64,7 @@ static void evaluate_refuses_bad_sources(const test_case *test)
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "sources", own->request.sources = NULL);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = 0);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = -1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = 4097);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "neighbors", own->sources[0].neighbors = NULL);
     REFUSES(evaluate, SPHG_ERROR_STATE, "", own->sources[0].neighbors = own->blank);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "volume", own->sources[0].volume = sphg_absent());
@@ -82,6 +83,7 @@ static void evaluate_refuses_bad_fields(const test_case *test)
     subject *own = subject_create(test);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields", own->request.fields = NULL);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = -1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = 4097);
     const int shapes[] = {0, 5, -1, INT_MAX}, forms[] = {-1, 4, INT_MIN, INT_MAX};
     for (int k = 0; k < 4; k++) {
         REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "shape", own->field.shape = (sphg_shape)shapes[k]);

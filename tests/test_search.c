@@ -409,6 +409,25 @@ static void changed_arguments_rebuild(const test_case *test)
     rows_require_search_exact(context, neighbors, &particles, 0.5, "periodic");
     particles.skin = 0.5;
     rows_require_search_exact(context, neighbors, &particles, 0.5, "wider skin");
+    particles.period[0] = particles.period[2] = 4;
+    rows_require_search_exact(context, neighbors, &particles, 0.5, "periodic along others");
+    particles.period[2] = 5;
+    rows_require_search_exact(context, neighbors, &particles, 0.5, "another period");
+    particles.targets = particles.sources;
+    rows_require_search_exact(context, neighbors, &particles, 0.5, "targets apart");
+    particles.targets = NULL;
+    rows_require_search_exact(context, neighbors, &particles, 0.5, "part of the sources again");
+    particles.dimension = 5 - test->dimension;
+    rows_require_search_exact(context, neighbors, &particles, 0.5, "other dimension");
+    particles.dimension = test->dimension;
+    if (particles.is_double) {
+        for (int k = 0; k < 600; k++)
+            particles.sources[k] = (double)(float)particles.sources[k];
+        particles.precision = SPHG_F32;
+        rows_require_search_exact(context, neighbors, &particles, 0.5, "narrow fields");
+        particles.is_double = 0;
+        rows_require_search_exact(context, neighbors, &particles, 0.5, "narrow positions");
+    }
     particles.list_free = 1;
     particles.skin = 0;
     rows_require_search_exact(context, neighbors, &particles, 0.5, "list-free");

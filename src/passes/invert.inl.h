@@ -126,7 +126,7 @@ SPHGI_TEMPLATE void keep_lane(const struct corrected *done, int from, int lane, 
     for (int k = 0; k < numbers; ++k)
         c[k * SPHGI_WIDTH + lane] = (real)(done->c[k][from] + poison);
     verdict->rank[lane] = (uint8_t)done->rank[from];
-    if (!(poison < 0 || poison >= 0))
+    if (!(poison == 0))
         verdict->rank[lane] = 0;
     const real lambda = (real)done->lambda_min[from];
     verdict->lambda_min[lane] = (double)lambda;

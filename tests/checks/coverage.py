@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Lines and branches of the library's sources that the tests reach, and those they do not.
 
-    coverage.py PROFILE LIBRARY
+    coverage.py PROFILE LIBRARY [PROGRAM...]
 
-Reads what llvm-cov exports. A line, or a condition's outcome, is reached if any of the copies that
-the file is compiled into reaches it; an outcome that the compiler knows to be impossible in every
-copy is none."""
+Programs count what they have of the header's inline functions. Reads what llvm-cov exports. A
+line, or a condition's outcome, is reached if any of the copies that the file is compiled into
+reaches it; what the compiler knows to be constant is no condition."""
 import collections
 import json
 import os
@@ -15,8 +15,11 @@ import sys
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
-def exported(profile, library):
+def exported(profile, library, *programs):
     command = ["llvm-cov", "export", "-instr-profile", profile, library]
+    for program in programs:
+        command += ["-object", program]
+    command += [ROOT + "/src", ROOT + "/include"]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
 
 
@@ -26,21 +29,24 @@ def outcomes_of(data):
     for function in data["functions"]:
         for branch in function["branches"]:
             path = function["filenames"][branch[6]]
-            folded = branch[4] == 0 and branch[5] == 0
             for outcome, count in (("taken", branch[4]), ("not taken", branch[5])):
-                counts[(path, *branch[:4], outcome)] += 0 if folded else count
+                counts[(path, *branch[:4], outcome)] += count
     return counts
 
 
 def lines_of(data):
-    """{(file, line): count}, from the regions of all copies; the innermost region says."""
+    """{(file, line): count}, the copies of a file added up. A line counts as often as the region
+    that begins on it and counts most, else as the innermost region around it."""
     counts = collections.Counter()
     for function in data["functions"]:
-        own = {}
+        own, begun = {}, {}
         regions = [r for r in function["regions"] if r[7] == 0]
         for begin, _, end, _, count, file, *_ in sorted(regions, key=lambda r: (r[0], r[1], -r[2])):
-            for line in range(begin, end + 1):
-                own[function["filenames"][file], line] = count
+            path = function["filenames"][file]
+            for line in range(begin + 1, end + 1):
+                own[path, line] = count
+            begun[path, begin] = max(count, begun.get((path, begin), own.get((path, begin), 0)))
+        own.update(begun)
         for line, count in own.items():
             counts[line] += count
     return counts
