@@ -75,6 +75,16 @@ static void stage_rows(const struct sphgi_finder *finder, const sphg_neighbors *
         (char *)finder->y + (size_t)at * size, (char *)finder->z + (size_t)at * size);
 }
 
+/* NaN behind the last staged source: passes read whole vectors, and no target is near it. */
+static void end_staging(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
+                        int32_t at)
+{
+    const size_t size = sphgi_size_of_type(neighbors->position_type);
+    char *const coordinates[] = {finder->x, finder->y, finder->z};
+    for (int32_t a = 0; a < 3; ++a)
+        memset(coordinates[a] + (size_t)at * size, 0xff, (size_t)2 * SPHGI_PAD * size);
+}
+
 void sphgi_prefetch_rows(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around)
 {
     enum { MOST = 4096 }; /* rows: what the second-level cache takes without pain */
@@ -95,6 +105,7 @@ void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neigh
     int32_t at = 1;
     for (int32_t r = 0; r < around->ranges; at += around->count[r++])
         stage_rows(finder, neighbors, around->begin[r], around->count[r], at);
+    end_staging(finder, neighbors, at);
 }
 
 /* Staged number of a target of that cell, if it is a source, or -1. Targets that are part of the
@@ -162,6 +173,7 @@ void sphgi_find_wide(const struct sphgi_finder *finder, const sphg_neighbors *ne
                 slice.count = sphgi_min32(end - slice.begin, finder->room - 1);
                 slice.row = around->begin[r] + slice.begin - at;
                 stage_rows(finder, neighbors, slice.row, slice.count, 1);
+                end_staging(finder, neighbors, 1 + slice.count);
                 take_slice(finder, &slice, take, data);
             }
         }

@@ -77,7 +77,7 @@ run_coverage() {
     LLVM_PROFILE_FILE="$PWD/$profiles/%4m.profraw" ctest --preset coverage -L area -j "$(nproc)" || return 1
     llvm-profdata merge -o "$profiles/all.profdata" "$profiles"/*.profraw &&
         python3 -B tests/checks/coverage.py "$profiles/all.profdata" build/coverage/src/libsphgrad.so \
-            build/coverage/tests/test_{views,fields,not_a_number,moments}
+            build/coverage/tests/test_* build/coverage/tests/fuzz/fuzz_*
 }
 
 # GCC's analyser and cppcheck do not follow vector extensions, so only clang-tidy sees the passes.

@@ -252,8 +252,12 @@ SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
         n = collect_run(find, &c, box, begin, end, n, w, periodic);
     }
     c.count = (int32_t)sphgi_round_up((size_t)n, TESTED);
-    for (int l = 0; l < TESTED; l += LANES)
-        store(c.x + n + l, splat((real)__builtin_nan("")));
+    const vec none = splat((real)__builtin_nan("")); /* in x alone would do, but for valgrind */
+    for (int l = 0; l < TESTED; l += LANES) {
+        store(c.x + n + l, none);
+        store(c.y + n + l, none);
+        store(c.z + n + l, none);
+    }
     return c;
 }
 

@@ -60,7 +60,8 @@ def source(path, cache={}):
 
 
 def is_code(path, line):
-    return bool(source(path)[line - 1].strip().strip("{}"))
+    text = source(path)[line - 1].strip().strip("{}")
+    return bool(text) and not text.startswith("#")
 
 
 def main():
