@@ -213,6 +213,7 @@ sphg_result sphgi_sweep_run(struct sphgi_checker checker, const struct sphgi_pla
     struct sphgi_selection selection = sphgi_selection_of(subset, plan->target_count);
     struct sphgi_task task = {.sweep = {.context = context,
                                         .plan = plan,
+                                        .set = plan->sets,
                                         .pairs = pairs,
                                         .passes = sphgi_passes_of(context, plan->type)},
                               .selection = &selection};

@@ -32,6 +32,7 @@ struct sphgi_columns sphgi_columns_of(const sphg_view *view, sphg_shape shape, i
     const int32_t each = components_per_pointer(shape, dimension);
     const size_t size = sphgi_size_of_type(view->type);
     for (int32_t c = 0; c < count; ++c) {
+        /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): count <= 3 each */
         columns.at[c] = start[c / each] + (size_t)(c % each) * size;
         columns.together &= columns.at[c] == columns.at[0] + (size_t)c * size;
     }
