@@ -254,7 +254,8 @@ static void require_bits_of_a_fresh_context(world *own)
     for (int k = 0; k < 3; k++)
         memcpy(own->kept[k].data, result_at(own, k)->data, bytes_of(&own->kept[k]));
     clear_results(own);
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &(sphg_config){.threads = 1}, &fresh));
+    const sphg_config serial = {.isa = test_isa(), .threads = 1};
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &serial, &fresh));
     FIXTURE_OK(fresh, sphg_neighbors_create(fresh, &neighbors));
     FIXTURE_OK(fresh, build(own, fresh, neighbors));
     FIXTURE_OK(fresh, evaluate(own, fresh, neighbors));
