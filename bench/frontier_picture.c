@@ -122,7 +122,7 @@ static void write_ranges(FILE *script, const struct frontier *frontier)
 bool frontier_draw(const struct frontier *frontier)
 {
     FILE *script = plot_file(frontier->output, "frontier.gp");
-    fprintf(script, "set terminal pngcairo size 1500,1000 font 'Sans,12' background '#ffffff'\n"
+    fprintf(script, "set terminal pngcairo size 1500,880 font 'Sans,12' background '#ffffff'\n"
                     "set output 'frontier.png'\nset datafile separator ','\nset encoding utf8\n"
                     "data = 'frontier.csv'\nset logscale xy\n"
                     "set grid lc rgb '#dddddd'\nset xlabel 'time from positions to Jacobians "
@@ -135,11 +135,11 @@ bool frontier_draw(const struct frontier *frontier)
             "dashed: over lists that the host found\"\n",
             frontier->count, frontier->settings.support, frontier->settings.threads,
             frontier->settings.threads > 1 ? "s" : "", machine_cpu());
-    fprintf(script, "set tmargin at screen 0.88\nset bmargin at screen 0.47\n"
+    fprintf(script, "set tmargin at screen 0.87\nset bmargin at screen 0.40\n"
                     "set lmargin at screen 0.07\nset rmargin at screen 0.485\nunset key\n");
     write_panel(script, frontier, FRONTIER_TRIGONOMETRIC);
     fprintf(script, "set lmargin at screen 0.57\nset rmargin at screen 0.985\n"
-                    "set key at screen 0.5, screen 0.085 center center maxrows 3 font ',10'\n");
+                    "set key at screen 0.5, screen 0.06 center center maxrows 3 font ',10'\n");
     write_panel(script, frontier, FRONTIER_LINEAR);
     fprintf(script, "unset multiplot\n");
     plot_close(script, "frontier.gp");
