@@ -326,11 +326,12 @@ static void wide_positions_keep_their_differences(const test_case *test)
     own.positions = fixture_numbers(SPHG_F64, COUNT, test->dimension, points.x);
     const outputs shifted = evaluate(&own, PACKED, PACKED);
     const float *a = near.of[JACOBIAN].view.x, *b = shifted.of[JACOBIAN].view.x;
-    double largest = 0;
+    float largest = 0;
     for (int k = 0; k < COUNT * test->dimension * test->dimension; k++)
-        largest = fmax(largest, fabs((double)a[k]));
+        largest = fmaxf(largest, fabsf(a[k]));
     for (int k = 0; k < COUNT * test->dimension * test->dimension; k++)
-        TEST_WITHIN(order_of_summation, fabs((double)a[k] - (double)b[k]) / (largest * 0x1p-24),
+        TEST_WITHIN(order_of_summation,
+                    fabs((double)a[k] - (double)b[k]) / ((double)largest * 0x1p-24),
                     test_method_name(test->method));
 }
 
