@@ -19,6 +19,18 @@ probe_cjson() { pkg-config --exists libcjson 2>/dev/null; }
 # Particles that the examples write for ParaView.
 probe_hdf5() { pkg-config --exists hdf5 2>/dev/null || pkg-config --exists hdf5-serial 2>/dev/null; }
 probe_gnuplot() { gnuplot -e 'set terminal pngcairo' >/dev/null 2>&1; }
+# AArch64: cross compilers, and what runs their programs.
+probe_aarch64() {
+    local out program='#include <math.h>
+        int main(int n, char **v) { (void)v; return (int)sqrt(n - 1.0); }' status
+    out=$(mktemp) || return 1
+    printf '%s\n' "$program" | aarch64-linux-gnu-gcc -x c - -o "$out" -lm >/dev/null 2>&1 &&
+        printf '%s\n' "$program" | aarch64-linux-gnu-g++ -x c++ - -o "$out" >/dev/null 2>&1 &&
+        qemu-aarch64 -L /usr/aarch64-linux-gnu "$out" >/dev/null 2>&1
+    status=$?
+    rm -f "$out"
+    return $status
+}
 probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
 probe_clang_openmp() { probe_compiler clang c -fopenmp; }
 # Of tests/run --coverage, --analyse and --mutants alone.
@@ -37,6 +49,7 @@ package_of() {
         cjson) echo libcjson-dev ;;
         hdf5) echo libhdf5-dev ;;
         gnuplot) echo gnuplot-nox ;;
+        aarch64) printf '%s\n' gcc-aarch64-linux-gnu g++-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
         clang) echo clang ;;
         clang_openmp) echo libomp-dev ;;
         llvm) echo llvm ;;

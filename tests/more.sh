@@ -8,6 +8,14 @@ needs_of_analyse() { printf '%s\n' "${building[@]}" clang clang_tidy cppcheck; }
 needs_of_mutants() { printf '%s\n' "${building[@]}" python3; }
 needs_of_soak() { printf '%s\n' "${building[@]}"; }
 
+# SPHG_NEON_AREAS, a regular expression, selects tests; all of them take half an hour.
+run_neon() {
+    . .ci/foreign.sh
+    require_foreign "$PWD/build/aarch64-packages" arm64 libcmocka-dev liblapacke-dev libcjson-dev &&
+        build_preset neon -DSPHG_BUILD_TESTS=ON -DSPHG_WARNINGS_AS_ERRORS=$werror &&
+        ctest --preset neon -j "$(nproc)" -R "${SPHG_NEON_AREAS:-.}"
+}
+
 # Archer tells ThreadSanitizer of OpenMP's synchronisation; the host's executor needs no such help.
 run_tsan() {
     local archer
