@@ -31,6 +31,10 @@ bool sphgi_cpu_has(sphg_isa isa)
     case SPHG_ISA_X86_V4:
         return has_v4();
 #endif
+#ifdef __aarch64__
+    case SPHG_ISA_NEON:
+        return true;
+#endif
     default:
         return false;
     }
@@ -38,7 +42,8 @@ bool sphgi_cpu_has(sphg_isa isa)
 
 sphg_isa sphgi_cpu_best(void)
 {
-    static const sphg_isa best_first[] = {SPHG_ISA_X86_V4, SPHG_ISA_X86_V3, SPHG_ISA_BASE};
+    static const sphg_isa best_first[] = {SPHG_ISA_X86_V4, SPHG_ISA_X86_V3, SPHG_ISA_NEON,
+                                          SPHG_ISA_BASE};
     int k = 0;
     while (!sphgi_cpu_has(best_first[k]))
         ++k;

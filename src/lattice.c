@@ -4,7 +4,7 @@
 
 /* Particles closer than the reach must lie in the same or in adjacent cells, for every finite
  * coordinate. t is the coordinate in cells, with a relative error of 2^-52.
- *   |t| < 2^30   t - 1/2 rounded to a whole number, as the pass that cuts rows does it: cells are
+ *   |t| < 2^29   t - 1/2 rounded to a whole number, as the pass that cuts rows does it: cells are
  *                wider than the reach by 2^-9, and the error is far below that
  *   |t| < 2^40   floor(t), the same but for whole t: the error is below 2^-11 cells
  *   |t| < 2^54   2^14 times coarser beyond 2^40: monotone, slope at most 1, and the error stays

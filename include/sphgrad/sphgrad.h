@@ -144,7 +144,7 @@ typedef enum sphg_isa {
     SPHG_ISA_BASE = 1,
     SPHG_ISA_X86_V3 = 2,
     SPHG_ISA_X86_V4 = 3,
-    SPHG_ISA_NEON = 4
+    SPHG_ISA_NEON = 4 /* on AArch64 the base */
 } sphg_isa;
 
 /* Work on the items [begin, end). worker in [0, threads) is nobody else's at this moment. */

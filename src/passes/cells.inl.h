@@ -41,6 +41,7 @@ static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t c
     const four_ints shift = {s[0], s[1], s[2], 0}, local_shift = {l[0], l[1], l[2], 0};
     const four_ints inside = {(1 << s[0]) - 1, (1 << s[1]) - 1, (1 << s[2]) - 1, 0};
     const four_doubles magic = (four_doubles){0} + 0x1.8p52;
+    const four_longs nearest = (four_longs)magic - SPHGI_CUT_MOST;
     four_longs far = {0};
     for (int32_t k = 0; k < count; ++k) {
         const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
@@ -50,14 +51,14 @@ static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t c
 #elif !defined(__SSE2__)
         __asm__("" : "+m"(t));
 #endif
-        const four_doubles centred = t - 0.5;
-        far |= (four_longs)(centred >= SPHGI_CUT_MOST) | (four_longs)(centred <= -SPHGI_CUT_MOST);
-        /* the whole number stands in the lowest bits */
-        const four_longs bits = (four_longs)(centred + magic);
+        /* the whole number stands in the lowest bits; those of larger ones differ further up */
+        const four_longs bits = (four_longs)(t - 0.5 + magic);
+        far |= bits - nearest;
         const four_ints cell = __builtin_convertvector(bits, four_ints);
         *(four_ints *)block[k] = cell >> shift;
         const four_ints parts = (cell & inside) << local_shift;
         local[k] = (uint8_t)(parts[0] | parts[1] | parts[2]);
     }
-    return !(far[0] | far[1] | far[2] | far[3]);
+    const uint64_t above = (uint64_t)(far[0] | far[1] | far[2] | far[3]);
+    return above < 2 * (uint64_t)SPHGI_CUT_MOST;
 }

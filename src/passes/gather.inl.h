@@ -84,67 +84,81 @@ SPHGI_TEMPLATE struct listed listed_in(const struct sphgi_piece *piece, int32_t 
     return after(all, k - piece->begin[p]);
 }
 
-typedef uint32_t eight_ids __attribute__((vector_size(32), aligned(4), may_alias));
+/* As many ids as an instruction takes, eight at most: where vectors are shorter than their type,
+ * compilers compare number by number. */
+typedef uint32_t some_ids
+    __attribute__((vector_size(VECTOR_BYTES < 32 ? VECTOR_BYTES : 32), aligned(4), may_alias));
+enum { SOME_IDS = (int)(sizeof(some_ids) / 4) };
 
 /* *a becomes the larger, or the smaller, of both. */
-SPHGI_TEMPLATE void raise_ids(eight_ids *a, const eight_ids *b)
+SPHGI_TEMPLATE void raise_ids(some_ids *a, const some_ids *b)
 {
 #if defined(__AVX2__)
-    *a = (eight_ids)_mm256_max_epu32((__m256i)*a, (__m256i)*b);
+    *a = (some_ids)_mm256_max_epu32((__m256i)*a, (__m256i)*b);
+#elif defined(__aarch64__)
+    *a = (some_ids)vmaxq_u32((uint32x4_t)*a, (uint32x4_t)*b);
 #else
-    const eight_ids first = (eight_ids)(*a > *b);
+    const some_ids first = (some_ids)(*a > *b);
     *a = (*a & first) | (*b & ~first);
 #endif
 }
 
-SPHGI_TEMPLATE void lower_ids(eight_ids *a, const eight_ids *b)
+SPHGI_TEMPLATE void lower_ids(some_ids *a, const some_ids *b)
 {
 #if defined(__AVX2__)
-    *a = (eight_ids)_mm256_min_epu32((__m256i)*a, (__m256i)*b);
+    *a = (some_ids)_mm256_min_epu32((__m256i)*a, (__m256i)*b);
+#elif defined(__aarch64__)
+    *a = (some_ids)vminq_u32((uint32x4_t)*a, (uint32x4_t)*b);
 #else
-    const eight_ids first = (eight_ids)(*a < *b);
+    const some_ids first = (some_ids)(*a < *b);
     *a = (*a & first) | (*b & ~first);
 #endif
 }
 
 struct cleaning {
-    eight_ids mask, sources, self, largest;
+    some_ids mask, sources, self, largest;
 };
 
 /* Eight of the host's numbers to ids of rows: what is no source, and `self`, becomes the dummy, the
  * row behind the last source. */
-SPHGI_TEMPLATE void clean_eight(const void *list, struct cleaning *how, uint32_t *out)
+SPHGI_TEMPLATE void clean_eight(const int32_t *list, struct cleaning *how, uint32_t *out)
 {
-    eight_ids number = *(const eight_ids *)list & how->mask;
-    raise_ids(&how->largest, &number);
-    number |= (eight_ids)(number == how->self);
-    lower_ids(&number, &how->sources);
-    *(eight_ids *)out = number + number; /* SPHGI_ID_STEP */
+    for (int k = 0; k < 8; k += SOME_IDS) {
+        some_ids number = *(const some_ids *)(list + k) & how->mask;
+        raise_ids(&how->largest, &number);
+        number |= (some_ids)(number == how->self);
+        lower_ids(&number, &how->sources);
+        *(some_ids *)(out + k) = number + number; /* SPHGI_ID_STEP */
+    }
 }
 
 /* A list, padded with the dummy. True: there was a number that is no source. */
 static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out)
 {
-    const eight_ids zero = {0};
+    const some_ids zero = {0};
     struct cleaning own = {zero + how->mask, zero + how->sources, zero + how->self, zero};
     if (count % SPHGI_PAD)
-        *(eight_ids *)(out + count / SPHGI_PAD * SPHGI_PAD) = own.sources + own.sources;
+        for (int32_t k = count & -SPHGI_PAD, end = k + SPHGI_PAD; k < end; k += SOME_IDS)
+            *(some_ids *)(out + k) = own.sources + own.sources;
     if (count >= 8) {
         for (int32_t k = 0; k + 8 <= count; k += 8)
             clean_eight(list + k, &own, out + k);
         /* the last eight: some of them once more */
         clean_eight(list + count - 8, &own, out + count - 8);
     } else if (count) {
-        uint32_t in[8], clean[8];
+        int32_t in[8];
+        uint32_t clean[8];
         for (int l = 0; l < 8; ++l)
-            in[l] = (uint32_t)list[l < count ? l : 0];
+            in[l] = list[l < count ? l : 0];
         clean_eight(in, &own, clean);
         for (int32_t l = 0; l < count; ++l)
             out[l] = clean[l];
     }
-    const eight_ids bad = (eight_ids)(own.largest >= own.sources);
-    uint64_t any[4];
+    const some_ids bad = (some_ids)(own.largest >= own.sources);
+    uint64_t any[sizeof bad / 8], all = 0;
     __builtin_memcpy(any, &bad, sizeof any);
-    return any[0] | any[1] | any[2] | any[3];
+    for (size_t k = 0; k < sizeof bad / 8; ++k)
+        all |= any[k];
+    return all;
 }

@@ -133,9 +133,9 @@ struct sphgi_verdict {
     double lambda_min[SPHGI_WIDTH]; /* of the decomposed lanes */
 };
 
-/* How the cells of an open lattice are numbered; cells beyond SPHGI_CUT_MOST are not cut by passes.
- */
-#define SPHGI_CUT_MOST 0x1p30
+/* How the cells of an open lattice are numbered. Passes cut those from - SPHGI_CUT_MOST up to, and
+ * without, SPHGI_CUT_MOST. */
+#define SPHGI_CUT_MOST (1 << 29)
 struct sphgi_cutting {
     double inverse[3];      /* 1 / cell width; 0: an axis that is not used */
     int32_t shift[3];       /* a block is 2^shift cells long */

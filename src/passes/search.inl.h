@@ -30,10 +30,10 @@ enum { TESTED = 2 * SPHGI_PAD }; /* candidates that are tested at a time */
 #if defined(__AVX512F__)
 typedef __mmask16 packing;
 typedef __m512i id_base; /* the ids of LANES numbers; the rest goes on */
-SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, unsigned bits)
+SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
 {
     (void)find;
-    return (__mmask16)bits;
+    return (__mmask16)bits_of(lanes);
 }
 SPHGI_TEMPLATE id_base ids_from(int32_t number)
 {
@@ -68,11 +68,57 @@ SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to
     write_ids(to, _mm512_maskz_compress_epi32(bits, _mm512_cvtepu16_epi32(narrow)));
     return to + __builtin_popcount(bits);
 }
+#elif defined(__aarch64__)
+typedef uint8x16_t packing;  /* where the bytes of a vector come from */
+typedef bit_pattern id_base; /* the ids of LANES numbers */
+/* The table is for items of two bytes: a lane is as many of them. */
+SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
+{
+#if REAL_IS_F64
+    const uint64_t items = vaddvq_u64((uint64x2_t)(lanes & (mask){15, 240}));
+#else
+    const uint32_t items = vaddvq_u32((uint32x4_t)(lanes & (mask){3, 12, 48, 192}));
+#endif
+    return vld1q_u8(find->pack_bytes[items]);
+}
+SPHGI_TEMPLATE id_base ids_from(int32_t number)
+{
+    return SPHGI_ID_STEP * (lane_numbers() + (lane_int)number);
+}
+SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
+{
+    return first + (lane_int)(SPHGI_ID_STEP * numbers);
+}
+SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing moved)
+{
+    store(to, (vec)vqtbl1q_u8((uint8x16_t)v, moved));
+}
+SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing moved)
+{
+    const uint8x16_t ids = vqtbl1q_u8((uint8x16_t)first, moved);
+#if REAL_IS_F64
+    vst1q_lane_u16(to, (uint16x8_t)ids, 0);
+    vst1q_lane_u16(to + 1, (uint16x8_t)ids, 4);
+#else
+    vst1_u16(to, vmovn_u32((uint32x4_t)ids));
+#endif
+}
+SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to,
+                                     const uint16_t *ids, uint16_t bits)
+{
+    const uint8x8_t count = vcnt_u8((uint8x8_t)vdup_n_u16(bits));
+    const uint8x16_t low = vld1q_u8(find->pack_bytes[bits & 255]);
+    const uint8x16_t high = vld1q_u8(find->pack_bytes[bits >> SPHGI_PAD]);
+    vst1q_u8((uint8_t *)to, vqtbl1q_u8((uint8x16_t)vld1q_u16(ids), low));
+    to += vget_lane_u8(count, 0);
+    vst1q_u8((uint8_t *)to, vqtbl1q_u8((uint8x16_t)vld1q_u16(ids + SPHGI_PAD), high));
+    return to + vget_lane_u8(count, 1);
+}
 #else
 typedef uint64_t packing; /* the positions of the set bits, a byte each */
-SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, unsigned bits)
+SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
 {
-    return find->pack_order[bits];
+    return find->pack_order[bits_of(lanes)];
 }
 #if defined(__AVX2__)
 typedef __m128i id_base;
@@ -199,8 +245,8 @@ SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real
 }
 
 /* Which of LANES sources lie within reach of the box, and perhaps a few beyond it. */
-SPHGI_TEMPLATE unsigned bits_near(const struct box *box, const vec *at, const struct wraps *w,
-                                  bool periodic)
+SPHGI_TEMPLATE mask near_box(const struct box *box, const vec *at, const struct wraps *w,
+                             bool periodic)
 {
     vec square = {0};
     for (int a = 0; a < 3; ++a) {
@@ -212,7 +258,7 @@ SPHGI_TEMPLATE unsigned bits_near(const struct box *box, const vec *at, const st
             d = at[a] - vmin(vmax(at[a], box->low[a]), box->high[a]);
         square += d * d;
     }
-    return bits_of(at_most(square, box->square_reach)); /* both may be infinite */
+    return at_most(square, box->square_reach); /* both may be infinite */
 }
 
 /* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
@@ -221,21 +267,21 @@ SPHGI_TEMPLATE int32_t collect_run(const struct sphgi_find *find, const struct c
                                    const struct wraps *w, bool periodic)
 {
     const real *x = find->x, *y = find->y, *z = find->z;
-    unsigned bits = 0;
+    mask near = {0};
     int32_t k = begin;
     id_base first = ids_from(begin);
     for (; k < end; k += LANES) {
         const vec at[3] = {load(x + k), load(y + k), load(z + k)};
-        bits = bits_near(box, at, w, periodic);
-        const packing moved = packing_of(find, bits);
+        near = near_box(box, at, w, periodic);
+        const packing moved = packing_of(find, near);
         pack_numbers(c->x + n, at[0], moved);
         pack_numbers(c->y + n, at[1], moved);
         pack_numbers(c->z + n, at[2], moved);
         number_ids(c->ids + n, first, moved);
         first = ids_after(first, LANES);
-        n += __builtin_popcount(bits);
+        n += lanes_in(near);
     }
-    return n - __builtin_popcount(bits >> (LANES - (k - end))); /* read beyond the end */
+    return n - lanes_in(near & ~first_lanes(LANES - (k - end))); /* read beyond the end */
 }
 
 SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
@@ -263,11 +309,38 @@ SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
 
 /* ---- Neighbours ----------------------------------------------------------------------------- */
 
-/* A bit for each of TESTED candidates from k on. */
+/* A bit for each of TESTED candidates. */
+SPHGI_TEMPLATE uint16_t bits_of_tested(const mask *m)
+{
+#if defined(__aarch64__)
+    /* bytes of 0 or 255, each of which keeps its bit; then neighbours are added, three times */
+    const uint8x16_t bit = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
+    uint32x4_t wide[4];
+    for (int k = 0; k < 4; ++k)
+#if REAL_IS_F64
+        wide[k] = vuzp1q_u32((uint32x4_t)m[2 * k], (uint32x4_t)m[2 * k + 1]);
+#else
+        wide[k] = (uint32x4_t)m[k];
+#endif
+    const uint16x8_t low = vuzp1q_u16((uint16x8_t)wide[0], (uint16x8_t)wide[1]);
+    const uint16x8_t high = vuzp1q_u16((uint16x8_t)wide[2], (uint16x8_t)wide[3]);
+    uint8x16_t bits = vandq_u8(vuzp1q_u8((uint8x16_t)low, (uint8x16_t)high), bit);
+    for (int k = 0; k < 3; ++k)
+        bits = vpaddq_u8(bits, bits);
+    return vgetq_lane_u16((uint16x8_t)bits, 0);
+#else
+    unsigned bits = 0;
+    for (int l = 0; l < TESTED; l += LANES)
+        bits |= bits_of(m[l / LANES]) << l;
+    return (uint16_t)bits;
+#endif
+}
+
+/* Which of TESTED candidates from k on are neighbours. */
 SPHGI_TEMPLATE uint16_t bits_within(const struct candidates *c, int32_t k, const vec *x,
                                     vec square_reach, const struct wraps *w, bool periodic)
 {
-    unsigned bits = 0;
+    mask within[TESTED / LANES];
     for (int l = 0; l < TESTED; l += LANES) {
         vec dx = x[0] - load(c->x + k + l);
         vec dy = x[1] - load(c->y + k + l);
@@ -277,9 +350,9 @@ SPHGI_TEMPLATE uint16_t bits_within(const struct candidates *c, int32_t k, const
             dy = wrapped(dy, w->axis[1]);
             dz = wrapped(dz, w->axis[2]);
         }
-        bits |= bits_of(less(square_distance(dx, dy, dz), square_reach)) << l;
+        within[l / LANES] = less(square_distance(dx, dy, dz), square_reach);
     }
-    return (uint16_t)bits;
+    return bits_of_tested(within);
 }
 
 SPHGI_TEMPLATE void test(const struct candidates *c, const vec *x, vec square_reach,

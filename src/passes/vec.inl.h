@@ -2,6 +2,8 @@
  * Parameters: REAL_IS_F64. Gives real, vec, mask, LANES, UNIT_ROUNDOFF. */
 #if defined(__SSE2__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #if defined(__AVX512F__)
@@ -12,6 +14,8 @@
 #define VECTOR_BYTES   32
 #define VECTOR_TYPE(x) __m256##x
 #define VECTOR_OP(x)   _mm256_##x
+#elif defined(__aarch64__)
+#define VECTOR_BYTES 16
 #else
 #define VECTOR_BYTES   16
 #define VECTOR_TYPE(x) __m128##x
@@ -23,16 +27,26 @@
 typedef double real;
 typedef int64_t lane_int;
 #define UNIT_ROUNDOFF 0x1p-53
+#ifdef __aarch64__
+#define NATIVE   float64x2_t
+#define OP(name) v##name##q_f64
+#else
 #define NATIVE        VECTOR_TYPE(d)
 #define OP(name)      VECTOR_OP(name##_pd)
 #define OP_MASK(name) VECTOR_OP(name##_pd_mask)
+#endif
 #else
 typedef float real;
 typedef int32_t lane_int;
 #define UNIT_ROUNDOFF 0x1p-24
+#ifdef __aarch64__
+#define NATIVE   float32x4_t
+#define OP(name) v##name##q_f32
+#else
 #define NATIVE        VECTOR_TYPE()
 #define OP(name)      VECTOR_OP(name##_ps)
 #define OP_MASK(name) VECTOR_OP(name##_ps_mask)
+#endif
 #endif
 #define LANES ((int)(VECTOR_BYTES / sizeof(real)))
 #define ALL   ((1u << LANES) - 1)
@@ -55,6 +69,14 @@ SPHGI_TEMPLATE void store(real *p, vec v)
 SPHGI_TEMPLATE vec splat(real x)
 {
     return x - (vec){0};
+}
+
+SPHGI_TEMPLATE bit_pattern lane_numbers(void) /* 0, 1, 2, ... */
+{
+    bit_pattern numbers;
+    for (int k = 0; k < LANES; ++k)
+        numbers[k] = k;
+    return numbers;
 }
 
 SPHGI_TEMPLATE vec vabs(vec v)
@@ -105,15 +127,16 @@ SPHGI_TEMPLATE mask differ(vec a, vec b)
 }
 SPHGI_TEMPLATE mask first_lanes(int32_t count) /* the lanes below count, which may be any number */
 {
-    mask numbers;
-    for (int k = 0; k < LANES; ++k)
-        numbers[k] = k;
-    return (mask)(numbers < (mask){0} + (lane_int)count);
+    return (mask)(lane_numbers() < (mask){0} + (lane_int)count);
 }
 SPHGI_TEMPLATE unsigned bits_of(mask m)
 {
 #if defined(__SSE2__)
     return (unsigned)OP(movemask)((NATIVE)m);
+#elif defined(__aarch64__) && REAL_IS_F64
+    return (unsigned)vaddvq_u64((uint64x2_t)(m & (mask){1, 2}));
+#elif defined(__aarch64__)
+    return vaddvq_u32((uint32x4_t)(m & (mask){1, 2, 4, 8}));
 #else
     unsigned bits = 0;
     for (int k = 0; k < LANES; ++k)
@@ -122,6 +145,17 @@ SPHGI_TEMPLATE unsigned bits_of(mask m)
 #endif
 }
 #endif
+
+SPHGI_TEMPLATE int32_t lanes_in(mask m) /* how many */
+{
+#if defined(__aarch64__) && REAL_IS_F64
+    return -(int32_t)vaddvq_s64((int64x2_t)m);
+#elif defined(__aarch64__)
+    return -vaddvq_s32((int32x4_t)m);
+#else
+    return __builtin_popcount(bits_of(m));
+#endif
+}
 
 SPHGI_TEMPLATE vec where(mask m, vec v) /* v where m, else +0 */
 {
@@ -161,6 +195,19 @@ SPHGI_TEMPLATE vec vmax(vec a, vec b)
 SPHGI_TEMPLATE vec vmin(vec a, vec b)
 {
     return (vec)OP(min)((NATIVE)a, (NATIVE)b);
+}
+#elif defined(__aarch64__)
+SPHGI_TEMPLATE vec vsqrt(vec v)
+{
+    return (vec)OP(sqrt)((NATIVE)v);
+}
+SPHGI_TEMPLATE vec vmax(vec a, vec b) /* b if a is no number, which vmaxq would give */
+{
+    return (vec)OP(maxnm)((NATIVE)a, (NATIVE)b);
+}
+SPHGI_TEMPLATE vec vmin(vec a, vec b)
+{
+    return (vec)OP(minnm)((NATIVE)a, (NATIVE)b);
 }
 #else
 SPHGI_TEMPLATE vec vsqrt(vec v)
