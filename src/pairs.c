@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SORT_GRAIN = 256, INSERTION_MOST = 64 };
+enum { SORT_GRAIN = 256, INSERTION_MOST = 128 };
 
 /* ---- Rows in ascending order ---------------------------------------------------------------- */
 
@@ -49,12 +49,44 @@ static void sift_down(const struct sorting *s, int64_t first, int64_t root, int6
     }
 }
 
+/* Item k becomes what item `place` (the lower half of keys[k]) was. */
+static inline void permute(char *first, ptrdiff_t stride, size_t size, const uint64_t *keys,
+                           int64_t count)
+{
+    char held[INSERTION_MOST * sizeof(double)];
+    for (int64_t k = 0; k < count; ++k)
+        memcpy(held + (size_t)k * size, first + k * stride, size);
+    for (int64_t k = 0; k < count; ++k)
+        memcpy(first + k * stride, held + (size_t)(uint32_t)keys[k] * size, size);
+}
+
+/* Keys are sorted alone, index before place; each gradient then moves once. */
+static void sort_short_row(const struct sorting *s, int64_t first, int64_t count)
+{
+    uint64_t keys[INSERTION_MOST];
+    for (int64_t k = 0; k < count; ++k) {
+        const uint64_t key = (uint64_t)(uint32_t)s->indices[first + k] << 32 | (uint64_t)k;
+        int64_t at = k;
+        for (; at > 0 && keys[at - 1] > key; --at)
+            keys[at] = keys[at - 1];
+        keys[at] = key;
+    }
+    for (int64_t k = 0; k < count; ++k)
+        s->indices[first + k] = (int32_t)(keys[k] >> 32);
+    for (int32_t c = 0; c < s->gradient.count; ++c) {
+        const ptrdiff_t stride = s->gradient.stride;
+        char *column = (char *)(uintptr_t)(s->gradient.at[c] + first * stride);
+        if (s->number_size == sizeof(double)) /* constant sizes: no calls for eight bytes */
+            permute(column, stride, sizeof(double), keys, count);
+        else
+            permute(column, stride, sizeof(float), keys, count);
+    }
+}
+
 static void sort_row(const struct sorting *s, int64_t first, int64_t count)
 {
     if (count <= INSERTION_MOST) {
-        for (int64_t k = 1; k < count; ++k)
-            for (int64_t l = k; l > 0 && s->indices[first + l - 1] > s->indices[first + l]; --l)
-                swap_pairs(s, first + l - 1, first + l);
+        sort_short_row(s, first, count);
         return;
     }
     for (int64_t root = count / 2; root-- > 0;)
