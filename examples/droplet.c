@@ -1,10 +1,10 @@
 /* A cube of water without gravity (the paper's Fig. 8): surface tension should make it a ball. How
  * round it is says its support function, the extent from the centre in 400 directions; moments of
  * inertia would not do, because those of a cube are already those of a ball. */
+#include "solver/laplacian.h"
 #include "solver/output.h"
 #include "solver/pressure.h"
 #include "solver/surface_tension.h"
-#include "solver/viscosity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 static const double spacing = 0.05;
 static const double support_radius = 0.1;
 static const double density = 1000;
-static const double viscosity = 0.03; /* nu [m^2/s] */
+static const double kinematic = 0.03; /* nu [m^2/s] */
 static const double weak = 10;        /* kappa [N] */
 static const double control = 50;     /* what plain SPH might be given to do better */
 static const double step = 2e-3;
@@ -25,6 +25,7 @@ struct drop {
     struct pressure pressure;
     struct operators operators;
     struct surface_tension tension;
+    struct laplacian viscosity;
     vector *acceleration;
 };
 
@@ -42,20 +43,21 @@ static struct drop drop_new(const struct run *run, const struct sph *sph)
 static void drop_free(struct drop *drop)
 {
     surface_tension_free(&drop->tension);
+    laplacian_free(&drop->viscosity);
     operators_free(&drop->operators);
     pressure_free(&drop->pressure);
     particles_free(&drop->fluid);
     free(drop->acceleration);
 }
 
-static void advance(const struct sph *sph, struct drop *drop)
+static void advance(struct drop *drop)
 {
     struct particles *fluid = &drop->fluid;
     pressure_prepare(&drop->pressure, fluid);
     pressure_stop_compression(&drop->pressure, fluid, step);
     operators_update(&drop->operators, fluid);
     memset(drop->acceleration, 0, (size_t)fluid->count * sizeof *drop->acceleration);
-    viscosity_add_laplacian(sph, &drop->pressure.pairs, fluid, 0, viscosity, drop->acceleration);
+    laplacian_step(&drop->viscosity, fluid, 0, step);
     surface_tension_add(&drop->tension, fluid, drop->acceleration);
     for (int32_t i = 0; i < fluid->count; i++)
         add_scaled(fluid->v[i], step, drop->acceleration[i]);
@@ -159,12 +161,14 @@ static struct roundness form(const struct run *run, const struct sph *sph, doubl
     struct drop drop = drop_new(run, sph);
     const int32_t steps = (int32_t)(duration / step + 0.5);
     FILE *series = kept == KEEPS_FILES ? output_open(run, "roundness") : NULL;
+    drop.viscosity = laplacian_new(sph, &drop.pressure.pairs, drop.fluid.count);
+    drop.viscosity.kinematic = kinematic;
     drop.tension = surface_tension_new(&drop.operators, drop.fluid.count);
     drop.tension.strength = strength;
     drop.tension.balanced = balanced;
     for (int32_t k = 0; k < steps; k++) {
         run_progress(run, k + 1, steps);
-        advance(sph, &drop);
+        advance(&drop);
         if (series && k % 10 == 0)
             fprintf(series, "%g %g\n", step * k, measure(&drop.fluid).variation);
         if (series && k % 50 == 0)

@@ -1,6 +1,7 @@
 #include "drum.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double body_density = 900, soap_density = 1100, water_density = 1000;
@@ -140,6 +141,36 @@ void load_free(struct load *load)
     particles_free(&load->all);
 }
 
+static void reorder(int32_t count, const int32_t *from, vector *values, vector *room)
+{
+    memcpy(room, values, (size_t)count * sizeof *room);
+    for (int32_t k = 0; k < count; k++)
+        memcpy(values[k], room[from[k]], sizeof *room);
+}
+
+/* What else particles have is the same in a phase, or found anew in each step. */
+void load_sort(const struct sph *sph, struct load *load, const sphg_neighbors *neighbors,
+               bool with_body)
+{
+    const int32_t count = load->all.count;
+    int32_t *order = array_new(count, sizeof *order), *from = array_new(count, sizeof *from);
+    int32_t filled[3] = {0, load->body, load->soap};
+    vector *room = array_new(count, sizeof *room);
+    sph_check(sph, sphg_neighbors_get_order(sph->context, neighbors, order));
+    for (int32_t k = 0; k < count; k++) {
+        const int32_t i = order[k], phase = (i >= load->body) + (i >= load->soap);
+        from[filled[phase]++] = i;
+    }
+    for (int32_t i = 0; !with_body && i < load->body; i++)
+        from[i] = i;
+    reorder(count, from, load->all.x, room);
+    reorder(count, from, load->all.v, room);
+    reorder(count, from, load->all.change, room);
+    free(order);
+    free(from);
+    free(room);
+}
+
 static bool is_room(const struct particles *all, const double *x, double spacing)
 {
     for (int32_t i = 0; i < all->count; i++) {
@@ -162,12 +193,14 @@ static void add_particle(struct load *load, const double *x, double speed, doubl
         const int32_t from = load->soap++;
         memcpy(all->x[place], all->x[from], sizeof all->x[place]);
         memcpy(all->v[place], all->v[from], sizeof all->v[place]);
+        memcpy(all->change[place], all->change[from], sizeof all->change[place]);
         particles_set_rest_density(all, place, water_density);
         place = from;
     }
     const vector down = {0, -speed, 0};
     memcpy(all->x[place], x, sizeof all->x[place]);
     memcpy(all->v[place], down, sizeof down);
+    memset(all->change[place], 0, sizeof all->change[place]);
     particles_set_rest_density(all, place, density);
 }
 

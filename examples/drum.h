@@ -24,6 +24,12 @@ struct load {
 struct load load_new(double spacing, uint64_t seed);
 void load_free(struct load *load);
 
+/* Each phase in the library's order of the sources of neighbors, over all particles, in which
+ * operators are fastest. The body first of all and then never again: its rest configuration counts
+ * on the order. */
+void load_sort(const struct sph *sph, struct load *load, const sphg_neighbors *neighbors,
+               bool with_body);
+
 /* Lets a nozzle for soap and one for water add a layer each, where there is room. */
 void load_pour(struct load *load, double spacing, double speed);
 #endif

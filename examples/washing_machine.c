@@ -3,6 +3,7 @@
  * take. */
 #include "drum.h"
 #include "solver/elasticity.h"
+#include "solver/laplacian.h"
 #include "solver/output.h"
 #include "solver/pressure.h"
 #include "solver/stopwatch.h"
@@ -23,6 +24,8 @@ static const double full_speed = 4;   /* ... up to this [1/s] */
 static const double pour_speed = 0.5; /* of soap and water from the nozzles [m/s] */
 static const double gravity[3] = {0, -9.81, 0};
 static const double longest_step = 1e-3; /* [s] */
+static const double whole_turn = 6.283185307179586;
+enum { STEPS_BETWEEN_SORTS = 100 };
 
 struct machine {
     const struct sph *sph;
@@ -34,13 +37,21 @@ struct machine {
     struct elasticity elasticity;
     struct operators soap_operators;
     struct viscosity soap;
-    vector *acceleration;
+    struct laplacian water;
     double worst_compression, least_volume, fastest;
+    int32_t steps;
 };
 
 static double spacing_of(bool full)
 {
     return full ? 0.0105 : 0.04;
+}
+
+static void sort(struct machine *machine, bool with_body)
+{
+    const struct particles *all = &machine->load.all;
+    sph_search(machine->sph, machine->pressure.neighbors, all->count, all->x);
+    load_sort(machine->sph, &machine->load, machine->pressure.neighbors, with_body);
 }
 
 static void machine_init(struct machine *machine, const struct run *run, const struct sph *sph)
@@ -56,16 +67,20 @@ static void machine_init(struct machine *machine, const struct run *run, const s
     machine->contact.threshold = 0.05; /* a curved wall: exact normals are not to be had */
     machine->contact.skin = 0;         /* all of it moves */
     machine->pressure = pressure_new(sph, &machine->contact, capacity);
+    sort(machine, true);
     machine->elasticity = elasticity_new(sph, &body, young, poisson);
     machine->soap_operators = operators_new(sph, NULL, capacity);
     machine->soap = viscosity_new(&machine->soap_operators, capacity);
     machine->soap.dynamic = soap_viscosity;
-    machine->acceleration = array_new(capacity, sizeof *machine->acceleration);
+    machine->soap.warm = true;
+    machine->water = laplacian_new(sph, &machine->pressure.pairs, capacity);
+    machine->water.kinematic = water_viscosity;
     machine->least_volume = INFINITY;
 }
 
 static void machine_free(struct machine *machine)
 {
+    laplacian_free(&machine->water);
     viscosity_free(&machine->soap);
     operators_free(&machine->soap_operators);
     elasticity_free(&machine->elasticity);
@@ -73,24 +88,11 @@ static void machine_free(struct machine *machine)
     contact_free(&machine->contact);
     wall_free(&machine->wall);
     load_free(&machine->load);
-    free(machine->acceleration);
 }
 
 static double drum_speed(double time)
 {
     return full_speed * fmin(1, fmax(0, time - rest_time) / ramp_time);
-}
-
-static void thin_flow(struct machine *machine, double dt)
-{
-    struct particles *all = &machine->load.all;
-    memset(machine->acceleration, 0, (size_t)all->count * sizeof *machine->acceleration);
-    viscosity_add_laplacian(machine->sph, &machine->pressure.pairs, all, machine->load.soap,
-                            water_viscosity, machine->acceleration);
-    for (int32_t i = 0; i < all->count; i++) {
-        add_scaled(all->v[i], dt, machine->acceleration[i]);
-        add_scaled(all->v[i], dt, gravity);
-    }
 }
 
 /* All that is not pressure, phase by phase. */
@@ -101,9 +103,11 @@ static void apply_forces(struct machine *machine, double dt)
     struct particles soap = particles_range(&load->all, load->body, load->soap);
     const double *spent = machine->sph->spent;
     const double elsewhere = spent[SEARCH] + spent[FLUID_MATRICES], start = stopwatch_now();
-    thin_flow(machine, dt);
+    for (int32_t i = 0; i < load->all.count; i++)
+        add_scaled(load->all.v[i], dt, gravity);
     operators_update(&machine->soap_operators, &soap);
     viscosity_solve(&machine->soap, &soap, dt);
+    laplacian_solve(&machine->water, &load->all, load->soap, dt);
     elasticity_solve(&machine->elasticity, &body, dt);
     contact_friction(&machine->contact, friction, &load->all);
     machine->sph->spent[FORCES] +=
@@ -130,6 +134,8 @@ static void advance(struct machine *machine)
     const double speed = drum_speed(machine->time);
     drum_turn(&machine->wall, speed * dt, speed);
     machine->angle += speed * dt;
+    if (machine->steps++ % STEPS_BETWEEN_SORTS == 0)
+        sort(machine, false);
     pressure_prepare(&machine->pressure, all);
     pressure_stop_compression(&machine->pressure, all, dt);
     apply_forces(machine, dt);
@@ -170,10 +176,9 @@ static void write_machine(const struct run *run, const struct machine *machine, 
 }
 
 /* Milliseconds per step, as in the paper's Table 2 with wall matrices and remainder beside. */
-static void set_costs(const struct run *run, const struct machine *machine, int32_t steps,
-                      double all_seconds)
+static void set_costs(const struct run *run, const struct machine *machine, double all_seconds)
 {
-    const double *spent = machine->sph->spent, each = 1000.0 / steps;
+    const double *spent = machine->sph->spent, each = 1000.0 / machine->steps;
     const double seconds = all_seconds - spent[MEASURING];
     const double matrices = spent[FLUID_MATRICES] + spent[WALL_MATRICES];
     double named = 0;
@@ -190,27 +195,52 @@ static void set_costs(const struct run *run, const struct machine *machine, int3
     metrics_set(run->metrics, "matrices_of_pressure", matrices / spent[PRESSURE]);
 }
 
-static void set_outcome(const struct run *run, const struct machine *machine, int32_t steps)
+static int32_t count_escaped(const struct load *load)
 {
-    const struct load *load = &machine->load;
     int32_t escaped = 0;
     for (int32_t i = 0; i < load->all.count; i++)
         escaped += !drum_holds(load->all.x[i]);
+    return escaped;
+}
+
+static void set_outcome(const struct run *run, const struct machine *machine)
+{
+    const double steps = machine->steps;
+    const struct load *load = &machine->load;
     metrics_set(run->metrics, "body", load->body);
     metrics_set(run->metrics, "soap", load->soap - load->body);
     metrics_set(run->metrics, "water", load->all.count - load->soap);
     metrics_set(run->metrics, "wall", machine->wall.count);
     metrics_set(run->metrics, "steps", steps);
-    metrics_set(run->metrics, "turns", machine->angle / 6.283185307179586);
-    metrics_set(run->metrics, "escaped", escaped);
+    metrics_set(run->metrics, "turns", machine->angle / whole_turn);
+    metrics_set(run->metrics, "escaped", count_escaped(load));
     metrics_set(run->metrics, "mean_compression", machine->worst_compression);
     metrics_set(run->metrics, "fastest", machine->fastest);
     metrics_set(run->metrics, "least_volume_of_body", machine->least_volume);
     metrics_set(run->metrics, "iterations_soap", (double)machine->soap.iterations / steps);
+    metrics_set(run->metrics, "iterations_water", (double)machine->water.iterations / steps);
     metrics_set(run->metrics, "iterations_body", (double)machine->elasticity.iterations / steps);
     metrics_set(run->metrics, "iterations_rate", (double)machine->pressure.rate_iterations / steps);
     metrics_set(run->metrics, "iterations_density",
                 (double)machine->pressure.density_iterations / steps);
+}
+
+/* A full run takes long: what it came to so far. */
+static void write_state(FILE *series, const struct machine *machine)
+{
+    const double *spent = machine->sph->spent, each = 1000.0 / machine->steps;
+    if (!series)
+        return;
+    fprintf(series, "%g %g %d %d %g %g %g %g %g %g", machine->time, machine->angle / whole_turn,
+            (int)machine->load.all.count, (int)count_escaped(&machine->load),
+            machine->worst_compression, machine->least_volume, machine->fastest,
+            (double)machine->soap.iterations / machine->steps,
+            (double)machine->water.iterations / machine->steps,
+            (double)machine->elasticity.iterations / machine->steps);
+    for (int k = 0; k < MEASURING; k++)
+        fprintf(series, " %g", each * spent[k]);
+    fprintf(series, "\n");
+    fflush(series);
 }
 
 static void simulate(const struct run *run)
@@ -219,7 +249,8 @@ static void simulate(const struct run *run)
     struct sph sph =
         run_open(run, 3, 2 * spacing_of(run->options->full), run->options->full ? 70000 : 1000);
     struct machine machine;
-    int32_t steps = 0, frame = 0;
+    int32_t frame = 0;
+    FILE *series = output_open(run, "series");
     machine_init(&machine, run, &sph);
     memset(sph.spent, 0, ACCOUNT_COUNT * sizeof *sph.spent);
     double seconds = 0;
@@ -227,13 +258,15 @@ static void simulate(const struct run *run)
         const double start = stopwatch_now();
         advance(&machine);
         seconds += stopwatch_now() - start;
-        steps++;
         run_progress(run, machine.time, duration);
-        if (run->options->output && machine.time >= apart * frame)
+        if (run->options->output && machine.time >= apart * frame) {
             write_machine(run, &machine, frame++);
+            write_state(series, &machine);
+        }
     }
-    set_outcome(run, &machine, steps);
-    set_costs(run, &machine, steps, seconds);
+    output_close(series);
+    set_outcome(run, &machine);
+    set_costs(run, &machine, seconds);
     machine_free(&machine);
     sph_close(&sph);
 }

@@ -10,6 +10,7 @@ const char *const method_names[METHOD_COUNT] = {"sph", "kgc", "mls", "rkpm"};
 
 static const struct argp_option described[] = {
     {"method", 'm', "NAME", 0, "kgc, mls or rkpm beside sph, or sph alone (default: kgc)", 0},
+    {"alone", 'a', NULL, 0, "this method without sph beside it, and no picture", 0},
     {"size", 's', "NAME", 0, "quick or full (default: quick)", 0},
     {"seed", 'r', "N", 0, "of the random numbers (default: 1)", 0},
     {"threads", 't', "N", 0, "default: the library's, or 1 for few particles", 0},
@@ -70,6 +71,13 @@ static error_t take(int key, char *text, struct argp_state *state)
         return 0;
     case 'c':
         options->check = true;
+        return 0;
+    case 'a':
+        options->alone = true;
+        return 0;
+    case ARGP_KEY_END:
+        if (options->check && options->alone)
+            argp_error(state, "gates compare with sph: --check cannot go with --alone");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -17,6 +17,7 @@ struct options {
     uint64_t seed;
     enum method method; /* runs beside SPH; SPH: runs alone */
     bool method_given;
+    bool alone; /* without SPH beside it */
     bool full;
     bool check;
 };

@@ -8,6 +8,7 @@ struct particles particles_new(int32_t count, double rest_volume)
     struct particles made = {.count = count, .rest_volume = rest_volume};
     made.x = array_new(count, sizeof *made.x);
     made.v = array_new(count, sizeof *made.v);
+    made.change = array_new(count, sizeof *made.change);
     made.rest_density = array_new(count, sizeof *made.rest_density);
     made.mass = array_new(count, sizeof *made.mass);
     made.density = array_new(count, sizeof *made.density);
@@ -19,6 +20,7 @@ void particles_free(struct particles *particles)
 {
     free(particles->x);
     free(particles->v);
+    free(particles->change);
     free(particles->rest_density);
     free(particles->mass);
     free(particles->density);
@@ -31,6 +33,7 @@ struct particles particles_range(const struct particles *particles, int32_t begi
                                     .rest_volume = particles->rest_volume,
                                     .x = particles->x + begin,
                                     .v = particles->v + begin,
+                                    .change = particles->change + begin,
                                     .rest_density = particles->rest_density + begin,
                                     .mass = particles->mass + begin,
                                     .density = particles->density + begin,
@@ -58,6 +61,19 @@ struct particles particles_block(const int32_t sides[3], double spacing, double 
         particles_set_rest_density(&made, i, rest_density);
     }
     return made;
+}
+
+void particles_repeat_change(struct particles *particles)
+{
+    for (int32_t i = 0; i < particles->count; i++)
+        add_scaled(particles->v[i], 1, particles->change[i]);
+}
+
+void particles_note_change(struct particles *particles, const double *momentum)
+{
+    for (int32_t i = 0; i < particles->count; i++)
+        for (int k = 0; k < 3; k++)
+            particles->change[i][k] = particles->v[i][k] - momentum[3 * i + k] / particles->mass[i];
 }
 
 double particles_mass(const struct particles *particles)

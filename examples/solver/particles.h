@@ -8,6 +8,7 @@ struct particles {
     int32_t count;
     double rest_volume; /* [L^d] */
     vector *x, *v;
+    vector *change; /* of v in the last implicit solve: where the next one starts */
     double *rest_density;
     double *mass;    /* rest_density rest_volume */
     double *density; /* where it stands now ... */
@@ -27,6 +28,12 @@ void particles_set_rest_density(struct particles *particles, int32_t i, double r
  * jitter * spacing along an axis. In 2D sides[2] is 1. */
 struct particles particles_block(const int32_t sides[3], double spacing, double jitter,
                                  double rest_density, struct random *random);
+
+/* v += change, as a start for an implicit solve of which momentum was the right side ... */
+void particles_repeat_change(struct particles *particles);
+
+/* ... and after it. */
+void particles_note_change(struct particles *particles, const double *momentum);
 
 double particles_mass(const struct particles *particles);
 void particles_momentum(const struct particles *particles, double *momentum);

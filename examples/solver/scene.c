@@ -30,7 +30,7 @@ static bool is_run(const struct scene *scene, const struct options *options, enu
 {
     if (options->check && !options->method_given && scene->checks_all)
         return true;
-    return method == SPH || method == options->method;
+    return (method == SPH && !options->alone) || method == options->method;
 }
 
 static void simulate(const struct scene *scene, const struct options *options, enum method method,
@@ -46,7 +46,7 @@ static void simulate(const struct scene *scene, const struct options *options, e
 static void draw(const struct scene *scene, const struct options *options)
 {
     const char *const methods[2] = {method_names[SPH], method_names[options->method]};
-    if (!options->output || !scene->draw)
+    if (!options->output || options->alone || !scene->draw)
         return;
     const struct picture picture = picture_open(options->output, scene->name, options->full);
     scene->draw(&picture, methods);

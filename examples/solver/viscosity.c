@@ -72,26 +72,8 @@ void viscosity_solve(struct viscosity *viscosity, struct particles *fluid, doubl
     for (int32_t i = 0; i < fluid->count; i++)
         for (int32_t k = 0; k < 3; k++)
             viscosity->right[3 * i + k] = fluid->mass[i] * fluid->v[i][k];
+    if (viscosity->warm)
+        particles_repeat_change(fluid);
     viscosity->iterations += conjugate_gradient(&system, viscosity->right, fluid->v[0]);
-}
-
-void viscosity_add_laplacian(const struct sph *sph, const struct pairs *pairs,
-                             const struct particles *fluid, int32_t first, double kinematic,
-                             vector *acceleration)
-{
-    const double factor = 2 * (sph->plain.dimension + 2) * kinematic / fluid->rest_volume;
-    const double floor = 0.01 * sph->plain.support_radius * sph->plain.support_radius;
-    for (int32_t i = first; i < fluid->count; i++)
-        for (int64_t k = pairs->offsets[i]; k < pairs->offsets[i + 1]; k++) {
-            const int32_t j = pairs->indices[k];
-            if (j < first)
-                continue;
-            vector apart = {0}, slip = {0};
-            add_scaled(apart, 1, fluid->x[i]);
-            add_scaled(apart, -1, fluid->x[j]);
-            add_scaled(slip, 1, fluid->v[i]);
-            add_scaled(slip, -1, fluid->v[j]);
-            const double closing = dot(slip, apart) / (dot(apart, apart) + floor);
-            add_scaled(acceleration[i], factor * fluid->volume[j] * closing, pairs->gradient[k]);
-        }
+    particles_note_change(fluid, viscosity->right);
 }

@@ -1,0 +1,35 @@
+/* Viscous forces of a fluid that is hardly viscous, from the Laplacian of v in the form of Monaghan
+ * 2005 (doi:10.1088/0034-4885/68/8/R01), over pairs with plain gradients: explicit, and implicit as
+ * in Weiler et al. 2018 (doi:10.1111/cgf.13349). With both volumes of a pair in it, the force keeps
+ * linear and angular momentum, and the system is symmetric. */
+#ifndef SOLVER_LAPLACIAN_H
+#define SOLVER_LAPLACIAN_H
+#include "pairs.h"
+#include "particles.h"
+
+struct laplacian {
+    double kinematic; /* nu [m^2/s] */
+    double tolerance; /* of the linear system: 1e-3 */
+    int64_t iterations;
+
+    /* Private */
+    const struct sph *sph;
+    const struct pairs *pairs;
+    const struct particles *all;
+    int32_t first; /* the fluid is all particles from here on */
+    double dt;
+    vector *force;
+    double *right, *work;
+};
+
+/* pairs: of all particles, with volumes at rest. */
+struct laplacian laplacian_new(const struct sph *sph, const struct pairs *pairs, int32_t capacity);
+void laplacian_free(struct laplacian *laplacian);
+
+/* v += dt force(v) / mass for the particles of `all` from `first` on, which share a rest density.
+ */
+void laplacian_step(struct laplacian *laplacian, struct particles *all, int32_t first, double dt);
+
+/* The same with the force of the new v. */
+void laplacian_solve(struct laplacian *laplacian, struct particles *all, int32_t first, double dt);
+#endif
