@@ -141,11 +141,13 @@ void load_free(struct load *load)
     particles_free(&load->all);
 }
 
-static void reorder(int32_t count, const int32_t *from, vector *values, vector *room)
+static void reorder(int32_t count, const int32_t *from, void *values, size_t size)
 {
-    memcpy(room, values, (size_t)count * sizeof *room);
+    char *room = array_new(count, size);
+    memcpy(room, values, (size_t)count * size);
     for (int32_t k = 0; k < count; k++)
-        memcpy(values[k], room[from[k]], sizeof *room);
+        memcpy((char *)values + (size_t)k * size, room + (size_t)from[k] * size, size);
+    free(room);
 }
 
 /* What else particles have is the same in a phase, or found anew in each step. */
@@ -155,7 +157,6 @@ void load_sort(const struct sph *sph, struct load *load, const sphg_neighbors *n
     const int32_t count = load->all.count;
     int32_t *order = array_new(count, sizeof *order), *from = array_new(count, sizeof *from);
     int32_t filled[3] = {0, load->body, load->soap};
-    vector *room = array_new(count, sizeof *room);
     sph_check(sph, sphg_neighbors_get_order(sph->context, neighbors, order));
     for (int32_t k = 0; k < count; k++) {
         const int32_t i = order[k], phase = (i >= load->body) + (i >= load->soap);
@@ -163,12 +164,12 @@ void load_sort(const struct sph *sph, struct load *load, const sphg_neighbors *n
     }
     for (int32_t i = 0; !with_body && i < load->body; i++)
         from[i] = i;
-    reorder(count, from, load->all.x, room);
-    reorder(count, from, load->all.v, room);
-    reorder(count, from, load->all.change, room);
+    reorder(count, from, load->all.x, sizeof *load->all.x);
+    reorder(count, from, load->all.v, sizeof *load->all.v);
+    reorder(count, from, load->all.change, sizeof *load->all.change);
+    reorder(count, from, load->all.potential, sizeof *load->all.potential);
     free(order);
     free(from);
-    free(room);
 }
 
 static bool is_room(const struct particles *all, const double *x, double spacing)
@@ -194,6 +195,7 @@ static void add_particle(struct load *load, const double *x, double speed, doubl
         memcpy(all->x[place], all->x[from], sizeof all->x[place]);
         memcpy(all->v[place], all->v[from], sizeof all->v[place]);
         memcpy(all->change[place], all->change[from], sizeof all->change[place]);
+        all->potential[place] = all->potential[from];
         particles_set_rest_density(all, place, water_density);
         place = from;
     }
@@ -201,6 +203,7 @@ static void add_particle(struct load *load, const double *x, double speed, doubl
     memcpy(all->x[place], x, sizeof all->x[place]);
     memcpy(all->v[place], down, sizeof down);
     memset(all->change[place], 0, sizeof all->change[place]);
+    all->potential[place] = 0;
     particles_set_rest_density(all, place, density);
 }
 

@@ -2,6 +2,8 @@
  * momentum is the measure, by implicit steps and by explicit ones. */
 #include "solver/elasticity.h"
 #include "solver/output.h"
+#include "solver/pressure.h"
+#include "solver/sampling.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +13,9 @@ static const double density = 1000;
 static const double young = 1e6, poisson = 0.3; /* [Pa], none */
 static const double turning = 10;               /* omega [1/s] */
 static const double turns = 5;
+static const double fast_turning = 40;   /* on the ground, where a slow top falls over [1/s] */
+static const double standing_time = 1.5; /* [s] */
+static const double gravity = 9.81;
 static const double implicit_step = 1e-3;
 static const double explicit_step = 8e-3; /* of a spacing [s/m]: sound takes 28 ms for a metre */
 
@@ -29,13 +34,13 @@ static double spacing_of(bool full)
     return full ? 0.02 : 0.05;
 }
 
-/* A jittered lattice within the profile. */
-static struct particles make_top(const struct run *run)
+/* A lattice within the profile. */
+static struct particles make_top(const struct run *run, double jitter)
 {
     struct random random = {run->options->seed};
     const double spacing = spacing_of(run->options->full);
     const int32_t side = 2 * (int32_t)(0.3 / spacing) + 1, sides[3] = {side, side, side};
-    struct particles block = particles_block(sides, spacing, 0.15, density, &random);
+    struct particles block = particles_block(sides, spacing, jitter, density, &random);
     int32_t count = 0;
     for (int32_t i = 0; i < block.count; i++)
         if (hypot(block.x[i][0], block.x[i][1]) < profile(block.x[i][2]))
@@ -44,11 +49,11 @@ static struct particles make_top(const struct run *run)
     return block;
 }
 
-static void set_spinning(struct particles *top)
+static void set_spinning(struct particles *top, double omega)
 {
     for (int32_t i = 0; i < top->count; i++) {
-        top->v[i][0] = -turning * top->x[i][1];
-        top->v[i][1] = turning * top->x[i][0];
+        top->v[i][0] = -omega * top->x[i][1];
+        top->v[i][1] = omega * top->x[i][0];
         top->v[i][2] = 0;
     }
 }
@@ -74,7 +79,7 @@ static double rotation_error(const struct elasticity *elasticity, const double *
  * operator makes of rotating on. */
 static void rigid_rotation(const struct run *run, const struct sph *sph)
 {
-    struct particles top = make_top(run);
+    struct particles top = make_top(run, 0.15);
     struct elasticity elasticity = elasticity_new(sph, &top, young, poisson);
     vector *onward = array_new(top.count, sizeof *onward);
     vector *force = array_new(top.count, sizeof *force);
@@ -127,13 +132,13 @@ static void step_explicitly(struct elasticity *elasticity, struct particles *top
 /* Spins the top and returns how much of the angular momentum around its axis is lost. */
 static double spin(const struct run *run, const struct sph *sph, bool implicit)
 {
-    struct particles top = make_top(run);
+    struct particles top = make_top(run, 0.15);
     struct elasticity elasticity = elasticity_new(sph, &top, young, poisson);
     vector *force = array_new(top.count, sizeof *force), before, now;
     const double dt = implicit ? implicit_step : explicit_step * spacing_of(run->options->full);
     const int32_t steps = (int32_t)(6.283185307179586 * turns / turning / dt);
     FILE *series = implicit ? output_open(run, "momentum") : NULL;
-    set_spinning(&top);
+    set_spinning(&top, turning);
     particles_angular_momentum(&top, before);
     for (int32_t k = 0; k < steps; k++) {
         run_progress(run, k + 1, steps);
@@ -158,6 +163,101 @@ static double spin(const struct run *run, const struct sph *sph, bool implicit)
     return 1 - now[2] / before[2];
 }
 
+/* ---- On the ground ---- */
+
+/* A top on a smooth but irregularly sampled floor without friction. */
+struct stand {
+    struct particles top;
+    struct wall wall;
+    struct contact contact;
+    struct pressure pressure;
+    struct elasticity elasticity;
+    vector *force;
+};
+
+static void stand_init(struct stand *stand, const struct run *run, const struct sph *sph)
+{
+    static const double low[2] = {-0.6, -0.6}, high[2] = {0.6, 0.6};
+    const double spacing = spacing_of(run->options->full);
+    struct random random = {run->options->seed};
+    double lowest = INFINITY;
+    vector *x;
+    const int32_t count = sample_rectangle(&random, low, high, 0.5 * spacing, &x);
+    stand->top = make_top(run, 1e-3);
+    for (int32_t i = 0; i < stand->top.count; i++)
+        lowest = fmin(lowest, stand->top.x[i][2]);
+    for (int32_t k = 0; k < count; k++)
+        x[k][2] = lowest - spacing;
+    stand->wall = wall_new(sph, count, x);
+    stand->elasticity = elasticity_new(sph, &stand->top, young, poisson);
+    stand->contact = contact_new(sph, &stand->wall, stand->top.count);
+    stand->pressure = pressure_new(sph, &stand->contact, stand->top.count);
+    stand->force = array_new(stand->top.count, sizeof *stand->force);
+}
+
+static void stand_free(struct stand *stand)
+{
+    elasticity_free(&stand->elasticity);
+    pressure_free(&stand->pressure);
+    contact_free(&stand->contact);
+    wall_free(&stand->wall);
+    particles_free(&stand->top);
+    free(stand->force);
+}
+
+/* Momentum and, around the centre of mass, angular momentum. */
+static void stand_momenta(const struct particles *top, double *momentum, double *angular)
+{
+    const double mass = particles_mass(top);
+    vector centre = {0}, carried;
+    for (int32_t i = 0; i < top->count; i++)
+        add_scaled(centre, top->mass[i] / mass, top->x[i]);
+    particles_momentum(top, momentum);
+    particles_angular_momentum(top, angular);
+    cross(centre, momentum, carried);
+    add_scaled(angular, -1, carried);
+}
+
+static void stand_advance(struct stand *stand, double dt)
+{
+    struct particles *top = &stand->top;
+    pressure_prepare(&stand->pressure, top);
+    pressure_stop_compression(&stand->pressure, top, dt);
+    step_explicitly(&stand->elasticity, top, stand->force, dt);
+    for (int32_t i = 0; i < top->count; i++)
+        top->v[i][2] -= gravity * dt;
+    pressure_keep_density(&stand->pressure, top, dt);
+    for (int32_t i = 0; i < top->count; i++)
+        add_scaled(top->x[i], dt, top->v[i]);
+}
+
+/* Such a floor pushes straight up, and what it pushes it may neither turn nor move aside. */
+static void stand(const struct run *run, const struct sph *sph)
+{
+    struct stand stand = {0};
+    vector momentum, before, now;
+    double turned = 0, lowest = INFINITY;
+    const double dt = explicit_step * spacing_of(run->options->full);
+    const int32_t steps = (int32_t)(standing_time / dt);
+    stand_init(&stand, run, sph);
+    set_spinning(&stand.top, fast_turning);
+    stand_momenta(&stand.top, momentum, before);
+    for (int32_t k = 0; k < steps; k++) {
+        run_progress(run, k + 1, steps);
+        stand_advance(&stand, dt);
+        stand_momenta(&stand.top, momentum, now);
+        turned = fmax(turned, fabs(now[2] / before[2] - 1));
+    }
+    for (int32_t i = 0; i < stand.top.count; i++)
+        lowest = fmin(lowest, stand.top.x[i][2] - stand.wall.x[0][2]);
+    metrics_set(run->metrics, "ground_spin_change", turned);
+    metrics_set(run->metrics, "ground_drift",
+                hypot(momentum[0], momentum[1]) / particles_mass(&stand.top));
+    metrics_set(run->metrics, "ground_tilt", acos(now[2] / sqrt(dot(now, now))));
+    metrics_set(run->metrics, "ground_height", lowest / spacing_of(run->options->full));
+    stand_free(&stand);
+}
+
 static void simulate(const struct run *run)
 {
     struct sph sph =
@@ -165,6 +265,7 @@ static void simulate(const struct run *run)
     rigid_rotation(run, &sph);
     metrics_set(run->metrics, "implicit_loss", spin(run, &sph, true));
     metrics_set(run->metrics, "explicit_loss", fabs(spin(run, &sph, false)));
+    stand(run, &sph);
     sph_close(&sph);
 }
 
@@ -199,6 +300,9 @@ int main(int argc, char **argv)
                                         {"implicit_ghost", EACH_CORRECTED, AT_MOST, 1e-8},
                                         {"implicit_loss", EACH_CORRECTED, AT_MOST, 1e-3},
                                         {"explicit_loss", EACH_CORRECTED, AT_MOST, 1e-12},
+                                        {"ground_drift", ONLY_SPH, AT_LEAST, 0.01},
+                                        {"ground_drift", EACH_CORRECTED, AT_MOST, 1e-3},
+                                        {"ground_spin_change", EACH_CORRECTED, AT_MOST, 1e-6},
                                         {0}};
     static const struct scene scene = {"top", "A spinning elastic top.", simulate, draw, gates,
                                        false};

@@ -9,6 +9,7 @@ struct particles particles_new(int32_t count, double rest_volume)
     made.x = array_new(count, sizeof *made.x);
     made.v = array_new(count, sizeof *made.v);
     made.change = array_new(count, sizeof *made.change);
+    made.potential = array_new(count, sizeof *made.potential);
     made.rest_density = array_new(count, sizeof *made.rest_density);
     made.mass = array_new(count, sizeof *made.mass);
     made.density = array_new(count, sizeof *made.density);
@@ -21,6 +22,7 @@ void particles_free(struct particles *particles)
     free(particles->x);
     free(particles->v);
     free(particles->change);
+    free(particles->potential);
     free(particles->rest_density);
     free(particles->mass);
     free(particles->density);
@@ -34,6 +36,7 @@ struct particles particles_range(const struct particles *particles, int32_t begi
                                     .x = particles->x + begin,
                                     .v = particles->v + begin,
                                     .change = particles->change + begin,
+                                    .potential = particles->potential + begin,
                                     .rest_density = particles->rest_density + begin,
                                     .mass = particles->mass + begin,
                                     .density = particles->density + begin,

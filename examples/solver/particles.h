@@ -8,7 +8,8 @@ struct particles {
     int32_t count;
     double rest_volume; /* [L^d] */
     vector *x, *v;
-    vector *change; /* of v in the last implicit solve: where the next one starts */
+    vector *change;    /* of v in the last implicit solve: where the next one starts */
+    double *potential; /* of the pressure in the last solve for density, as above */
     double *rest_density;
     double *mass;    /* rest_density rest_volume */
     double *density; /* where it stands now ... */

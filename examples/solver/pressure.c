@@ -165,10 +165,6 @@ static double relax(struct pressure *pressure, const struct particles *fluid)
 static int32_t solve(struct pressure *pressure, struct particles *fluid, double dt, double error)
 {
     int32_t iterations = 0;
-    memset(pressure->potential, 0, (size_t)fluid->count * sizeof *pressure->potential);
-    for (int32_t i = 0; i < fluid->count; i++)
-        pressure->potential[i] =
-            pressure->relaxation * fmax(0, pressure->source[i]) * pressure->inverse_diagonal[i];
     while (iterations < pressure->most_iterations) {
         const double left = relax(pressure, fluid);
         if (++iterations >= pressure->fewest_iterations && left < error)
@@ -178,6 +174,13 @@ static int32_t solve(struct pressure *pressure, struct particles *fluid, double 
     for (int32_t i = 0; i < fluid->count; i++)
         add_scaled(fluid->v[i], 1 / dt, pressure->displacement[i]);
     return iterations;
+}
+
+static void start_from_source(struct pressure *pressure, int32_t count)
+{
+    for (int32_t i = 0; i < count; i++)
+        pressure->potential[i] =
+            pressure->relaxation * fmax(0, pressure->source[i]) * pressure->inverse_diagonal[i];
 }
 
 static int32_t count_neighbors(const struct pressure *pressure, int32_t i)
@@ -195,6 +198,7 @@ void pressure_stop_compression(struct pressure *pressure, struct particles *flui
         pressure->source[i] = count_neighbors(pressure, i) < fewest_neighbors(pressure->sph)
                                   ? never_compressed
                                   : fmax(0, dt * pressure->change[i]);
+    start_from_source(pressure, fluid->count);
     pressure->rate_iterations += solve(pressure, fluid, dt, pressure->rate_error);
     pressure->sph->spent[PRESSURE] += stopwatch_now() - start;
 }
@@ -205,6 +209,10 @@ void pressure_keep_density(struct pressure *pressure, struct particles *fluid, d
     compression_rate(pressure, fluid, fluid->v, true);
     for (int32_t i = 0; i < fluid->count; i++)
         pressure->source[i] = pressure->compression[i] + dt * pressure->change[i] - 1;
+    start_from_source(pressure, fluid->count);
+    for (int32_t i = 0; i < fluid->count; i++)
+        pressure->potential[i] = fmax(pressure->potential[i], pressure->kept * fluid->potential[i]);
     pressure->density_iterations += solve(pressure, fluid, dt, pressure->density_error);
+    memcpy(fluid->potential, pressure->potential, (size_t)fluid->count * sizeof *fluid->potential);
     pressure->sph->spent[PRESSURE] += stopwatch_now() - start;
 }

@@ -12,6 +12,7 @@ struct pressure {
     double relaxation;    /* of the Jacobi iteration: 0.5, or 1 if particles see walls only */
     double rate_error;    /* mean compression that a step may add: 1e-3 */
     double density_error; /* mean compression that may remain: 1e-4 */
+    double kept; /* share of the last potential that the solve for density starts with: 0 */
     int32_t fewest_iterations, most_iterations;
     int64_t rate_iterations, density_iterations; /* in all steps */
 

@@ -4,7 +4,7 @@
 
 double stopwatch_wall(void); /* [s] since some moment */
 
-/* [s] that the calling thread has worked, so that other programs on a busy machine do not count.
- * While the library's threads work this one does, too, or waits for them awake. */
+/* [s] that the threads of this program have worked, all together, so that other programs on a busy
+ * machine do not count. Waiting counts where threads wait awake: OMP_WAIT_POLICY=passive. */
 double stopwatch_now(void);
 #endif

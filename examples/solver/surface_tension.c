@@ -69,6 +69,47 @@ static void find_force(struct surface_tension *tension, const struct particles *
     }
 }
 
+struct moments {
+    vector centre, torque, inertia; /* of the drop, around the axes */
+};
+
+static struct moments find_moments(const struct surface_tension *tension,
+                                   const struct particles *fluid)
+{
+    struct moments found = {0};
+    const double mass = particles_mass(fluid);
+    for (int32_t i = 0; i < fluid->count; i++)
+        add_scaled(found.centre, fluid->mass[i] / mass, fluid->x[i]);
+    for (int32_t i = 0; i < fluid->count; i++) {
+        vector arm = {fluid->x[i][0], fluid->x[i][1], fluid->x[i][2]}, moment;
+        add_scaled(arm, -1, found.centre);
+        cross(arm, tension->force[i], moment);
+        add_scaled(found.torque, 1, moment);
+        for (int k = 0; k < 3; k++)
+            found.inertia[k] += fluid->mass[i] * (dot(arm, arm) - arm[k] * arm[k]);
+    }
+    return found;
+}
+
+/* Takes away the acceleration of a rigid body under the same net force and torque; the body's axes
+ * are those of space, as a cube's are and a ball's. */
+static void balance(const struct surface_tension *tension, const struct particles *fluid,
+                    const double *net, vector *acceleration)
+{
+    const double mass = particles_mass(fluid);
+    const struct moments moments = find_moments(tension, fluid);
+    const vector spin = {moments.torque[0] / moments.inertia[0],
+                         moments.torque[1] / moments.inertia[1],
+                         moments.torque[2] / moments.inertia[2]};
+    for (int32_t i = 0; i < fluid->count; i++) {
+        vector arm = {fluid->x[i][0], fluid->x[i][1], fluid->x[i][2]}, turning;
+        add_scaled(arm, -1, moments.centre);
+        cross(spin, arm, turning);
+        add_scaled(acceleration[i], -1 / mass, net);
+        add_scaled(acceleration[i], -1, turning);
+    }
+}
+
 void surface_tension_add(struct surface_tension *tension, const struct particles *fluid,
                          vector *acceleration)
 {
@@ -82,9 +123,8 @@ void surface_tension_add(struct surface_tension *tension, const struct particles
         sum += sqrt(dot(tension->force[i], tension->force[i]));
     }
     tension->net_share = sqrt(dot(net, net)) / sum;
-    const double share = tension->balanced ? 1 / particles_mass(fluid) : 0;
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; i++)
         add_scaled(acceleration[i], 1 / fluid->mass[i], tension->force[i]);
-        add_scaled(acceleration[i], -share, net);
-    }
+    if (tension->balanced)
+        balance(tension, fluid, net, acceleration);
 }

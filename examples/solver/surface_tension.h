@@ -8,7 +8,8 @@
 
 struct surface_tension {
     double strength;  /* kappa [N] */
-    bool balanced;    /* takes the mean force away, which Eq. (45) has and no free drop can have */
+    bool balanced;    /* takes away what Eq. (45) has and no free drop can have: a mean force, and a
+                         torque, with which the drop would begin to spin */
     double net_share; /* of the last call: |sum force| / sum |force| */
     const struct operators *operators;
     double *colour, *squares; /* c_i, |grad c_i|^2 */
