@@ -274,7 +274,7 @@ static void draw(const struct picture *picture, const char *const methods[2])
     FILE *script = picture->script;
     picture_begin(picture, 1300, 460, 1, 3);
     fprintf(script, "set size ratio -1\nset cbrange [0:2.8]\nunset xtics\nunset ytics\n"
-                    "unset border\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
+                    "unset border\nset offsets graph 0.05, graph 0.05, graph 0.1, graph 0.1\n"
                     "set cblabel 'speed [m/s]'\n");
     for (int k = 0; k < 2; k++)
         fprintf(script,
