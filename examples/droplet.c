@@ -14,8 +14,8 @@ static const double spacing = 0.05;
 static const double support_radius = 0.1;
 static const double density = 1000;
 static const double kinematic = 0.1; /* nu [m^2/s] */
-static const double weak = 10;        /* kappa [N] */
-static const double control = 50;     /* what plain SPH might be given to do better */
+static const double weak = 10;       /* kappa [N] */
+static const double control = 50;    /* what plain SPH might be given to do better */
 static const double step = 2e-3;
 
 enum { DIRECTIONS = 400 };
