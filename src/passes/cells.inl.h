@@ -26,6 +26,7 @@ static bool read_positions(const struct sphgi_columns *columns, int64_t begin, i
 
 typedef double four_doubles __attribute__((vector_size(32), may_alias));
 typedef int64_t four_longs __attribute__((vector_size(32), may_alias));
+typedef uint64_t four_bits __attribute__((vector_size(32), may_alias));
 typedef int32_t four_ints __attribute__((vector_size(16), may_alias));
 typedef real four_reals
     __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
@@ -41,8 +42,8 @@ static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t c
     const four_ints shift = {s[0], s[1], s[2], 0}, local_shift = {l[0], l[1], l[2], 0};
     const four_ints inside = {(1 << s[0]) - 1, (1 << s[1]) - 1, (1 << s[2]) - 1, 0};
     const four_doubles magic = (four_doubles){0} + 0x1.8p52;
-    const four_longs nearest = (four_longs)magic - SPHGI_CUT_MOST;
-    four_longs far = {0};
+    const four_bits nearest = (four_bits)magic - SPHGI_CUT_MOST;
+    four_bits far = {0};
     for (int32_t k = 0; k < count; ++k) {
         const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
         four_doubles t = __builtin_convertvector(row, four_doubles) * scale;
@@ -52,13 +53,13 @@ static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t c
         __asm__("" : "+m"(t));
 #endif
         /* the whole number stands in the lowest bits; those of larger ones differ further up */
-        const four_longs bits = (four_longs)(t - 0.5 + magic);
+        const four_bits bits = (four_bits)(t - 0.5 + magic);
         far |= bits - nearest;
-        const four_ints cell = __builtin_convertvector(bits, four_ints);
+        const four_ints cell = __builtin_convertvector((four_longs)bits, four_ints);
         *(four_ints *)block[k] = cell >> shift;
         const four_ints parts = (cell & inside) << local_shift;
         local[k] = (uint8_t)(parts[0] | parts[1] | parts[2]);
     }
-    const uint64_t above = (uint64_t)(far[0] | far[1] | far[2] | far[3]);
+    const uint64_t above = far[0] | far[1] | far[2] | far[3];
     return above < 2 * (uint64_t)SPHGI_CUT_MOST;
 }
