@@ -22,6 +22,7 @@ refuses --size huge
 refuses --seed x
 refuses --threads -1
 refuses --output /dev/null
+refuses --check --alone
 
 rm -rf "$directory"
 lines=$("$program" --method mls --seed 7 --output "$directory") || complain "the scene failed"
