@@ -10,4 +10,5 @@ int command_skip(int argc, char **argv);
 int command_frontier(int argc, char **argv);
 int command_scaling(int argc, char **argv);
 int command_stability(int argc, char **argv);
+int command_solver(int argc, char **argv);
 #endif

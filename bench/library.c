@@ -62,6 +62,18 @@ const char *library_version(void)
     return text;
 }
 
+const struct library_path library_paths[LIBRARY_PATHS] = {{SPHG_ISA_BASE, "baseline"},
+                                                          {SPHG_ISA_NEON, "NEON"},
+                                                          {SPHG_ISA_X86_V3, "x86-64-v3"},
+                                                          {SPHG_ISA_X86_V4, "x86-64-v4"}};
+
+sphg_context *library_open_path(int32_t threads, const struct library_path *path)
+{
+    sphg_context *context = NULL;
+    const sphg_config config = {.threads = threads, .isa = path->isa};
+    return sphg_context_create(SPHG_VERSION, &config, &context) == SPHG_OK ? context : NULL;
+}
+
 void library_volumes(sphg_context *context, const sphg_scheme *scheme,
                      const sphg_neighbors *neighbors, struct numbers *volumes)
 {

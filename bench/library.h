@@ -7,6 +7,14 @@
 sphg_context *library_open(int32_t threads); /* 0: the library's default */
 void library_check(const sphg_context *context, sphg_result result);
 
+/* The instruction sets, the best last; which of them run here depends. */
+enum { LIBRARY_PATHS = 4 };
+extern const struct library_path {
+    sphg_isa isa;
+    const char *name;
+} library_paths[LIBRARY_PATHS];
+sphg_context *library_open_path(int32_t threads, const struct library_path *path); /* or NULL */
+
 const char *library_version(void);
 /* The instruction set of contexts opened from here on; false: it does not run here. */
 bool library_choose_isa(sphg_isa isa);

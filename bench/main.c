@@ -26,6 +26,7 @@ static const struct command commands[] = {
      command_scaling},
     {"stability", "sweeps into degenerate, distant and uneven particles: tables, CSV, pictures",
      command_stability},
+    {"solver", "time a matrix of the batches: moment inversion, eigenvalues, SVD", command_solver},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 

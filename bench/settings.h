@@ -17,6 +17,9 @@ extern const struct argp settings_argp;
 /* Refuses what is no instruction set or does not run here. */
 void settings_choose_isa(const char *name);
 
+/* Of these the options that need no particles: threads, repetitions, json. */
+extern const struct argp settings_run_argp;
+
 /* The side of the square or cube nearest to so many particles. */
 int32_t settings_side(int32_t particles, int32_t dimension);
 #endif
