@@ -65,7 +65,7 @@ SPHGI_TEMPLATE vec sum_across(const vec *a)
 #endif
 }
 
-/* Four numbers each of LANES rows, as four vectors. at(k) is the k-th row. */
+/* Four numbers each of LANES rows, as four vectors. */
 struct four {
     vec x, y, z, w;
 };
@@ -73,7 +73,7 @@ struct four {
 typedef real quad
     __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
 
-#if VECTOR_BYTES == 64 && REAL_IS_F64
+#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes */
 SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
 {
     return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
@@ -81,13 +81,13 @@ SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
 /* [row][number] to [number][row] in each half, and back. */
 SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
 {
-    const vec ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
-    const vec AB = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
-    const vec cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
-    const vec CD = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    const vec ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const vec AB = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const vec cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const vec CD = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
     return (struct four){__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
                          __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
                          __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
 SPHGI_TEMPLATE struct four transpose(const real *const *row)
@@ -99,14 +99,6 @@ SPHGI_TEMPLATE void put_parts(vec v, quad *to)
 {
     to[0] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
     to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
-}
-SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
-{
-    const struct four t = turned(v.x, v.y, v.z, v.w);
-    put_parts(t.x, rows);
-    put_parts(t.y, rows + 1);
-    put_parts(t.z, rows + 2);
-    put_parts(t.w, rows + 3);
 }
 #elif VECTOR_BYTES == 64
 SPHGI_TEMPLATE vec four_rows(const real *const *row)
@@ -137,51 +129,6 @@ SPHGI_TEMPLATE void put_parts(vec v, quad *to)
     to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
     to[8] = __builtin_shufflevector(v, v, 8, 9, 10, 11);
     to[12] = __builtin_shufflevector(v, v, 12, 13, 14, 15);
-}
-SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
-{
-    const struct four t = turned(v.x, v.y, v.z, v.w);
-    put_parts(t.x, rows);
-    put_parts(t.y, rows + 1);
-    put_parts(t.z, rows + 2);
-    put_parts(t.w, rows + 3);
-}
-#elif VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes of f32 */
-SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
-{
-    return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-/* [row][number] to [number][row] in each half, and back. */
-SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
-{
-    const vec ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-    const vec AB = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-    const vec cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-    const vec CD = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-    return (struct four){__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
-                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
-}
-SPHGI_TEMPLATE struct four transpose(const real *const *row)
-{
-    return turned(two_rows(row[0], row[4]), two_rows(row[1], row[5]), two_rows(row[2], row[6]),
-                  two_rows(row[3], row[7]));
-}
-SPHGI_TEMPLATE quad half_of(vec v, int half)
-{
-    return half ? __builtin_shufflevector(v, v, 4, 5, 6, 7)
-                : __builtin_shufflevector(v, v, 0, 1, 2, 3);
-}
-SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
-{
-    const struct four t = turned(v.x, v.y, v.z, v.w);
-    for (int half = 0; half < 2; ++half) {
-        rows[4 * half] = half_of(t.x, half);
-        rows[4 * half + 1] = half_of(t.y, half);
-        rows[4 * half + 2] = half_of(t.z, half);
-        rows[4 * half + 3] = half_of(t.w, half);
-    }
 }
 #elif REAL_IS_F64 && VECTOR_BYTES == 16
 SPHGI_TEMPLATE struct four transpose(const real *const *row)
@@ -217,6 +164,17 @@ SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
     rows[1] = (quad)t.y;
     rows[2] = (quad)t.z;
     rows[3] = (quad)t.w;
+}
+#endif
+
+#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 >= 8
+SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
+{
+    const struct four t = turned(v.x, v.y, v.z, v.w);
+    put_parts(t.x, rows);
+    put_parts(t.y, rows + 1);
+    put_parts(t.z, rows + 2);
+    put_parts(t.w, rows + 3);
 }
 #endif
 
