@@ -1,5 +1,5 @@
 /* Put in front of every file by tests/run --analyse: what an analyser that sees one file at a time
- * cannot know of the others. Nothing that fails returns SPHG_OK. */
+ * cannot know of the others. Nothing that fails returns SPHG_OK; what was reserved is there. */
 #include "check.h"
 #include "context.h"
 
@@ -9,3 +9,5 @@
     ((void)(sphgi_fail_memory)(context, function), SPHG_ERROR_MEMORY)
 #define sphgi_check_pointer(checker, pointer, name)                                                \
     ((pointer) ? SPHG_OK : ((void)(sphgi_check_pointer)(checker, pointer, name), SPHG_ERROR_ARGUMENT))
+#define sphgi_reserve(allocator, buffer, count, item_size)                                         \
+    ((sphgi_reserve)(allocator, buffer, count, item_size) && (buffer)->data)
