@@ -250,6 +250,7 @@ static void require_share(const stage *on, const stage_field *field, const stage
     const int n = on->points.count;
     uint8_t *mask = test_memory((size_t)n), *range = test_memory((size_t)n);
     int32_t *indices = test_memory((size_t)n * sizeof *indices), count = 0;
+    int32_t *listed = test_memory((size_t)n * sizeof *listed), entries = 0;
     const int32_t begin = random_index(random, n - n / share), end = begin + n / share;
     for (int i = n - 1; i >= 0; i--) {
         mask[i] = (uint8_t)(random_index(random, share) == 0);
@@ -262,11 +263,19 @@ static void require_share(const stage *on, const stage_field *field, const stage
     require_subset(on, field, full, &by_mask, mask);
     require_subset(on, field, full, &by_range, range);
     require_subset(on, field, full, &by_list, mask);
+    for (int k = 0; k < count; k++) { /* each, and its successor if that is masked out */
+        const int32_t next = (indices[k] + 1) % n;
+        listed[entries++] = indices[k];
+        if (!mask[next])
+            listed[entries++] = next;
+    }
+    const sphg_subset by_both = {0, entries, listed, mask};
+    require_subset(on, field, full, &by_both, mask);
 }
 
 static void subsets_have_the_bits_of_the_full_run(const test_case *test)
 {
-    static const int shares[] = {2, 3, 40, 300};
+    static const int shares[] = {2, 3, 40, 300, 800};
     random_state jitter = random_seeded(52);
     const int d = test->dimension;
     const cloud points = cloud_jittered(d, d == 2 ? 40 : 12, 1, .3, &jitter); /* several blocks */

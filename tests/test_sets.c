@@ -303,6 +303,85 @@ static void accumulate_adds_to_what_is_there(const test_case *test)
     }
 }
 
+/* Targets in one place: `near` of them see a crowd of sources, the others, many more, see none. */
+typedef struct crowd {
+    sphg_context *context;
+    sphg_scheme scheme;
+    sphg_neighbors *neighbors;
+    fixture_array volume, field;
+    int targets, near;
+} crowd;
+
+static void put_points(double *x, int dimension, int count, double where, random_state *random)
+{
+    for (int k = 0; k < count * dimension; k++)
+        x[k] = random_between(random, 0, .05) + (k % dimension ? 0 : where);
+}
+
+static crowd crowd_of(const test_case *test, int near, int list_free)
+{
+    enum { SOURCES = 4200 };
+    random_state random = random_seeded(86);
+    const int d = test->dimension, far = 16 * near + 101;
+    const sphg_type type = test_field_type(test);
+    crowd made = {.context = fixture_context(), .targets = near + far, .near = near};
+    cloud sources = {d, SOURCES, .01, test_memory(sizeof(double) * SOURCES * 3)};
+    cloud targets = {d, near + far, .01, test_memory(sizeof(double) * (size_t)(near + far) * 3)};
+    put_points(sources.x, d, SOURCES, 1.55, &random);
+    put_points(targets.x, d, near, .7, &random);
+    put_points(targets.x + near * d, d, far, .45, &random);
+    const fixture_array at = fixture_positions(test, &sources);
+    const fixture_array places = fixture_positions(test, &targets);
+    sphg_geometry geometry = fixture_geometry(test, &sources, &at);
+    geometry.targets = fixture_view(&places);
+    geometry.target_count = targets.count;
+    geometry.list_free = list_free;
+    made.scheme = fixture_scheme(test, 1);
+    made.neighbors = fixture_search(made.context, &made.scheme, &geometry);
+    made.volume = fixture_numbers(type, SOURCES, 1, cloud_volumes(&sources, .2, &random));
+    made.field = fixture_numbers(type, SOURCES, 1, cloud_numbers(&sources, -1, 1, &random));
+    return made;
+}
+
+static fixture_array values_in_crowd(const test_case *test, const crowd *on, const uint8_t *mask)
+{
+    fixture_array value = fixture_output(test_field_type(test), on->targets, test->dimension);
+    const sphg_sources sources = {.neighbors = on->neighbors, .volume = fixture_view(&on->volume)};
+    const sphg_view field = fixture_view(&on->field);
+    const sphg_field asked = {.shape = SPHG_SCALAR,
+                              .form = SPHG_DIRECT,
+                              .at_sources = &field,
+                              .gradient = fixture_view(&value)};
+    const sphg_subset subset = {0, on->targets, NULL, mask};
+    const sphg_request request = {.sources = &sources,
+                                  .fields = &asked,
+                                  .set_count = 1,
+                                  .field_count = 1,
+                                  .subset = mask ? &subset : NULL};
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return value;
+}
+
+/* More pairs than are collected at once, of a few targets and of all. */
+static void a_crowd_of_sources_is_summed_alike_for_any_subset(const test_case *test)
+{
+    static const int near[] = {90, 200};
+    for (int k = 0; k < 4; k++) {
+        const crowd on = crowd_of(test, near[k / 2], k % 2);
+        const fixture_array full = values_in_crowd(test, &on, NULL);
+        uint8_t *mask = test_memory((size_t)on.targets);
+        for (int share = 1; share < 6; share += 4) {
+            for (int t = 0; t < on.near; t++)
+                mask[t] = t % share == 0;
+            const fixture_array some = values_in_crowd(test, &on, mask);
+            for (int t = 0; t < on.near; t += share)
+                for (int c = 0; c < test->dimension; c++)
+                    TEST_REQUIRE(fixture_get(&some, t, c) == fixture_get(&full, t, c),
+                                 "target %d, 1 of %d, %d see sources", t, share, on.near);
+        }
+    }
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(two_source_sets_equal_their_union, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
@@ -312,6 +391,8 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(fields_of_one_call_equal_calls_of_one_field, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(a_crowd_of_sources_is_summed_alike_for_any_subset, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(accumulate_adds_to_what_is_there, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
 };
