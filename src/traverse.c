@@ -83,7 +83,7 @@ static void sweep_some_of(const struct sphgi_task *task, struct sphgi_worker *w,
             place[picked] = t;
             list[picked] = ids;
             ids += padded(lengths[t - begin]);
-            picked += is_active(task, t);
+            picked += is_active(task, t) ? 1 : 0;
         }
         for (int32_t k = 0; k < picked; ++k)
             add_listed(w, target_at(n, place[k]), place[k], sphgi_target_row(n, place[k]), list[k],
