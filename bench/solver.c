@@ -11,13 +11,14 @@ enum { OPTION_MATRICES = 256, OPTION_ISA, OPTION_PRECISION };
 static const struct argp_option option_list[] = {
     {"matrices", OPTION_MATRICES, "N", 0, "of the large batches (1000000); 0: only small ones", 0},
     {"isa", OPTION_ISA, "NAME", 0,
-     "this instruction set alone: base, neon, v3 or v4 (all that run here)", 0},
+     "baseline, neon, x86-64-v3 or x86-64-v4 alone (all that run here)", 0},
     {"precision", OPTION_PRECISION, "TYPE", 0, "f32 or f64 alone (both)", 0},
     {0}};
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
-    static const char *const paths[LIBRARY_PATHS + 1] = {"base", "neon", "v3", "v4", NULL};
+    static const char *const paths[LIBRARY_PATHS + 1] = {"baseline", "neon", "x86-64-v3",
+                                                         "x86-64-v4", NULL};
     static const char *const precisions[] = {"f32", "f64", NULL};
     struct solver *solver = state->input;
     switch (key) {
