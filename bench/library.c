@@ -62,15 +62,15 @@ const char *library_version(void)
     return text;
 }
 
-const struct library_path library_paths[LIBRARY_PATHS] = {{SPHG_ISA_BASE, "baseline"},
-                                                          {SPHG_ISA_NEON, "NEON"},
-                                                          {SPHG_ISA_X86_V3, "x86-64-v3"},
-                                                          {SPHG_ISA_X86_V4, "x86-64-v4"}};
+const char *library_path_name(int path)
+{
+    return isa_names[path + 1];
+}
 
-sphg_context *library_open_path(int32_t threads, const struct library_path *path)
+sphg_context *library_open_path(int32_t threads, int path)
 {
     sphg_context *context = NULL;
-    const sphg_config config = {.threads = threads, .isa = path->isa};
+    const sphg_config config = {.threads = threads, .isa = (sphg_isa)(path + 1)};
     return sphg_context_create(SPHG_VERSION, &config, &context) == SPHG_OK ? context : NULL;
 }
 

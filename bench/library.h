@@ -7,13 +7,10 @@
 sphg_context *library_open(int32_t threads); /* 0: the library's default */
 void library_check(const sphg_context *context, sphg_result result);
 
-/* The instruction sets, the best last; which of them run here depends. */
-enum { LIBRARY_PATHS = 4 };
-extern const struct library_path {
-    sphg_isa isa;
-    const char *name;
-} library_paths[LIBRARY_PATHS];
-sphg_context *library_open_path(int32_t threads, const struct library_path *path); /* or NULL */
+/* Path p is the instruction set p + 1 of the header; not all of them run here. */
+enum { LIBRARY_PATHS = SPHG_ISA_NEON };
+const char *library_path_name(int path);
+sphg_context *library_open_path(int32_t threads, int path); /* or NULL */
 
 const char *library_version(void);
 /* The instruction set of contexts opened from here on; false: it does not run here. */

@@ -11,14 +11,12 @@ enum { OPTION_MATRICES = 256, OPTION_ISA, OPTION_PRECISION };
 static const struct argp_option option_list[] = {
     {"matrices", OPTION_MATRICES, "N", 0, "of the large batches (1000000); 0: only small ones", 0},
     {"isa", OPTION_ISA, "NAME", 0,
-     "baseline, neon, x86-64-v3 or x86-64-v4 alone (all that run here)", 0},
+     "baseline, x86-64-v3, x86-64-v4 or neon alone (all that run here)", 0},
     {"precision", OPTION_PRECISION, "TYPE", 0, "f32 or f64 alone (both)", 0},
     {0}};
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
 {
-    static const char *const paths[LIBRARY_PATHS + 1] = {"baseline", "neon", "x86-64-v3",
-                                                         "x86-64-v4", NULL};
     static const char *const precisions[] = {"f32", "f64", NULL};
     struct solver *solver = state->input;
     switch (key) {
@@ -29,7 +27,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         solver->matrices = option_integer("matrices", text, 0, 100000000);
         return 0;
     case OPTION_ISA:
-        solver->path = option_choice("isa", text, paths);
+        solver->path = option_choice("isa", text, isa_names + 1);
         return 0;
     case OPTION_PRECISION:
         solver->precision = option_choice("precision", text, precisions);
@@ -43,13 +41,13 @@ static void find_paths(struct solver *solver)
 {
     int found = 0;
     for (int path = 0; path < LIBRARY_PATHS; path++) {
-        sphg_context *context = library_open_path(1, &library_paths[path]);
+        sphg_context *context = library_open_path(1, path);
         solver->available[path] = context && (solver->path < 0 || solver->path == path);
         found += solver->available[path];
         sphg_context_destroy(context);
     }
     if (found == 0)
-        options_refuse("--isa: %s does not run here", library_paths[solver->path].name);
+        options_refuse("--isa: %s does not run here", library_path_name(solver->path));
 }
 
 static void list_groups(struct solver *solver)

@@ -23,7 +23,7 @@ static struct scene open_scene(const struct solver *solver, struct solver_group 
     struct scene scene = {.group = group, .threads = solver->settings.threads};
     for (int path = 0; path < LIBRARY_PATHS; path++)
         if (solver->available[path])
-            scene.contexts[path] = library_open_path(scene.threads, &library_paths[path]);
+            scene.contexts[path] = library_open_path(scene.threads, path);
     for (int k = 0; k < SOLVER_CASES; k++)
         if (solver_has(group, k))
             scene.batches[k] =

@@ -61,7 +61,7 @@ static void print_group(const struct solver *solver, const struct solver_group *
     printf("\n  %-36s%8s", title, "fell %");
     for (int path = 0; path < LIBRARY_PATHS; path++)
         if (solver->available[path])
-            printf("%26s", library_paths[path].name);
+            printf("%26s", library_path_name(path));
     printf("%10s\n", "off by");
     for (int k = 0; k < SOLVER_CASES; k++)
         if (solver_has(group, k))
@@ -100,7 +100,7 @@ static void report_result(struct report *report, const struct solver_group *grou
         {NULL, 0}};
     snprintf(name, sizeof name, "solver/%dD/%s/%d/%s/%s/%s", (int)group->dimension,
              precision_of(group), (int)group->count, work_names[one->work], one->what,
-             copied ? "memcpy" : library_paths[path].name);
+             copied ? "memcpy" : library_path_name(path));
     report_benchmark(report, name, samples, counters);
 }
 

@@ -98,9 +98,13 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
             sphgi_load_volume(w, &plan->target_volume, w->extra);
         scale = w->extra;
     }
-    w->passes->invert(w->width, &w->threshold, sphgi_lane(w, w->reduced, plan->moment_sum), scale,
-                      sphgi_lane(w, w->coefficients, 0),
-                      plan->lambda_min.count ? w->lambda_min : NULL, verdict);
+    const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
+    void *correction = sphgi_lane(w, w->coefficients, 0);
+    void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;
+    w->passes->invert(w->width, &w->threshold, moments, scale, correction, lambda_min, verdict);
+    if (verdict->decomposed)
+        w->passes->decompose(w->width, &w->threshold, moments, scale, correction, lambda_min,
+                             verdict);
 }
 
 /* Weight of the target itself, if it is a source. */

@@ -6,7 +6,6 @@
 #include "svd.h"
 #include "view.h"
 #include <math.h>
-#include <string.h>
 
 enum { GRAIN = 16 /* groups */ };
 
@@ -60,42 +59,125 @@ static void lane_set(const struct batch *b, void *lanes, int32_t number, int32_t
 
 /* ---- Moments -------------------------------------------------------------------------------- */
 
-/* moments = factor * ours; see sphgi_table_scales(): the inverse takes the same factor. */
+/* Matrices without a certificate, until there are enough to fill vectors. */
+struct waiting {
+    int32_t count, items[SPHGI_WIDTH];
+    LANES_BUFFER(moments, 6);
+    LANES_BUFFER(volume, 1);
+};
+
+/* One worker's share. Moments of the host = factor * ours; see sphgi_table_scales(): the inverse
+ * takes the same factor. */
+struct inversion {
+    const struct batch *batch;
+    struct sphgi_tally *tally;
+    double factor, per_volume;
+    struct waiting waiting;
+    LANES_BUFFER(moments, 6);
+    LANES_BUFFER(volume, 1);
+    LANES_BUFFER(correction, 6);
+    LANES_BUFFER(lambda_min, 1);
+};
+
+static void read_moments(struct inversion *run, const int32_t *items)
+{
+    const struct batch *b = run->batch;
+    const struct sphgi_passes *p = b->passes;
+    p->load_lanes(SPHGI_WIDTH, &b->in, items, run->moments);
+    if (run->factor != 1)
+        p->scale(SPHGI_WIDTH, b->in.count, run->moments, run->factor, NULL, run->moments);
+    if (b->volume.count) {
+        p->load_lanes(SPHGI_WIDTH, &b->volume, items, run->volume);
+        run->tally->bad_volume |= !p->valid_volumes(SPHGI_WIDTH, run->volume);
+        p->scale(SPHGI_WIDTH, 1, run->volume, run->per_volume, NULL, run->volume);
+    }
+}
+
+static void write_inverses(struct inversion *run, const struct sphgi_verdict *verdict,
+                           const int32_t *items)
+{
+    const struct batch *b = run->batch;
+    const struct sphgi_passes *p = b->passes;
+    const int32_t count = verdict->lanes;
+    if (run->factor != 1)
+        p->scale(SPHGI_WIDTH, b->in.count, run->correction, run->factor, NULL, run->correction);
+    if (b->out[0].count)
+        p->store_lanes(count, &b->out[0], items, run->correction, false);
+    if (b->out[1].count)
+        p->store_lanes(count, &b->out[1], items, run->lambda_min, false);
+    for (int32_t l = 0; b->rank.count && l < count; ++l)
+        *(uint8_t *)(uintptr_t)(b->rank.at[0] + items[l] * b->rank.stride) =
+            verdict->decomposed >> l & 1 ? verdict->rank[l] : (uint8_t)b->dimension;
+}
+
+static void decompose_waiting(struct inversion *run)
+{
+    const struct batch *b = run->batch;
+    struct waiting *w = &run->waiting;
+    struct sphgi_verdict verdict = {.lanes = w->count,
+                                    .decomposed = (uint32_t)(((uint64_t)1 << w->count) - 1)};
+    if (!w->count)
+        return;
+    b->passes->decompose(SPHGI_WIDTH, &b->threshold, w->moments, b->volume.count ? w->volume : NULL,
+                         run->correction, run->lambda_min, &verdict);
+    write_inverses(run, &verdict, w->items);
+    sphgi_tally_verdict(run->tally, &verdict, b->dimension);
+    w->count = 0;
+}
+
+/* [number][SPHGI_WIDTH]: all numbers of a lane to another place. */
+static void copy_lane(const struct batch *b, int32_t numbers, const void *from, int32_t lane,
+                      void *to, int32_t place)
+{
+    for (int32_t k = 0; k < numbers * SPHGI_WIDTH; k += SPHGI_WIDTH)
+        if (b->type == SPHG_F64)
+            ((double *)to)[k + place] = ((const double *)from)[k + lane];
+        else
+            ((float *)to)[k + place] = ((const float *)from)[k + lane];
+}
+
+static void put_aside(struct inversion *run, int32_t lane, int32_t item)
+{
+    struct waiting *w = &run->waiting;
+    copy_lane(run->batch, run->batch->in.count, run->moments, lane, w->moments, w->count);
+    if (run->batch->volume.count)
+        copy_lane(run->batch, 1, run->volume, lane, w->volume, w->count);
+    w->items[w->count++] = item;
+    if (w->count == SPHGI_WIDTH)
+        decompose_waiting(run);
+}
+
+/* Writes all of the group; what waits is written again when it has been decomposed. */
+static void invert_group(struct inversion *run, int32_t g)
+{
+    const struct batch *b = run->batch;
+    int32_t items[SPHGI_WIDTH];
+    struct sphgi_verdict verdict = {.lanes = items_of(b, g, items)};
+    read_moments(run, items);
+    b->passes->invert(SPHGI_WIDTH, &b->threshold, run->moments,
+                      b->volume.count ? run->volume : NULL, run->correction,
+                      b->out[1].count ? run->lambda_min : NULL, &verdict);
+    write_inverses(run, &verdict, items);
+    uint32_t open = verdict.decomposed;
+    verdict.lanes -= __builtin_popcount(open);
+    verdict.decomposed = 0;
+    sphgi_tally_verdict(run->tally, &verdict, b->dimension);
+    for (; open; open &= open - 1)
+        put_aside(run, __builtin_ctz(open), items[__builtin_ctz(open)]);
+}
+
 static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct batch *b = data;
-    const struct sphgi_passes *p = b->passes;
-    const double factor = sphgi_table_scales(b->scheme).value;
-    const int32_t numbers = b->in.count;
-    const double per_volume = sphgi_power(1 / b->scheme->radius, b->dimension);
-    struct sphgi_tally *tally = &b->tallies[worker];
-    LANES_BUFFER(moments, 6);
-    LANES_BUFFER(correction, 6);
-    LANES_BUFFER(volume, 1);
-    LANES_BUFFER(lambda_min, 1);
-    for (int32_t g = begin; g < end; ++g) {
-        int32_t items[SPHGI_WIDTH];
-        const int32_t count = items_of(b, g, items);
-        struct sphgi_verdict verdict = {.lanes = count};
-        p->load_lanes(SPHGI_WIDTH, &b->in, items, moments);
-        p->scale(SPHGI_WIDTH, numbers, moments, factor, NULL, moments);
-        if (b->volume.count) {
-            p->load_lanes(SPHGI_WIDTH, &b->volume, items, volume);
-            tally->bad_volume |= !p->valid_volumes(SPHGI_WIDTH, volume);
-            p->scale(SPHGI_WIDTH, 1, volume, per_volume, NULL, volume);
-        }
-        p->invert(SPHGI_WIDTH, &b->threshold, moments, b->volume.count ? volume : NULL, correction,
-                  lambda_min, &verdict);
-        p->scale(SPHGI_WIDTH, numbers, correction, factor, NULL, correction);
-        sphgi_tally_verdict(tally, &verdict, b->dimension);
-        if (b->out[0].count)
-            p->store_lanes(count, &b->out[0], items, correction, false);
-        if (b->out[1].count)
-            p->store_lanes(count, &b->out[1], items, lambda_min, false);
-        for (int32_t l = 0; b->rank.count && l < count; ++l)
-            *(uint8_t *)(uintptr_t)(b->rank.at[0] + items[l] * b->rank.stride) =
-                verdict.decomposed >> l & 1 ? verdict.rank[l] : (uint8_t)b->dimension;
-    }
+    struct inversion run;
+    run.batch = b;
+    run.tally = &b->tallies[worker];
+    run.factor = sphgi_table_scales(b->scheme).value;
+    run.per_volume = sphgi_power(1 / b->scheme->radius, b->dimension);
+    run.waiting.count = 0;
+    for (int32_t g = begin; g < end; ++g)
+        invert_group(&run, g);
+    decompose_waiting(&run);
 }
 
 static sphg_result check_batch(struct sphgi_checker checker, const sphg_view *view,
@@ -240,78 +322,18 @@ sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme
 
 /* ---- Eigenvalues ---------------------------------------------------------------------------- */
 
-/* Powers of two that keep products of entries in range; f32 is widened anyway. */
-static void scale_lanes(const struct batch *b, void *matrices, int32_t numbers, int *exponents)
-{
-    for (int32_t l = 0; l < SPHGI_WIDTH; ++l) {
-        double largest = 0;
-        exponents[l] = 0;
-        for (int32_t k = 0; k < numbers; ++k)
-            largest = fmax(largest, fabs(lane_get(b, matrices, k, l)));
-        if (b->type == SPHG_F32 || !(largest > 0) || !isfinite(largest))
-            continue;
-        frexp(largest, &exponents[l]);
-        for (int32_t k = 0; k < numbers; ++k)
-            lane_set(b, matrices, k, l, ldexp(lane_get(b, matrices, k, l), -exponents[l]));
-    }
-}
-
-struct eigen {
-    double value[3], vector[3][3]; /* vector[column][row] */
-};
-
-static void swap_pair(struct eigen *e, int32_t a, int32_t b)
-{
-    const struct eigen held = *e;
-    e->value[a] = held.value[b];
-    e->value[b] = held.value[a];
-    memcpy(e->vector[a], held.vector[b], sizeof e->vector[a]);
-    memcpy(e->vector[b], held.vector[a], sizeof e->vector[b]);
-}
-
-/* Descending, and det Q = 1: rotations give +1, each exchange turns it over. */
-static void order_pairs(struct eigen *e, int32_t d)
-{
-    bool odd = false;
-    for (int32_t pass = 0; pass + 1 < d; ++pass)
-        for (int32_t k = 0; k + 1 < d; ++k)
-            if (e->value[k] < e->value[k + 1]) {
-                swap_pair(e, k, k + 1);
-                odd = !odd;
-            }
-    for (int32_t r = 0; odd && r < d; ++r)
-        e->vector[d - 1][r] = -e->vector[d - 1][r];
-}
-
 static void eigen_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct batch *b = data;
-    const int32_t d = b->dimension;
     LANES_BUFFER(matrices, 6);
     LANES_BUFFER(values, 3);
     LANES_BUFFER(vectors, 9);
     (void)worker;
     for (int32_t g = begin; g < end; ++g) {
         int32_t items[SPHGI_WIDTH];
-        int exponents[SPHGI_WIDTH];
         const int32_t count = items_of(b, g, items);
         b->passes->load_lanes(SPHGI_WIDTH, &b->in, items, matrices);
-        scale_lanes(b, matrices, b->in.count, exponents);
-        b->passes->eigen(SPHGI_WIDTH, d, matrices, values, vectors);
-        for (int32_t l = 0; l < count; ++l) {
-            struct eigen e;
-            for (int32_t c = 0; c < d; ++c) {
-                e.value[c] = ldexp(lane_get(b, values, c, l), exponents[l]);
-                for (int32_t r = 0; r < d; ++r)
-                    e.vector[c][r] = lane_get(b, vectors, r * d + c, l);
-            }
-            order_pairs(&e, d);
-            for (int32_t c = 0; c < d; ++c) {
-                lane_set(b, values, c, l, e.value[c]);
-                for (int32_t r = 0; r < d; ++r)
-                    lane_set(b, vectors, r * d + c, l, e.vector[c][r]);
-            }
-        }
+        b->passes->eigen(SPHGI_WIDTH, b->dimension, matrices, values, vectors);
         if (b->out[0].count)
             b->passes->store_lanes(count, &b->out[0], items, values, false);
         if (b->out[1].count)

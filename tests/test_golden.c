@@ -274,15 +274,15 @@ static void baseline_results_are_those_of_any_compiler(const test_case *test)
     /* [precision][method][lists of ours, the host's] */
     static const uint64_t pinned[2][5][2] = {
         {{UINT64_C(0x4f317aa15a7f5d57), UINT64_C(0xc8170ef96f1abfd3)},
-         {UINT64_C(0xaede3c014c2e5bdb), UINT64_C(0x5209ba0a18fa379a)},
+         {UINT64_C(0x4e13814ee7dcf17c), UINT64_C(0x0e895549c7f68769)},
          {UINT64_C(0x5d49aa9fcbefc362), UINT64_C(0x137244d4d2df6fb0)},
          {UINT64_C(0x87524bc9b3d5cc86), UINT64_C(0xbef7388a3e44af8b)},
          {UINT64_C(0xc07e508c758704de), UINT64_C(0x868bb2a2a2ea9c66)}},
-        {{UINT64_C(0x954b937cadb9c62f), UINT64_C(0x7509a68697fed0e3)},
-         {UINT64_C(0xb9ecfecae608f3b2), UINT64_C(0x16f47edb975cec1e)},
-         {UINT64_C(0xa912b470c5154213), UINT64_C(0x1a142c38876aca5a)},
-         {UINT64_C(0x0e3c840c9126cbe8), UINT64_C(0x093b745995df1a3f)},
-         {UINT64_C(0xfc18583e3f6925c3), UINT64_C(0x8ad5eb10bb661679)}}};
+        {{UINT64_C(0xe99e6ad4cdd4efec), UINT64_C(0xadab2881e6b13ced)},
+         {UINT64_C(0xd9e3a4a8c73da560), UINT64_C(0x6c14e8c4cb19bb80)},
+         {UINT64_C(0x7835c92fc45c9140), UINT64_C(0x9d8d4ce6cbe29746)},
+         {UINT64_C(0x111e31e6b53585e3), UINT64_C(0x8e85630e108a37df)},
+         {UINT64_C(0x23e1d94c9517c8ab), UINT64_C(0x785f144365f59e09)}}};
     const setting own = setting_of(test);
     const sphg_config serial = {.isa = SPHG_ISA_BASE, .threads = 1};
     const hashes found = run_under(&own, &serial, NULL);

@@ -1,6 +1,5 @@
 /* From moments to corrections (theory.md, section 3), one target a lane. Healthy matrices are
- * inverted by LDL^T under a certificate; if a lane of the group lacks it, that lane is decomposed.
- */
+ * inverted by LDL^T under a certificate; lanes that lack it are decomposed. */
 
 /* What the threshold makes of one eigenvalue. low: what a dropped direction gets (linearised: 1,
  * "uncorrected"; classic: 0). */
@@ -25,40 +24,35 @@ struct corrected {
     dvec c[6], lambda_min, rank;
 };
 
-SPHGI_TEMPLATE dvec smaller(dvec a, dvec b)
-{
-    return dselect(b < a, b, a);
-}
-
+/* What the threshold leaves of A = Q diag(l) Q^T. */
 SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold, const dvec *m,
-                                        double low, bool three)
+                                        const struct eigen *e, double low, bool three)
 {
     const int d = three ? 3 : 2;
     const dvec trace = three ? m[0] + m[3] + m[5] : m[0] + m[2];
     const dvec floor = 16 * UNIT_ROUNDOFF * trace;
     const dvec given = dsplat(threshold->eps), eps = dselect(floor > given, floor, given);
-    const struct eigen e = three ? decompose(m, true) : decompose(m, false);
-    struct corrected out = {.lambda_min = e.l[0], .rank = dsplat(0)};
+    struct corrected out = {.lambda_min = e->l[0], .rank = dsplat(0)};
     dvec f[3];
     dmask all = (dmask)dsplat(0) == 0;
     for (int k = 0; k < d; ++k) {
         dmask full;
-        f[k] = filtered(e.l[k], eps, threshold->policy, low, &full);
+        f[k] = filtered(e->l[k], eps, threshold->policy, low, &full);
         all &= full;
         out.rank += dselect(full, dsplat(1), dsplat(0));
-        out.lambda_min = smaller(out.lambda_min, e.l[k]);
+        out.lambda_min = smaller(out.lambda_min, e->l[k]);
     }
     if (threshold->policy == SPHG_IDENTITY) {
-        const dmask drop = (e.l[0] <= eps) | (e.l[1] <= eps) | ((three ? e.l[2] : e.l[0]) <= eps);
+        const dmask drop = out.lambda_min <= eps;
         for (int k = 0; k < d; ++k)
             f[k] = dselect(drop, dsplat(low), f[k]);
         out.rank = dselect(all, out.rank, dsplat(0));
     }
     for (int a = 0, c = 0; a < d; ++a)
         for (int b = a; b < d; ++b, ++c) {
-            out.c[c] = e.q[3 * a] * f[0] * e.q[3 * b] + e.q[3 * a + 1] * f[1] * e.q[3 * b + 1];
+            out.c[c] = e->q[3 * a] * f[0] * e->q[3 * b] + e->q[3 * a + 1] * f[1] * e->q[3 * b + 1];
             if (three)
-                out.c[c] += e.q[3 * a + 2] * f[2] * e.q[3 * b + 2];
+                out.c[c] += e->q[3 * a + 2] * f[2] * e->q[3 * b + 2];
         }
     return out;
 }
@@ -115,40 +109,21 @@ SPHGI_TEMPLATE double largest_of(vec v)
     return (double)largest;
 }
 
-/* What a decomposed lane leaves behind. Moments of 0 make it empty; moments that are not finite
- * give NaN and rank 0. */
-SPHGI_TEMPLATE void keep_lane(const struct corrected *done, int from, int lane, const real *m,
-                              int numbers, real *c, real *lambda_min, struct sphgi_verdict *verdict)
+/* Whether those numbers of a lane that `which` has a bit for are all 0. */
+SPHGI_TEMPLATE bool are_zero(const real *m, int lane, unsigned which)
 {
-    double poison = 0;
-    for (int k = 0; k < numbers; ++k)
-        poison += (double)m[k * SPHGI_WIDTH + lane] - (double)m[k * SPHGI_WIDTH + lane];
-    for (int k = 0; k < numbers; ++k)
-        c[k * SPHGI_WIDTH + lane] = (real)(done->c[k][from] + poison);
-    verdict->rank[lane] = (uint8_t)done->rank[from];
-    if (!(poison == 0))
-        verdict->rank[lane] = 0;
-    const real lambda = (real)done->lambda_min[from];
-    verdict->lambda_min[lane] = (double)lambda;
-    if (lambda_min)
-        lambda_min[lane] = lambda;
-    const bool none = m[lane] == R(0) && m[(numbers == 6 ? 3 : 2) * SPHGI_WIDTH + lane] == R(0) &&
-                      m[(numbers - 1) * SPHGI_WIDTH + lane] == R(0);
-    verdict->empty |= (uint32_t)none << lane;
+    bool zero = true;
+    for (int k = 0; which >> k; ++k)
+        zero &= !(which >> k & 1) || m[k * SPHGI_WIDTH + lane] == R(0);
+    return zero;
 }
 
 /* A lane of zeros, a target without neighbours, has nothing to decompose: every direction is
- * dropped.
- */
-SPHGI_TEMPLATE bool keep_empty(const struct sphgi_threshold *threshold, int lane, const real *m,
-                               double low, real *c, real *lambda_min, struct sphgi_verdict *verdict,
-                               bool three)
+ * dropped. */
+SPHGI_TEMPLATE void keep_empty(const struct sphgi_threshold *threshold, int lane, double low,
+                               real *c, real *lambda_min, struct sphgi_verdict *verdict, bool three)
 {
-    const int numbers = three ? 6 : 3;
-    for (int k = 0; k < numbers; ++k)
-        if (m[k * SPHGI_WIDTH + lane] != R(0))
-            return false;
-    for (int k = 0; k < numbers; ++k) {
+    for (int k = 0; k < (three ? 6 : 3); ++k) {
         const bool diagonal = three ? k == 0 || k == 3 || k == 5 : k != 1;
         c[k * SPHGI_WIDTH + lane] = R(diagonal && threshold->policy != SPHG_TRUNCATE ? low : 0);
     }
@@ -156,36 +131,80 @@ SPHGI_TEMPLATE bool keep_empty(const struct sphgi_threshold *threshold, int lane
     verdict->lambda_min[lane] = 0;
     if (lambda_min)
         lambda_min[lane] = R(0);
-    verdict->empty |= (uint32_t)1 << lane;
-    return true;
 }
 
-/* Decomposes the lanes of `open`, packed: each for itself, whatever stands beside it. m, c:
- * [number][SPHGI_WIDTH], normalised. */
+/* Matrices that are decomposed together: numbers, then lambda_min and rank, [number][matrix]. */
+struct packed {
+    int count;
+    int lane[SPHGI_WIDTH];
+    real m[6 * SPHGI_WIDTH], done[8 * SPHGI_WIDTH];
+};
+
+/* The lanes of `open` that have something to decompose. */
+SPHGI_TEMPLATE void pack_open(const struct sphgi_threshold *threshold, const real *m, uint32_t open,
+                              double low, real *c, real *lambda_min, struct sphgi_verdict *verdict,
+                              bool three, struct packed *packed)
+{
+    const int numbers = three ? 6 : 3;
+    packed->count = 0;
+    for (; open; open &= open - 1) {
+        const int lane = __builtin_ctz(open);
+        const bool empty = are_zero(m, lane, three ? 1 | 1 << 3 | 1 << 5 : 1 | 1 << 2);
+        verdict->empty |= (uint32_t)empty << lane;
+        if (empty && are_zero(m, lane, (1u << numbers) - 1)) {
+            keep_empty(threshold, lane, low, c, lambda_min, verdict, three);
+            continue;
+        }
+        for (int k = 0; k < numbers; ++k)
+            packed->m[k * SPHGI_WIDTH + packed->count] = m[k * SPHGI_WIDTH + lane];
+        packed->lane[packed->count++] = lane;
+    }
+    for (int s = packed->count; packed->count && s % (ABREAST * DLANES); ++s)
+        for (int k = 0; k < numbers; ++k) /* any matrix that is there fills a vector */
+            packed->m[k * SPHGI_WIDTH + s] = packed->m[k * SPHGI_WIDTH];
+}
+
+SPHGI_TEMPLATE void unpack(const struct packed *packed, int numbers, real *c, real *lambda_min,
+                           struct sphgi_verdict *verdict)
+{
+    for (int s = 0; s < packed->count; ++s) {
+        const int lane = packed->lane[s];
+        const real *done = packed->done + s;
+        for (int k = 0; k < numbers; ++k)
+            c[k * SPHGI_WIDTH + lane] = done[k * SPHGI_WIDTH];
+        verdict->lambda_min[lane] = (double)done[6 * SPHGI_WIDTH];
+        verdict->rank[lane] = (uint8_t)done[7 * SPHGI_WIDTH];
+        if (lambda_min)
+            lambda_min[lane] = done[6 * SPHGI_WIDTH];
+    }
+}
+
+/* Decomposes the lanes of `open`, each for itself, whatever stands beside it: those of 0 are empty,
+ * moments that are not finite give NaN and rank 0. m, c: [number][SPHGI_WIDTH], normalised. */
 SPHGI_TEMPLATE void decompose_as(const struct sphgi_threshold *threshold, const real *m,
                                  uint32_t open, double low, real *c, real *lambda_min,
                                  struct sphgi_verdict *verdict, bool three)
 {
     const int numbers = three ? 6 : 3;
-    while (open) {
-        int lane[DLANES], taken = 0;
-        for (; open && taken < DLANES; open &= open - 1) {
-            lane[taken] = __builtin_ctz(open);
-            taken += !keep_empty(threshold, lane[taken], m, low, c, lambda_min, verdict, three);
+    struct packed packed;
+    pack_open(threshold, m, open, low, c, lambda_min, verdict, three, &packed);
+    for (int s = 0; s < packed.count; s += ABREAST * DLANES) {
+        dvec wide[ABREAST][6];
+        struct eigen eigen[ABREAST];
+        for (int v = 0; v < ABREAST; ++v)
+            for (int k = 0; k < numbers; ++k)
+                wide[v][k] = widened(packed.m + k * SPHGI_WIDTH + s + v * DLANES);
+        decompose(wide, three, eigen);
+        for (int v = 0; v < ABREAST; ++v) {
+            const struct corrected done = correct(threshold, wide[v], &eigen[v], low, three);
+            real *to = packed.done + s + v * DLANES;
+            for (int k = 0; k < numbers; ++k)
+                narrowed(to + k * SPHGI_WIDTH, done.c[k]);
+            narrowed(to + 6 * SPHGI_WIDTH, done.lambda_min);
+            narrowed(to + 7 * SPHGI_WIDTH, done.rank);
         }
-        if (!taken)
-            return;
-        dvec wide[6];
-        for (int k = 0; k < numbers; ++k) {
-            double picked[DLANES];
-            for (int s = 0; s < DLANES; ++s)
-                picked[s] = (double)m[k * SPHGI_WIDTH + lane[s < taken ? s : 0]];
-            __builtin_memcpy(&wide[k], picked, sizeof picked);
-        }
-        const struct corrected done = correct(threshold, wide, low, three);
-        for (int s = 0; s < taken; ++s)
-            keep_lane(&done, s, lane[s], m, numbers, c, lambda_min, verdict);
     }
+    unpack(&packed, numbers, c, lambda_min, verdict);
 }
 
 static __attribute__((noinline)) void decompose_open(const struct sphgi_threshold *threshold,
@@ -214,16 +233,17 @@ SPHGI_TEMPLATE vec scaled_moment(const struct sphgi_threshold *threshold, const 
 }
 
 /* The lanes that lack the certificate: their moments once more, and their corrections anew. */
-static __attribute__((noinline)) void invert_open(const struct sphgi_threshold *threshold,
-                                                  const real *moments, const real *scale,
-                                                  int32_t width, real *correction, real *lambda_min,
-                                                  struct sphgi_verdict *verdict)
+static void decompose_lanes(int32_t width, const struct sphgi_threshold *threshold,
+                            const void *moments, const void *scales, void *corrections,
+                            void *lambda_min, struct sphgi_verdict *verdict)
 {
+    const real *scale = scales;
+    real *correction = corrections;
     const int numbers = threshold->dimension == 3 ? 6 : 3;
     real m[6 * SPHGI_WIDTH], c[6 * SPHGI_WIDTH];
     for (int k = 0; k < numbers * SPHGI_WIDTH; k += SPHGI_WIDTH)
         for (int32_t l = 0; l < width; l += LANES)
-            store(m + k + l, scaled_moment(threshold, moments + k, scale, l));
+            store(m + k + l, scaled_moment(threshold, (const real *)moments + k, scale, l));
     decompose_open(threshold, m, verdict->decomposed, 1, c, lambda_min, verdict);
     for (uint32_t open = verdict->decomposed; open; open &= open - 1)
         for (int k = 0, l = __builtin_ctz(open); k < numbers; ++k)
@@ -256,8 +276,6 @@ SPHGI_TEMPLATE void invert_as(int32_t width, const struct sphgi_threshold *thres
     verdict->largest_square = largest_of(largest);
 }
 
-/* scale: what turns a target's sums into normalised moments (MLS: V_i / H^d), NULL: 1; the
- * correction takes the same factor. */
 static void invert(int32_t width, const struct sphgi_threshold *threshold, const void *moments,
                    const void *scale, void *correction, void *lambda_min,
                    struct sphgi_verdict *verdict)
@@ -269,8 +287,6 @@ static void invert(int32_t width, const struct sphgi_threshold *threshold, const
         invert_as(width, threshold, moments, scale, correction, lambda_min, verdict, true);
     else
         invert_as(width, threshold, moments, scale, correction, lambda_min, verdict, false);
-    if (__builtin_expect(verdict->decomposed != 0, 0))
-        invert_open(threshold, moments, scale, width, correction, lambda_min, verdict);
 }
 
 /* Index of x_a x_b in an upper triangle, of x_a x_b x_c among the triples of sum_classic. */

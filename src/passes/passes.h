@@ -231,14 +231,20 @@ struct sphgi_passes {
     void (*reduce)(const void *partial, int32_t sums, void *reduced); /* of `lanes` targets */
 
     /* From here on `width` says for how many targets, a multiple of lanes.
-     * Corrections: sums in, numbers of the table out. lambda_min NULL: not wanted. */
+     * Corrections: sums in, numbers of the table out. scale: what turns a target's sums into
+     * normalised moments (MLS: V_i / H^d), NULL: 1; the correction takes the same factor.
+     * lambda_min NULL: not wanted. invert() leaves the lanes in verdict->decomposed to
+     * decompose(), whose results for a lane do not depend on the others. */
     void (*invert)(int32_t width, const struct sphgi_threshold *threshold, const void *moments,
                    const void *scale, void *correction, void *lambda_min,
                    struct sphgi_verdict *verdict);
+    void (*decompose)(int32_t width, const struct sphgi_threshold *threshold, const void *moments,
+                      const void *scale, void *correction, void *lambda_min,
+                      struct sphgi_verdict *verdict);
     void (*invert_classic)(int32_t width, const struct sphgi_threshold *threshold, double mu2,
                            const void *sums, const void *self, void *coefficients, void *lambda_min,
                            struct sphgi_verdict *verdict);
-    /* A = Q diag(values) Q^T of one group of matrices. */
+    /* A = Q diag(values) Q^T of one group of matrices, values descending, det Q = 1. */
     void (*eigen)(int32_t width, int32_t dimension, const void *matrices, void *values,
                   void *vectors);
 

@@ -68,6 +68,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .clear_partial = clear_partial,
     .reduce = reduce,
     .invert = invert,
+    .decompose = decompose_lanes,
     .invert_classic = invert_classic,
     .eigen = eigen_lanes,
     .apply = apply,

@@ -67,6 +67,15 @@ case $command in
         [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 23 ]
         ! grep -q 'scaling.png' "$work/output" || [ -s "$work/scaling/scaling.png" ]
         ;;
+    solver)
+        measure --matrices 100 --repetitions 1
+        "$checker" "$work/report.json" solver/ ns_per_matrix 0.1 1e6 \
+            solver/3D/f32 deviation 0 1e-5 solver/3D/f64 deviation 0 1e-13 \
+            'solver/3D/f32/100/invert moments/all fall back/baseline' decomposed_percent 100 100 \
+            'solver/3D/f64/100/invert moments/all certified/baseline' decomposed_percent 0 0
+        # both sizes in three dimensions and in two, all but the copies on each instruction set
+        [ "$(grep -cE '^  [23]D, f(32|64), ' "$work/output")" -eq 8 ]
+        ;;
     stability)
         measure --quick --threads 2 --output "$work/stability"
         "$checker" "$work/report.json" stability/ not_finite 0 0 stability/ wrong_ranks 0 0 \
