@@ -120,25 +120,27 @@ static void classic_vectors(const struct sphgi_piece *piece, int32_t dimension, 
 
 /* T = - weight G_ji with j's coefficients in rows (y_j, z_x,j, ...: one row each): the offset seen
  * from j is +x_ij / H, its slope points the other way, and the volume in w is the target's. */
-static void transposed_classic(const struct sphgi_piece *piece, int32_t dimension,
-                               const void *const rows[4], const struct sphgi_scales *scales,
-                               const void *target_volume, const void *density,
-                               enum sphgi_weight kind)
+SPHGI_TEMPLATE void transposed_classic_as(const struct sphgi_piece *piece,
+                                          const void *const rows[4],
+                                          const struct sphgi_scales *scales,
+                                          const real *target_volume, const void *density,
+                                          enum sphgi_weight kind, bool three, bool wide)
 {
-    const int32_t d = dimension;
+    const int32_t d = three ? 3 : 2;
+    const vec y_unit = splat(R(scales->value)), z_unit = splat(R(scales->slope));
     for (int32_t p = 0; p < piece->parts; ++p) {
-        const real volume = target_volume ? ((const real *)target_volume)[piece->lane[p]] : R(1);
-        const vec y_unit = splat(R(scales->value)), z_unit = splat(R(scales->slope));
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            const struct listed list = listed_in(piece, p, k);
-            const vec weight = weight_of(piece, p, k, density, kind);
+        const real volume = target_volume ? target_volume[piece->lane[p]] : R(1);
+        struct listed list = first_listed(piece, p, wide);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
+             k += LANES, list = after(list, LANES)) {
+            const vec weight = weight_of(piece, list, k, density, kind);
             const vec x[3] = {from(piece, SPHGI_X, k), from(piece, SPHGI_Y, k),
-                              d == 3 ? from(piece, SPHGI_Z, k) : splat(R(0))};
+                              three ? from(piece, SPHGI_Z, k) : splat(R(0))};
             vec polynomial[4];
             for (int32_t m = 0; m <= d; ++m) {
                 const struct four c = gather_rows(rows[m], list);
                 polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
-                if (d == 3)
+                if (three)
                     polynomial[m] += c.w * x[2];
             }
             /* Units meet the coefficients first: both may be far from 1, their quotient is not. */
@@ -151,4 +153,19 @@ static void transposed_classic(const struct sphgi_piece *piece, int32_t dimensio
                       slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
         }
     }
+}
+
+static void transposed_classic(const struct sphgi_piece *piece, int32_t dimension,
+                               const void *const rows[4], const struct sphgi_scales *scales,
+                               const void *target_volume, const void *density,
+                               enum sphgi_weight kind)
+{
+    if (dimension == 3 && piece->wide)
+        transposed_classic_as(piece, rows, scales, target_volume, density, kind, true, true);
+    else if (dimension == 3)
+        transposed_classic_as(piece, rows, scales, target_volume, density, kind, true, false);
+    else if (piece->wide)
+        transposed_classic_as(piece, rows, scales, target_volume, density, kind, false, true);
+    else
+        transposed_classic_as(piece, rows, scales, target_volume, density, kind, false, false);
 }

@@ -77,11 +77,10 @@ SPHGI_TEMPLATE void keep_ids(mask inside, struct listed list, void *out)
 #endif
 }
 
-/* The ids of the pairs from k on of part p, which k belongs to. */
-SPHGI_TEMPLATE struct listed listed_in(const struct sphgi_piece *piece, int32_t p, int32_t k)
+/* The ids of part p. wide: what the piece says, known when a loop is compiled. */
+SPHGI_TEMPLATE struct listed first_listed(const struct sphgi_piece *piece, int32_t p, bool wide)
 {
-    const struct listed all = {piece->ids[p], piece->count[p], piece->dummies, piece->wide};
-    return after(all, k - piece->begin[p]);
+    return (struct listed){piece->ids[p], piece->count[p], piece->dummies, wide};
 }
 
 /* As many ids as an instruction takes, eight at most: where vectors are shorter than their type,

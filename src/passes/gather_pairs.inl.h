@@ -26,7 +26,6 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
     const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
     const vec far = splat(R(2 * g->cutoff));
     const struct wraps w = wraps_of(g->period);
-    list.wide = how.wide;
     for (int32_t k = 0; k < padded; k += LANES, at += LANES, list = after(list, LANES)) {
         const struct four row = gather_rows(g->rows, list);
         vec dx = xi - row.x, dy = yi - row.y, dz = zi - row.z;
@@ -76,7 +75,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void
         const int32_t begin = piece->begin[p];
         char *kept = masked + (how.wide ? 4 : 2) * (size_t)begin;
         OUT_NAME(gather_part)
-        (g, x[piece->lane[p]], listed_in(piece, p, begin), piece->begin[p + 1] - begin,
+        (g, x[piece->lane[p]], first_listed(piece, p, how.wide), piece->begin[p + 1] - begin,
          (OUT *)piece->arrays + begin, kept, how);
         if (how.guarded)
             piece->ids[p] = kept;

@@ -74,8 +74,7 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_piece *piece, enum sphgi_vectors
     const int32_t d = three ? 3 : 2;
     for (int32_t p = 0; p < piece->parts; ++p) {
         const int32_t lane = piece->lane[p], begin = piece->begin[p];
-        struct listed list = listed_in(piece, p, begin);
-        list.wide = wide;
+        struct listed list = first_listed(piece, p, wide);
         vec sum[12], a[4];
         for (int32_t c = 0; c < count; ++c)
             a[c] = splat(at_target[c * SPHGI_WIDTH + lane]);
@@ -147,15 +146,17 @@ static void sum_field(const struct sphgi_piece *piece, int32_t dimension,
 }
 
 /* sum A_j PHI_j */
-static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t count,
-                      void *partial)
+SPHGI_TEMPLATE void value_as(const struct sphgi_piece *piece, const real *rows, int32_t count,
+                             void *partial, bool wide)
 {
     for (int32_t p = 0; p < piece->parts; ++p) {
+        struct listed list = first_listed(piece, p, wide);
         vec sum[4];
         for (int32_t c = 0; c < 4; ++c)
             sum[c] = c < count ? begin_sum(piece, p, partial, c) : splat(R(0));
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            const struct four row = gather_rows(rows, listed_in(piece, p, k));
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
+             k += LANES, list = after(list, LANES)) {
+            const struct four row = gather_rows(rows, list);
             const vec phi = from(piece, SPHGI_PHI, k);
             sum[0] += row.x * phi;
             sum[1] += row.y * phi;
@@ -167,25 +168,56 @@ static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t
     }
 }
 
+static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t count,
+                      void *partial)
+{
+    if (piece->wide)
+        value_as(piece, rows, count, partial, true);
+    else
+        value_as(piece, rows, count, partial, false);
+}
+
 /* sum g, or sum rho_j g with the density in the first number of the rows */
+SPHGI_TEMPLATE void vectors_as(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                               const real *rows, void *partial, bool three, bool dense, bool wide)
+{
+    const int32_t d = three ? 3 : 2;
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        struct listed list = first_listed(piece, p, wide);
+        vec sum[3];
+        for (int32_t c = 0; c < d; ++c)
+            sum[c] = begin_sum(piece, p, partial, c);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
+             k += LANES, list = after(list, LANES)) {
+            const vec density = dense ? gather_rows(rows, list).x : splat(R(1));
+            vec g[3];
+            vectors_at(piece, k, vectors, three, g);
+            for (int32_t c = 0; c < d; ++c)
+                sum[c] += density * g[c];
+        }
+        for (int32_t c = 0; c < d; ++c)
+            *partial_of(partial, c, piece->lane[p]) = sum[c];
+    }
+}
+
+SPHGI_TEMPLATE void vectors_in(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                               const real *rows, void *partial, bool three)
+{
+    if (!rows)
+        vectors_as(piece, vectors, NULL, partial, three, false, false);
+    else if (piece->wide)
+        vectors_as(piece, vectors, rows, partial, three, true, true);
+    else
+        vectors_as(piece, vectors, rows, partial, three, true, false);
+}
+
 static void sum_vectors(const struct sphgi_piece *piece, int32_t dimension,
                         enum sphgi_vectors vectors, const void *rows, void *partial)
 {
-    for (int32_t p = 0; p < piece->parts; ++p)
-        for (int32_t c = 0; c < dimension; ++c) {
-            vec sum = begin_sum(piece, p, partial, c);
-            for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-                vec g[3];
-                if (dimension == 3)
-                    vectors_at(piece, k, vectors, true, g);
-                else
-                    vectors_at(piece, k, vectors, false, g);
-                if (rows)
-                    g[c] *= gather_rows(rows, listed_in(piece, p, k)).x;
-                sum += g[c];
-            }
-            *partial_of(partial, c, piece->lane[p]) = sum;
-        }
+    if (dimension == 3)
+        vectors_in(piece, vectors, rows, partial, true);
+    else
+        vectors_in(piece, vectors, rows, partial, false);
 }
 
 /* sum V_j W and sum W: their quotient is the mean volume */
@@ -215,50 +247,72 @@ static void reduce(const void *partial, int32_t sums, void *reduced)
         store((real *)reduced + c * SPHGI_WIDTH, sum_across(in + c * LANES));
 }
 
-/* Minus the gradient seen from j, times a weight: T = weight C_j s_ij x_ij. weight_kind: see
- * enum sphgi_weight. */
-SPHGI_TEMPLATE vec weight_of(const struct sphgi_piece *piece, int32_t p, int32_t k,
+/* What the terms of the sources are multiplied with. */
+SPHGI_TEMPLATE vec weight_of(const struct sphgi_piece *piece, struct listed list, int32_t k,
                              const void *density, enum sphgi_weight kind)
 {
     vec weight = splat(R(1));
     if (kind == SPHGI_WEIGHT_V || kind == SPHGI_WEIGHT_V_PER_DENSITY)
         weight = from(piece, SPHGI_V, k);
     if (kind == SPHGI_WEIGHT_PER_DENSITY || kind == SPHGI_WEIGHT_V_PER_DENSITY) {
-        const vec rho = gather_rows(density, listed_in(piece, p, k)).x;
+        const vec rho = gather_rows(density, list).x;
         /* the dummy row's density is 0, its weight must be, too */
         weight = where(differ(rho, splat(R(0))), weight / rho);
     }
     return weight;
 }
 
+/* Minus the gradient seen from j, times the weight: T = weight C_j s_ij x_ij. plain: C_j = 1 */
+SPHGI_TEMPLATE void transposed_as(const struct sphgi_piece *piece, const void *const rows[4],
+                                  const void *density, enum sphgi_weight kind, bool three,
+                                  bool plain, bool wide)
+{
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        struct listed list = first_listed(piece, p, wide);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
+             k += LANES, list = after(list, LANES)) {
+            const vec weight = weight_of(piece, list, k, density, kind);
+            const vec s = weight * from(piece, SPHGI_S, k);
+            const vec gx = s * from(piece, SPHGI_X, k), gy = s * from(piece, SPHGI_Y, k);
+            vec gz = splat(R(0));
+            if (three)
+                gz = s * from(piece, SPHGI_Z, k);
+            vec t[3] = {gx, gy, gz};
+            if (!plain) {
+                const struct four c = gather_rows(rows[0], list);
+                t[0] = c.x * gx + c.y * gy;
+                t[1] = c.y * gx + (three ? c.w : c.z) * gy;
+                if (three) {
+                    const struct four e = gather_rows(rows[1], list);
+                    t[0] += c.z * gz;
+                    t[1] += e.x * gz;
+                    t[2] = c.z * gx + e.x * gy + e.y * gz;
+                }
+            }
+            for (int a = 0; a < (three ? 3 : 2); ++a)
+                store(array_of(piece->arrays, SPHGI_TX) + a * SPHGI_PIECE + k, t[a]);
+        }
+    }
+}
+
+SPHGI_TEMPLATE void transposed_in(const struct sphgi_piece *piece, const void *const rows[4],
+                                  const void *density, enum sphgi_weight kind, bool three)
+{
+    if (!rows[0] && piece->wide)
+        transposed_as(piece, rows, density, kind, three, true, true);
+    else if (!rows[0])
+        transposed_as(piece, rows, density, kind, three, true, false);
+    else if (piece->wide)
+        transposed_as(piece, rows, density, kind, three, false, true);
+    else
+        transposed_as(piece, rows, density, kind, three, false, false);
+}
+
 static void transposed(const struct sphgi_piece *piece, int32_t dimension,
                        const void *const rows[4], const void *density, enum sphgi_weight kind)
 {
-    const bool three = dimension == 3;
-    for (int32_t p = 0; p < piece->parts; ++p)
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            const struct listed list = listed_in(piece, p, k);
-            const vec weight = weight_of(piece, p, k, density, kind);
-            const vec s = weight * from(piece, SPHGI_S, k);
-            const vec gx = s * from(piece, SPHGI_X, k), gy = s * from(piece, SPHGI_Y, k);
-            real *t = array_of(piece->arrays, SPHGI_TX) + k;
-            if (!rows[0]) { /* plain SPH: C_j = 1 */
-                store(t, gx);
-                store(t + SPHGI_PIECE, gy);
-                if (three)
-                    store(t + 2 * SPHGI_PIECE, s * from(piece, SPHGI_Z, k));
-                continue;
-            }
-            const struct four c = gather_rows(rows[0], list);
-            if (three) {
-                const struct four e = gather_rows(rows[1], list);
-                const vec gz = s * from(piece, SPHGI_Z, k);
-                store(t, c.x * gx + c.y * gy + c.z * gz);
-                store(t + SPHGI_PIECE, c.y * gx + c.w * gy + e.x * gz);
-                store(t + 2 * SPHGI_PIECE, c.z * gx + e.x * gy + e.y * gz);
-            } else {
-                store(t, c.x * gx + c.y * gy);
-                store(t + SPHGI_PIECE, c.y * gx + c.z * gy);
-            }
-        }
+    if (dimension == 3)
+        transposed_in(piece, rows, density, kind, true);
+    else
+        transposed_in(piece, rows, density, kind, false);
 }
