@@ -162,24 +162,58 @@ static void clumps_can_be_summed_without_lists(const test_case *test)
 
 /* ---- More than 2^31 pairs ----------------------------------------------------------------- */
 
-enum { MANY = 47000 }; /* their pairs are 1.03 * 2^31 */
+/* Clumps so small that a block of the grid holds one with its lists, far from each other: pairs in
+ * such numbers are counted fastest there. SPHG_TEST_LONG=1: all of them in one cell. */
+enum { CLUMP = 700, CLUMPS = 4400, MANY = 47000 }; /* 1.002 and 1.03 * 2^31 pairs */
 
-static int many(void)
+typedef struct crowd {
+    int clumps, each;
+} crowd;
+
+static crowd crowd_of_today(void)
 {
-    return long_sanitized && !long_is_asked_for() ? MANY / 5 : MANY;
+    if (long_is_asked_for())
+        return (crowd){1, MANY};
+    return (crowd){TEST_SLOWED ? CLUMPS / 25 : CLUMPS, CLUMP};
+}
+
+static int64_t count_of(crowd all)
+{
+    return (int64_t)all.clumps * all.each;
+}
+
+static int64_t pairs_of(crowd all)
+{
+    return count_of(all) * (all.each - 1);
+}
+
+static fixture_array positions_of(const test_case *test, crowd all)
+{
+    enum { ROW = 64, APART = 16 };
+    const fixture_array one = clump(test, all.each);
+    const fixture_array made = fixture_output(one.type, (int)count_of(all), 3);
+    const float *from = one.data;
+    float *to = made.data;
+    for (int c = 0; c < all.clumps; c++)
+        for (int k = 0; k < all.each; k++, to += 3) {
+            to[0] = from[3 * k] + (float)(c % ROW * APART);
+            to[1] = from[3 * k + 1] + (float)(c / ROW * APART);
+            to[2] = from[3 * k + 2];
+        }
+    return made;
 }
 
 /* Lists of so many do not fit: the request is for all of them, and refused. */
 static void lists_that_do_not_fit_are_a_memory_failure(const test_case *test)
 {
-    const int64_t count = many();
-    const fixture_array positions = clump(test, (int)count);
+    const crowd all = crowd_of_today();
+    const fixture_array positions = positions_of(test, all);
     const sphg_scheme scheme = fixture_scheme(test, 1);
     const sphg_geometry listed = geometry_of(&positions, 0), list_free = geometry_of(&positions, 1);
-    host *own = host_of((size_t)1 << 27);
+    host *own = host_of((size_t)1 << 29);
     assert_int_equal(sphg_neighbors_search(own->context, own->neighbors, &scheme, &listed),
                      SPHG_ERROR_MEMORY);
-    assert_true(own->limit.largest >= (size_t)(2 * count * (count - 1)));
+    assert_true(own->limit.largest >= (size_t)(2 * pairs_of(all)));
     FIXTURE_OK(own->context,
                sphg_neighbors_search(own->context, own->neighbors, &scheme, &list_free));
 }
@@ -187,11 +221,12 @@ static void lists_that_do_not_fit_are_a_memory_failure(const test_case *test)
 /* Offsets alone, without memory for the pairs. */
 static void pairs_beyond_32_bits_are_counted(const test_case *test)
 {
-    const int64_t count = many();
-    const fixture_array positions = clump(test, (int)count);
+    const crowd all = crowd_of_today();
+    const int64_t count = count_of(all);
+    const fixture_array positions = positions_of(test, all);
     const sphg_scheme scheme = fixture_scheme(test, 1);
     const sphg_geometry geometry = geometry_of(&positions, 1);
-    host *own = host_of((size_t)1 << 27);
+    host *own = host_of((size_t)1 << 29);
     int64_t *offsets = test_memory((size_t)(count + 1) * sizeof *offsets);
     sphg_pairs pairs = {.offsets = offsets};
     FIXTURE_OK(own->context,
@@ -199,9 +234,9 @@ static void pairs_beyond_32_bits_are_counted(const test_case *test)
     const sphg_sources sources = {.neighbors = own->neighbors};
     FIXTURE_OK(own->context,
                sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
-    assert_true(pairs.count == count * (count - 1));
+    assert_true(pairs.count == pairs_of(all));
     for (int64_t i = 0; i <= count; i++)
-        TEST_REQUIRE(offsets[i] == i * (count - 1), "offset %lld is %lld", (long long)i,
+        TEST_REQUIRE(offsets[i] == i * (all.each - 1), "offset %lld is %lld", (long long)i,
                      (long long)offsets[i]);
 }
 

@@ -244,7 +244,7 @@ static void results_do_not_depend_on_the_float_environment(const test_case *test
         run_around(&own, &configs[0], environment_of(0), 0, "default"),
         run_around(&own, &configs[0], environment_of(0), .5, "default")};
     was_lost = 0;
-    for (int number = 0; number < ENVIRONMENTS; number += long_sanitized ? 3 : 1)
+    for (int number = 0; number < ENVIRONMENTS; number += TEST_SLOWED ? 3 : 1)
         for (int k = 0; k < 4; k++) {
             const char *where = test_text("environment %d, executor %d", number, k);
             const fixture_array found =

@@ -323,6 +323,37 @@ static void batches_do_not_change_results(const test_case *test)
     }
 }
 
+static void invert(sphg_context *context, const batch *items)
+{
+    const int d = items->dimension, width = d * (d + 1) / 2;
+    const fixture_array moments = packed(items);
+    const fixture_array table = fixture_output(moments.type, items->count, width);
+    const fixture_array rank = fixture_output(SPHG_U8, items->count, 1);
+    const fixture_array lambda = fixture_output(moments.type, items->count, 1);
+    const fixture_array volume = fixture_output(moments.type, items->count, 1);
+    const sphg_scheme scheme = {.dimension = d, .method = SPHG_MLS, .support_radius = 1};
+    const sphg_inversion wanted = {.correction = fixture_view(&table),
+                                   .rank = fixture_view(&rank),
+                                   .lambda_min = fixture_view(&lambda)};
+    memset(volume.data, 0, (size_t)items->count * (items->is_double ? 8 : 4));
+    FIXTURE_OK(context, sphg_invert_moments(context, &scheme, items->count, fixture_view(&moments),
+                                            fixture_view(&volume), &wanted));
+}
+
+/* The arrays of a fixture end at a page that nobody may touch. Groups of lanes end, or do not end,
+ * with the last matrix. */
+static void nothing_behind_the_last_matrix_is_touched(const test_case *test)
+{
+    sphg_context *const contexts[] = {fixture_context_of(1), fixture_context()};
+    batch items = batch_of(test, SPECTRA_indefinite);
+    for (items.count = 1; items.count <= 100; items.count++)
+        for (int k = 0; k < 2; k++) {
+            eigen_of(contexts[k], &items);
+            svd_of(contexts[k], &items);
+            invert(contexts[k], &items);
+        }
+}
+
 /* Values, vectors and matrices inside larger records, the matrices back to front. */
 static void strided_views_hold_matrices_and_factors(const test_case *test)
 {
@@ -369,6 +400,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(singular_values_agree_with_lapack, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
     TEST_ENTRY(bad_matrix_spoils_only_itself, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(batches_do_not_change_results, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(nothing_behind_the_last_matrix_is_touched, TEST_SINGLE_AND_DOUBLE,
+               TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(strided_views_hold_matrices_and_factors, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ONCE(empty_batches_succeed),

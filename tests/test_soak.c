@@ -342,7 +342,7 @@ static void require_flat_memory(const world *own)
             most[2 * k / SAMPLES] = own->resident[k];
     print_message("resident: %ld KiB in the first half at most, %ld KiB in the second\n",
                   most[0] / 1024, most[1] / 1024);
-    TEST_REQUIRE(long_sanitized || most[1] <= most[0] + RSS_GROWTH, "memory grows");
+    TEST_REQUIRE(TEST_SANITIZED || most[1] <= most[0] + RSS_GROWTH, "memory grows");
 }
 
 static world *world_of(const test_case *test)

@@ -245,7 +245,7 @@ static int64_t check_thresholds(ensemble *own, sphg_policy policy, const char *w
 /* A share of the matrices in 2D, and fewer under sanitizers. */
 static int batches_of(const test_case *test)
 {
-    const int all = long_or(10000, long_sanitized ? 21 : 100);
+    const int all = long_or(10000, TEST_SLOWED ? 21 : 100);
     return test->dimension == 3 ? all : (all + 4) / 5;
 }
 

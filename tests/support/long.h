@@ -15,12 +15,6 @@ static inline int long_or(int long_count, int short_count)
     return long_is_asked_for() ? long_count : short_count;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-enum { long_sanitized = 1 };
-#else
-enum { long_sanitized = 0 };
-#endif
-
 /* For reports only: no test asserts a time. */
 static inline double long_seconds(void)
 {

@@ -80,10 +80,14 @@ void test_within(test_tolerance tolerance, double value, const char *where);
             fail_msg(__VA_ARGS__);                                                                 \
     } while (0)
 
+/* Ends the case as skipped. */
+void test_skip(void);
+
 /* printf into a buffer that lives until the case ends: places in messages. */
 const char *test_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Zeroed memory that the runner frees when the case ends, passed or failed. */
+/* Zeroed memory that the runner frees when the case ends, passed or failed. Who reads or writes
+ * behind it ends the case: see guarded.h. Aligned as its size is, to 16 at most. */
 void *test_memory(size_t bytes);
 /* Calls release(object) when the case ends, last registered first. */
 void test_at_end(void (*release)(void *object), void *object);
