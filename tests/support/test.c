@@ -115,14 +115,11 @@ static sphg_isa wanted_isa(void)
     return SPHG_ISA_BEST;
 }
 
+static sphg_isa chosen_isa; /* before any thread may ask */
+
 sphg_isa test_isa(void)
 {
-    static bool known;
-    static sphg_isa isa;
-    if (!known)
-        isa = wanted_isa();
-    known = true;
-    return isa;
+    return chosen_isa;
 }
 
 const char *test_text(const char *format, ...)
@@ -258,6 +255,7 @@ static size_t expand(const test_entry *entry, named_case *cases)
 int test_run(int argc, char **argv, const test_entry *entries, size_t count)
 {
     size_t total = 0, used = 0;
+    chosen_isa = wanted_isa();
     for (size_t e = 0; e < count; e++)
         total += expand(&entries[e], NULL);
     named_case *cases = required(calloc(total + 1, sizeof *cases));
