@@ -79,13 +79,14 @@ run_mutants() {
 # As Clang sees the source, not the machine code: a condition counts twice, taken and not. What is
 # compiled several times, the passes, counts as one: reached if any copy of it is.
 run_coverage() {
-    local profiles=build/coverage/profiles
+    local profiles=build/coverage/profiles status=0
     build_preset coverage -DSPHG_BUILD_TESTS=ON || return 1
     rm -rf "$profiles"
-    LLVM_PROFILE_FILE="$PWD/$profiles/%4m.profraw" ctest --preset coverage -L area -j "$(nproc)" || return 1
-    llvm-profdata merge -o "$profiles/all.profdata" "$profiles"/*.profraw &&
+    LLVM_PROFILE_FILE="$PWD/$profiles/%4m.profraw" ctest --preset coverage -L area -j "$(nproc)" || status=1
+    llvm-profdata merge -failure-mode=all -o "$profiles/all.profdata" "$profiles"/*.profraw &&
         python3 -B tests/checks/coverage.py "$profiles/all.profdata" build/coverage/src/libsphgrad.so \
-            build/coverage/tests/test_* build/coverage/tests/fuzz/fuzz_*
+            build/coverage/tests/test_* build/coverage/tests/fuzz/fuzz_* &&
+        return $status
 }
 
 # GCC's analyser and cppcheck do not follow vector extensions, so only clang-tidy sees the passes.

@@ -7,7 +7,10 @@ BUILD holds the tests, built with a shared library; OUT gets copies of the sourc
 libraries and report.jsonl. A mutant that does not compile, or compiles to the same machine code,
 is replaced by the next. The same seed on the same sources gives the same mutants. --again: only
 those that survived in OUT/report.jsonl, where their line still reads as it did. --resume: goes on
-behind those in OUT/report.jsonl."""
+behind those in OUT/report.jsonl.
+
+Of the passes, one template, only the copy for the baseline is compiled: with the others a mutant takes
+five times as long and shows nothing more. Lines that only others have are tried on all."""
 import argparse
 import collections
 import concurrent.futures
@@ -29,7 +32,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 MEMORY = 6 << 30  # a mutant may ask for anything [byte]
 WALL = 900  # [s]; what counts is the time of the processor
 
-Test = collections.namedtuple("Test", "name command seconds")
+Test = collections.namedtuple("Test", "name command")
 
 
 def run(command, **options):
@@ -48,7 +51,7 @@ def limited(seconds):
 def run_test(command, library, seconds):
     """None if the test passes, else how it failed."""
     environment = dict(os.environ, LD_LIBRARY_PATH=library, OMP_NUM_THREADS="2",
-                       OMP_WAIT_POLICY="passive")
+                       OMP_WAIT_POLICY="passive", SPHG_TEST_ENDS_AT_FAILURE="1")
     try:
         code = run(command, env=environment, cwd=ROOT, preexec_fn=limited(seconds),
                    timeout=WALL).returncode
@@ -59,8 +62,8 @@ def run_test(command, library, seconds):
     return "failed" if code else None
 
 
-def measured_tests(build):
-    """The areas and the replays, the quickest first."""
+def tests_of(build):
+    """The areas and the replays."""
     commands = {os.path.basename(path)[5:]: [path]
                 for path in glob.glob(build + "/tests/test_*") if os.access(path, os.X_OK)}
     for path in glob.glob(build + "/tests/fuzz/fuzz_*"):
@@ -68,52 +71,92 @@ def measured_tests(build):
         corpus = glob.glob("%s/tests/fuzz/corpus/%s/*" % (ROOT, name[5:]))
         if os.access(path, os.X_OK) and corpus:
             commands[name] = [path] + sorted(corpus)
-    tests = []
-    for name, command in sorted(commands.items()):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if run_test(command, build + "/src", 3600):
-            sys.exit("%s fails without any change" % name)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        tests.append(Test(name, command,
-                          after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime))
-    return sorted(tests, key=lambda test: test.seconds)
+    return [Test(*item) for item in sorted(commands.items())]
 
 
-class Tree:
-    """The sources once more, with a build of the library."""
+class Experience:
+    """What each test costs and how often it killed, so that the cheapest kill is tried first."""
 
-    def __init__(self, original, place):
-        self.source, self.build = place + "/source", place + "/build"
-        shutil.rmtree(place, ignore_errors=True)
-        shutil.copytree(original, self.source)
+    def __init__(self, tests, library):
+        self.tests, self.seconds = tests, {}
+        self.tried, self.killed = collections.Counter(), collections.Counter()
+        for test in tests:
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            if run_test(test.command, library, 3600):
+                sys.exit("%s fails without any change" % test.name)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            self.seconds[test.name] = (after.ru_utime + after.ru_stime - before.ru_utime -
+                                       before.ru_stime)
+
+    def limit(self, test):
+        return int(5 + 6 * self.seconds[test.name])
+
+    def learn(self, path, name, killed):
+        for key in (name, (path, name)):
+            self.tried[key] += 1
+            self.killed[key] += killed
+
+    def kills_per_second(self, path, name):
+        """Mutants of the same file weigh most; before there are any, those of all files."""
+        of_all = (self.killed[name] + 1) / (self.tried[name] + 4)
+        of_file = (self.killed[path, name] + 4 * of_all) / (self.tried[path, name] + 4)
+        return of_file / (self.seconds[name] + 0.1)
+
+    def ordered(self, path):
+        return sorted(self.tests, key=lambda test: -self.kills_per_second(path, test.name))
+
+
+class Build:
+    """A build of the library as it was, and what it takes to get back there."""
+
+    def __init__(self, source, place, *options):
+        self.place, self.library, self.kept = place, place + "/src", place + "-kept"
         # -O1: half of the time goes into compiling passes
-        run(["cmake", "-S", self.source, "-B", self.build, "-DCMAKE_BUILD_TYPE=Debug",
-             "-DCMAKE_C_FLAGS_DEBUG=-O1", "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF", "-DSPHG_BUILD_EXAMPLES=OFF",
-             "-DSPHG_INSTALL=OFF"], check=True)
+        run(["cmake", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Debug",
+             "-DCMAKE_C_FLAGS_DEBUG=-O1", "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF",
+             "-DSPHG_BUILD_EXAMPLES=OFF", "-DSPHG_INSTALL=OFF", *options], check=True)
         if not self.compile():
             sys.exit("the library does not build without any change")
         self.original = self.machine_code()
-        self.kept = place + "/kept"
-        shutil.copytree(self.build + "/src", self.kept)
+        shutil.copytree(self.library, self.kept)
 
     def compile(self):
-        return run(["cmake", "--build", self.build]).returncode == 0
+        return run(["cmake", "--build", self.place]).returncode == 0
 
     def machine_code(self):
         digest = hashlib.sha256()
-        for path in sorted(glob.glob(self.build + "/src/**/*.o", recursive=True)):
+        for path in sorted(glob.glob(self.library + "/**/*.o", recursive=True)):
             with open(path, "rb") as file:
                 digest.update(file.read())
         return digest.digest()
+
+    def differs(self):
+        return self.machine_code() != self.original
+
+    def restore(self):
+        """With their old times, so that nothing is compiled again."""
+        shutil.copytree(self.kept, self.library, dirs_exist_ok=True)
+
+
+class Tree:
+    """The sources once more, with two builds of the library: of the baseline alone, and of all."""
+
+    def __init__(self, original, place):
+        self.source = place + "/source"
+        shutil.rmtree(place, ignore_errors=True)
+        shutil.copytree(original, self.source)
+        self.builds = [Build(self.source, place + "/baseline", "-DSPHG_COMPILER_HAS_V3=",
+                             "-DSPHG_COMPILER_HAS_V4="),
+                       Build(self.source, place + "/all")]
 
     def write(self, path, text):
         with open("%s/%s" % (self.source, path), "w") as file:
             file.write(text)
 
     def restore(self, original, path):
-        """With their old times, so that nothing is compiled again."""
         shutil.copy2("%s/%s" % (original, path), "%s/%s" % (self.source, path))
-        shutil.copytree(self.kept, self.build + "/src", dirs_exist_ok=True)
+        for build in self.builds:
+            build.restore()
 
 
 def text_of(original, path):
@@ -121,23 +164,29 @@ def text_of(original, path):
         return file.read()
 
 
-def verdict_of(tree, original, mutant, tests):
+def verdict_of(tree, original, mutant, experience):
     """(how the mutant ended, the test that saw it)."""
     lines = text_of(original, mutant.path).split("\n")
     lines[mutant.line - 1] = mutant.after
     tree.write(mutant.path, "\n".join(lines))
     try:
-        if not tree.compile():
-            return "stillborn", None
-        if tree.machine_code() == tree.original:
-            return "same code", None
-        for test in tests:
-            end = run_test(test.command, tree.build + "/src", int(5 + 6 * test.seconds))
-            if end:
-                return end, test.name
-        return "survived", None
+        for build in tree.builds:
+            if not build.compile():
+                return "stillborn", None
+            if build.differs():
+                return verdict_of_tests(build.library, mutant, experience)
+        return "same code", None
     finally:
         tree.restore(original, mutant.path)
+
+
+def verdict_of_tests(library, mutant, experience):
+    for test in experience.ordered(mutant.path):
+        end = run_test(test.command, library, experience.limit(test))
+        experience.learn(mutant.path, test.name, end is not None)
+        if end:
+            return end, test.name
+    return "survived", None
 
 
 def copied_sources(place):
@@ -185,7 +234,7 @@ def survivors_of(original, report):
     return mutants
 
 
-def hunt(mutants, count, original, trees, tests, log, ends):
+def hunt(mutants, count, original, trees, experience, log, ends):
     """Verdicts until `count` of them say something of the tests; `ends` counts them."""
     free = queue.Queue()
     for tree in trees:
@@ -196,7 +245,7 @@ def hunt(mutants, count, original, trees, tests, log, ends):
             return
         tree = free.get()
         begin = time.time()
-        end, test = verdict_of(tree, original, mutant, tests)
+        end, test = verdict_of(tree, original, mutant, experience)
         free.put(tree)
         ends[end] += 1
         entry = dict(mutant._asdict(), end=end, test=test, seconds=round(time.time() - begin, 1))
@@ -231,10 +280,13 @@ def main():
         options.count, report = len(mutants), options.out + "/again.jsonl"
     done = entries_of(report) if options.resume else []
     mutants = [mutant for mutant in mutants if mutant._asdict() not in map(mutant_in, done)]
-    tests = measured_tests(options.build)
     trees = [Tree(original, "%s/%d" % (options.out, k)) for k in range(options.jobs)]
+    experience = Experience(tests_of(options.build), trees[0].builds[0].library)
+    for entry in done:
+        if entry["test"]:
+            experience.learn(entry["path"], entry["test"], True)
     with open(report, "a" if options.resume else "w") as log:
-        ends = hunt(mutants, options.count, original, trees, tests, log,
+        ends = hunt(mutants, options.count, original, trees, experience, log,
                     collections.Counter(entry["end"] for entry in done))
     valid = sum(ends.values()) - ends["stillborn"] - ends["same code"]
     print("seed %d, %d mutants: %d killed, %d survived (%s)" % (
