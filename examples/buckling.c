@@ -177,7 +177,7 @@ static struct outcome sink(const struct run *run, const struct sph *sph, const i
         write_sheet(run, &sheet.fluid, "late");
     outcome.late_top = highest(&sheet.fluid);
     outcome.reversals = folds.reversals;
-    outcome.iterations = (double)sheet.viscosity.iterations / steps;
+    outcome.iterations = (double)sheet.viscosity.implicit.iterations / steps;
     outcome.pressure_iterations = (double)sheet.pressure.density_iterations / steps;
     sheet_free(&sheet);
     return outcome;

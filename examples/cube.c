@@ -113,7 +113,7 @@ static void spin(const struct run *run, const struct sph *sph, double turns)
     const int32_t steps = (int32_t)(turns / step + 0.5);
     memcpy(start, cube.x, (size_t)cube.count * sizeof *start);
     viscosity.dynamic = gentle * density;
-    viscosity.tolerance = 1e-9;
+    viscosity.implicit.tolerance = 1e-9;
     for (int32_t k = 0; k < steps; k++) {
         run_progress(run, k + 1, steps);
         operators_update_density(&operators, &cube);
@@ -128,7 +128,7 @@ static void spin(const struct run *run, const struct sph *sph, double turns)
     metrics_set(run->metrics, "energy_loss", 1 - after.energy / before.energy);
     metrics_set(run->metrics, "momentum_loss", 1 - after.momentum / before.momentum);
     measure_shape(run, &cube, start);
-    metrics_set(run->metrics, "iterations", (double)viscosity.iterations / steps);
+    metrics_set(run->metrics, "iterations", (double)viscosity.implicit.iterations / steps);
     viscosity_free(&viscosity);
     operators_free(&operators);
     particles_free(&cube);
@@ -148,7 +148,7 @@ static void calm(const struct run *run, const struct sph *sph)
         for (int k = 0; k < 3; k++)
             cube.v[i][k] += 0.01 * random_between(&random, -1, 1);
     viscosity.dynamic = strong * density;
-    viscosity.tolerance = 1e-9;
+    viscosity.implicit.tolerance = 1e-9;
     for (int32_t k = 0; k < 50; k++) {
         const struct state before = state_of(&cube);
         operators_update_density(&operators, &cube);

@@ -155,7 +155,7 @@ static double spin(const struct run *run, const struct sph *sph, bool implicit)
             write_top(run, &top, k / 100);
     }
     if (implicit)
-        metrics_set(run->metrics, "iterations", (double)elasticity.iterations / steps);
+        metrics_set(run->metrics, "iterations", (double)elasticity.implicit.iterations / steps);
     output_close(series);
     elasticity_free(&elasticity);
     particles_free(&top);

@@ -70,12 +70,12 @@ static void machine_init(struct machine *machine, const struct run *run, const s
     machine->pressure.kept = 0.8;
     sort(machine, true);
     machine->elasticity = elasticity_new(sph, &body, young, poisson);
-    machine->elasticity.tolerance = 1e-3;
+    machine->elasticity.implicit.tolerance = 1e-3;
     machine->soap_operators = operators_new(sph, NULL, capacity);
     machine->soap = viscosity_new(&machine->soap_operators, capacity);
     machine->soap.dynamic = soap_viscosity;
     machine->soap.warm = true;
-    machine->soap.tolerance = 1e-2; /* with a warm start the rest follows in the next steps */
+    machine->soap.implicit.tolerance = 1e-2; /* a warm start: what is left follows in later steps */
     machine->water = laplacian_new(sph, &machine->pressure.pairs, capacity);
     machine->water.kinematic = water_viscosity;
     machine->least_volume = INFINITY;
@@ -220,26 +220,34 @@ static int32_t count_escaped(const struct load *load)
     return escaped;
 }
 
+static double each_step(const struct machine *machine, int64_t count)
+{
+    return (double)count / machine->steps;
+}
+
 static void set_outcome(const struct run *run, const struct machine *machine)
 {
-    const double steps = machine->steps;
     const struct load *load = &machine->load;
     metrics_set(run->metrics, "body", load->body);
     metrics_set(run->metrics, "soap", load->soap - load->body);
     metrics_set(run->metrics, "water", load->all.count - load->soap);
     metrics_set(run->metrics, "wall", machine->wall.count);
-    metrics_set(run->metrics, "steps", steps);
+    metrics_set(run->metrics, "steps", machine->steps);
     metrics_set(run->metrics, "turns", machine->angle / whole_turn);
     metrics_set(run->metrics, "escaped", count_escaped(load));
     metrics_set(run->metrics, "mean_compression", machine->worst_compression);
     metrics_set(run->metrics, "fastest", machine->fastest);
     metrics_set(run->metrics, "least_volume_of_body", machine->least_volume);
-    metrics_set(run->metrics, "iterations_soap", (double)machine->soap.iterations / steps);
-    metrics_set(run->metrics, "iterations_water", (double)machine->water.iterations / steps);
-    metrics_set(run->metrics, "iterations_body", (double)machine->elasticity.iterations / steps);
-    metrics_set(run->metrics, "iterations_rate", (double)machine->pressure.rate_iterations / steps);
+    metrics_set(run->metrics, "iterations_soap",
+                each_step(machine, machine->soap.implicit.iterations));
+    metrics_set(run->metrics, "iterations_water",
+                each_step(machine, machine->water.implicit.iterations));
+    metrics_set(run->metrics, "iterations_body",
+                each_step(machine, machine->elasticity.implicit.iterations));
+    metrics_set(run->metrics, "iterations_rate",
+                each_step(machine, machine->pressure.rate_iterations));
     metrics_set(run->metrics, "iterations_density",
-                (double)machine->pressure.density_iterations / steps);
+                each_step(machine, machine->pressure.density_iterations));
 }
 
 /* A full run takes long: what it came to so far. Time, turns, particles, escaped, compression, det
@@ -247,19 +255,18 @@ static void set_outcome(const struct run *run, const struct machine *machine)
  */
 static void write_state(FILE *series, const struct machine *machine)
 {
-    const double steps = machine->steps;
     if (!series)
         return;
     fprintf(series, "%g %g %d %d %g %g %g", machine->time, machine->angle / whole_turn,
             (int)machine->load.all.count, (int)count_escaped(&machine->load),
             machine->worst_compression, machine->least_volume, machine->fastest);
-    fprintf(series, "  %g %g %g %g %g ", (double)machine->soap.iterations / steps,
-            (double)machine->water.iterations / steps,
-            (double)machine->elasticity.iterations / steps,
-            (double)machine->pressure.rate_iterations / steps,
-            (double)machine->pressure.density_iterations / steps);
+    fprintf(series, "  %g %g %g %g %g ", each_step(machine, machine->soap.implicit.iterations),
+            each_step(machine, machine->water.implicit.iterations),
+            each_step(machine, machine->elasticity.implicit.iterations),
+            each_step(machine, machine->pressure.rate_iterations),
+            each_step(machine, machine->pressure.density_iterations));
     for (int k = 0; k < MEASURING; k++)
-        fprintf(series, " %g", 1000 / steps * machine->sph->spent[k]);
+        fprintf(series, " %g", 1000.0 / machine->steps * machine->sph->spent[k]);
     fprintf(series, "\n");
     fflush(series);
 }

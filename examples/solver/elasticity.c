@@ -1,16 +1,13 @@
 #include "elasticity.h"
-#include "conjugate_gradient.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-enum { MOST_ITERATIONS = 500 };
 
 struct elasticity elasticity_new(const struct sph *sph, struct particles *body, double young,
                                  double poisson)
 {
     const int32_t count = body->count;
-    struct elasticity made = {.tolerance = 1e-4,
+    struct elasticity made = {.implicit = implicit_new(1e-4, count),
                               .rest = operators_new(sph, NULL, count),
                               .rotations = rotations_new(count)};
     made.shear = young / (2 * (1 + poisson));
@@ -20,9 +17,6 @@ struct elasticity elasticity_new(const struct sph *sph, struct particles *body, 
     made.rest_gradient = array_new(count, sizeof *made.rest_gradient);
     made.gradient = array_new(count, sizeof *made.gradient);
     made.stress = array_new(count, sizeof *made.stress);
-    made.force = array_new(count, sizeof *made.force);
-    made.right = array_new(count, 3 * sizeof *made.right);
-    made.work = array_new(count, 9 * sizeof *made.work);
     operators_update_density(&made.rest, body);
     operators_jacobian(&made.rest, body->x, made.rest_gradient);
     return made;
@@ -30,6 +24,7 @@ struct elasticity elasticity_new(const struct sph *sph, struct particles *body, 
 
 void elasticity_free(struct elasticity *elasticity)
 {
+    implicit_free(&elasticity->implicit);
     operators_free(&elasticity->rest);
     rotations_free(&elasticity->rotations);
     free(elasticity->deformation);
@@ -37,9 +32,6 @@ void elasticity_free(struct elasticity *elasticity)
     free(elasticity->rest_gradient);
     free(elasticity->gradient);
     free(elasticity->stress);
-    free(elasticity->force);
-    free(elasticity->right);
-    free(elasticity->work);
 }
 
 void elasticity_rotate(struct elasticity *elasticity, vector *x)
@@ -107,35 +99,20 @@ void elasticity_rate(struct elasticity *elasticity, vector *u, vector *force)
     force_of_stress(elasticity, force);
 }
 
-/* (mass - dt^2 K) v */
-static void apply(void *data, double *v, double *result)
+static void find_rate(void *data, vector *u, vector *force)
 {
-    struct elasticity *elasticity = data;
-    const double squared = elasticity->dt * elasticity->dt;
-    elasticity_rate(elasticity, (vector *)v, elasticity->force);
-    for (int32_t i = 0; i < elasticity->rest.count; i++)
-        for (int32_t k = 0; k < 3; k++)
-            result[3 * i + k] =
-                elasticity->mass[i] * v[3 * i + k] - squared * elasticity->force[i][k];
+    elasticity_rate(data, u, force);
 }
 
 void elasticity_solve(struct elasticity *elasticity, struct particles *body, double dt)
 {
-    const struct conjugate_gradient system = {.apply = apply,
-                                              .data = elasticity,
-                                              .count = 3 * body->count,
-                                              .tolerance = elasticity->tolerance,
-                                              .most_iterations = MOST_ITERATIONS,
-                                              .work = elasticity->work};
-    elasticity->dt = dt;
-    elasticity->mass = body->mass;
+    struct implicit *implicit = &elasticity->implicit;
     elasticity_rotate(elasticity, body->x);
-    elasticity_force(elasticity, elasticity->force);
+    elasticity_force(elasticity, implicit->force);
+    implicit_begin(implicit, body);
     for (int32_t i = 0; i < body->count; i++)
-        for (int32_t k = 0; k < 3; k++)
-            elasticity->right[3 * i + k] =
-                body->mass[i] * body->v[i][k] + dt * elasticity->force[i][k];
-    elasticity->iterations += conjugate_gradient(&system, elasticity->right, body->v[0]);
+        add_scaled(implicit->momentum[i], dt, implicit->force[i]);
+    implicit_solve(implicit, body, dt * dt, find_rate, elasticity);
 }
 
 double elasticity_least_volume(const struct elasticity *elasticity)

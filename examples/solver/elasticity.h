@@ -2,23 +2,20 @@
  * paper's Eqs. (51) to (53), the last with the volumes that make it a force). */
 #ifndef SOLVER_ELASTICITY_H
 #define SOLVER_ELASTICITY_H
+#include "implicit.h"
 #include "operators.h"
 #include "rotation.h"
 
 struct elasticity {
-    double shear, lame; /* mu, lambda [Pa] */
-    double tolerance;   /* of the linear system: 1e-4 */
-    int64_t iterations;
-    struct operators rest; /* never built again */
-    tensor *deformation;   /* F */
-    tensor *rotation;      /* R */
+    double shear, lame;       /* mu, lambda [Pa] */
+    struct implicit implicit; /* tolerance: 1e-4 */
+    struct operators rest;    /* never built again */
+    tensor *deformation;      /* F */
+    tensor *rotation;         /* R */
     struct rotations rotations;
 
     /* Private */
-    double dt, *mass;
     tensor *rest_gradient, *gradient, *stress;
-    vector *force;
-    double *right, *work;
 };
 
 /* body: as it stands at rest; its densities are summed on the way. */

@@ -4,22 +4,18 @@
  * linear and angular momentum, and the system is symmetric. */
 #ifndef SOLVER_LAPLACIAN_H
 #define SOLVER_LAPLACIAN_H
+#include "implicit.h"
 #include "pairs.h"
-#include "particles.h"
 
 struct laplacian {
-    double kinematic; /* nu [m^2/s] */
-    double tolerance; /* of the linear system: 1e-3 */
-    int64_t iterations;
+    double kinematic;         /* nu [m^2/s] */
+    struct implicit implicit; /* tolerance: 1e-3 */
 
     /* Private */
     const struct sph *sph;
     const struct pairs *pairs;
     const struct particles *all;
     int32_t first; /* the fluid is all particles from here on */
-    double dt;
-    vector *force;
-    double *right, *work;
 };
 
 /* pairs: of all particles, with volumes at rest. */

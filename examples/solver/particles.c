@@ -72,11 +72,11 @@ void particles_repeat_change(struct particles *particles)
         add_scaled(particles->v[i], 1, particles->change[i]);
 }
 
-void particles_note_change(struct particles *particles, const double *momentum)
+void particles_note_change(struct particles *particles, vector *momentum)
 {
     for (int32_t i = 0; i < particles->count; i++)
         for (int k = 0; k < 3; k++)
-            particles->change[i][k] = particles->v[i][k] - momentum[3 * i + k] / particles->mass[i];
+            particles->change[i][k] = particles->v[i][k] - momentum[i][k] / particles->mass[i];
 }
 
 double particles_mass(const struct particles *particles)

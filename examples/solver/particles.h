@@ -34,7 +34,7 @@ struct particles particles_block(const int32_t sides[3], double spacing, double 
 void particles_repeat_change(struct particles *particles);
 
 /* ... and after it. */
-void particles_note_change(struct particles *particles, const double *momentum);
+void particles_note_change(struct particles *particles, vector *momentum);
 
 double particles_mass(const struct particles *particles);
 void particles_momentum(const struct particles *particles, double *momentum);

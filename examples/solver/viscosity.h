@@ -1,6 +1,7 @@
 /* Viscous forces of a fluid that is very viscous. */
 #ifndef SOLVER_VISCOSITY_H
 #define SOLVER_VISCOSITY_H
+#include "implicit.h"
 #include "operators.h"
 
 /* Implicit, of the strain rate E = (grad v + grad v^T) / 2 as in Takahashi et al. 2015
@@ -8,18 +9,15 @@
  * two agree where densities do, and only this one makes a symmetric system, loses no angular
  * momentum and never gains energy. */
 struct viscosity {
-    double dynamic;   /* mu [Pa s], in 2D [Pa s m] */
-    double tolerance; /* of the linear system: 1e-3 for the eye, 1e-9 to measure */
+    double dynamic;           /* mu [Pa s], in 2D [Pa s m] */
+    struct implicit implicit; /* tolerance: 1e-3 for the eye, 1e-9 to measure */
     bool warm; /* starts with the last change of v: fewer iterations, but angular momentum is then
                   kept to the tolerance only */
-    int64_t iterations;
 
     /* Private */
     const struct operators *operators;
-    double dt, *mass;
     tensor *jacobian;
-    double *stress, *right, *work;
-    vector *force;
+    double *stress;
 };
 
 struct viscosity viscosity_new(const struct operators *operators, int32_t capacity);
