@@ -141,12 +141,6 @@ static void write_sheet(const struct run *run, const struct particles *fluid, co
     output_close(table);
 }
 
-static void write_frame(const struct run *run, const struct particles *fluid, int32_t frame)
-{
-    const struct output_field fields[] = {{"velocity", fluid->v[0], 3}, {0}};
-    output_particles(run, frame, fluid->count, fluid->x, fields);
-}
-
 struct outcome {
     double amplitude, early_top, late_top, iterations, pressure_iterations;
     int32_t reversals;
@@ -171,7 +165,7 @@ static struct outcome sink(const struct run *run, const struct sph *sph, const i
                 write_sheet(run, &sheet.fluid, "early");
         }
         if (kept && k % 25 == 0)
-            write_frame(run, &sheet.fluid, k / 25);
+            output_state(run, k / 25, &sheet.fluid);
     }
     if (kept)
         write_sheet(run, &sheet.fluid, "late");
@@ -224,20 +218,23 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
     static const char *const labels[] = {"early", "late"};
-    static const double times[] = {1.5, 2.1};
+    const double times[] = {early, late};
     FILE *script = picture->script;
-    picture_begin(picture, 1300, 560, 1, 4);
-    fprintf(script, "set size ratio -1\nset cbrange [0:4]\nset xrange [-0.85:1.05]\n"
-                    "set yrange [0:2.5]\nset xtics 0.5\nunset colorbox\nset xlabel 'x [m]'\n");
+    picture_begin(picture, 1300, 520, 1, 4);
+    fprintf(script,
+            "set size ratio -1\nset cbrange [0:4]\nset xrange [-0.85:1.05]\n"
+            "set yrange [0:2.5]\nset xtics 0.5\nset xlabel 'x [m]'\nset ylabel 'y [m]'\n"
+            "set cblabel 'speed [m/s]'\nset cbtics 1\nset bmargin 9\n"
+            "set colorbox horizontal user origin graph 0, graph -0.36 size graph 1, 0.03\n");
     for (int t = 0; t < 2; t++)
         for (int k = 0; k < 2; k++)
             fprintf(script,
-                    "set title '%s: %g s%s'\n"
+                    "set title '%s, %g s'\n"
                     "plot 'buckling_%s_%s.dat' using 1:2:(0.025):3 with circles lc palette\n",
-                    methods[k], times[t], t || k ? "" : " (bright: 4 m/s)", methods[k], labels[t]);
+                    picture->titles[k], times[t], picture->methods[k], labels[t]);
 }
 
 int main(int argc, char **argv)

@@ -90,16 +90,8 @@ static void measure_shape(const struct run *run, const struct particles *cube, v
 static void write_cube(const struct run *run, const struct particles *cube, int32_t frame)
 {
     static const double eye[3] = {1, -1.6, 2.2};
-    double *speed = array_new(cube->count, sizeof *speed);
-    FILE *table = output_open(run, "cube");
-    for (int32_t i = 0; i < cube->count; i++)
-        speed[i] = sqrt(dot(cube->v[i], cube->v[i]));
-    if (table)
-        picture_project(table, eye, cube->count, cube->x, speed);
-    output_close(table);
-    const struct output_field fields[] = {{"velocity", cube->v[0], 3}, {0}};
-    output_particles(run, frame, cube->count, cube->x, fields);
-    free(speed);
+    output_speeds(run, "cube", eye, cube);
+    output_state(run, frame, cube);
 }
 
 /* Turns the cube and measures what is left. */
@@ -173,19 +165,12 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
-    FILE *script = picture->script;
     picture_begin(picture, 1000, 520, 1, 2);
-    fprintf(script, "set size ratio -1\nset cbrange [0:2.2]\nunset xtics\nunset ytics\n"
-                    "unset border\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
-                    "set cblabel 'speed [m/s]'\n");
-    for (int k = 0; k < 2; k++)
-        fprintf(script,
-                "set title '%s: the cube at the end'\n"
-                "plot 'cube_%s_cube.dat' using 1:2:(0.025):3 with circles lc palette "
-                "fillstyle solid border lc rgb '#333333'\n",
-                methods[k], methods[k]);
+    fprintf(picture->script, "set cbrange [0:2.2]\nset cblabel 'speed [m/s]'\n");
+    picture_views(picture, "cube", 0.5 * spacing,
+                  picture->full ? "the cube after ten turns" : "the cube after two turns");
 }
 
 int main(int argc, char **argv)

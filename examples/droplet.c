@@ -132,7 +132,6 @@ static void write_drop(const struct run *run, const struct particles *fluid)
     double *depth = array_new(fluid->count, sizeof *depth);
     const double radius = cbrt(fluid->count * fluid->rest_volume * 3 / (4 * 3.141592653589793));
     vector centre, velocity;
-    FILE *table = output_open(run, "drop");
     find_centre(fluid, centre, velocity);
     for (int32_t i = 0; i < fluid->count; i++) {
         vector relative = {0};
@@ -140,17 +139,8 @@ static void write_drop(const struct run *run, const struct particles *fluid)
         add_scaled(relative, -1, centre);
         depth[i] = sqrt(dot(relative, relative)) / radius;
     }
-    if (table)
-        picture_project(table, eye, fluid->count, fluid->x, depth);
-    output_close(table);
+    output_view(run, "drop", eye, fluid->count, fluid->x, depth);
     free(depth);
-}
-
-static void write_frame(const struct run *run, const struct particles *fluid, int32_t frame)
-{
-    const struct output_field fields[] = {
-        {"velocity", fluid->v[0], 3}, {"density", fluid->density, 1}, {0}};
-    output_particles(run, frame, fluid->count, fluid->x, fields);
 }
 
 enum kept { KEEPS_FILES, KEEPS_NOTHING };
@@ -172,7 +162,7 @@ static struct roundness form(const struct run *run, const struct sph *sph, doubl
         if (series && k % 10 == 0)
             fprintf(series, "%g %g\n", step * k, measure(&drop.fluid).variation);
         if (series && k % 50 == 0)
-            write_frame(run, &drop.fluid, k / 50);
+            output_state(run, k / 50, &drop.fluid);
     }
     const struct roundness found = measure(&drop.fluid);
     if (kept == KEEPS_FILES) {
@@ -205,26 +195,15 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
-    FILE *script = picture->script;
     picture_begin(picture, 1300, 440, 1, 3);
-    fprintf(script, "set size ratio -1\nset cbrange [0.7:1.3]\nunset xtics\nunset ytics\n"
-                    "unset border\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n"
-                    "set cblabel 'distance from the centre / radius of a ball'\n");
-    for (int k = 0; k < 2; k++)
-        fprintf(script,
-                "set title '%s: what was a cube'\n"
-                "plot 'droplet_%s_drop.dat' using 1:2:(0.025):3 with circles lc palette "
-                "fillstyle solid border lc rgb '#333333'\n",
-                methods[k], methods[k]);
-    fprintf(script,
-            "set size noratio\nset xtics\nset ytics\nset border\nset offsets 0, 0, 0, 0\n"
-            "set key top right\nset title 'how round'\nset xlabel 'time [s]'\n"
-            "set ylabel 'variation of the extent'\nset yrange [0:0.11]\n"
-            "plot 'droplet_%s_roundness.dat' with lines lw 2 lc rgb '#440154' title '%s', "
-            "'droplet_%s_roundness.dat' with lines lw 2 lc rgb '#35b779' title '%s'\n",
-            methods[0], methods[0], methods[1], methods[1]);
+    fprintf(picture->script, "set cbrange [0.7:1.3]\n"
+                             "set cblabel 'distance from the centre / radius of a ball'\n");
+    picture_views(picture, "drop", 0.5 * spacing, "what was a cube");
+    fprintf(picture->script, "set key top right\nset title 'how round'\n"
+                             "set ylabel 'variation of the extent'\nset yrange [0:0.11]\n");
+    picture_series(picture, "roundness");
 }
 
 int main(int argc, char **argv)

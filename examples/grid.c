@@ -131,12 +131,6 @@ static void measure_shape(const struct run *run, const struct frame *frame,
     particles_free(&start);
 }
 
-static void write_particles(const struct run *run, int32_t frame, const struct particles *grid)
-{
-    const struct output_field fields[] = {{"velocity", grid->v[0], 3}, {NULL, NULL, 0}};
-    output_particles(run, frame, grid->count, grid->x, fields);
-}
-
 static void simulate(const struct run *run)
 {
     const struct frame frame = inclined_frame();
@@ -162,7 +156,7 @@ static void simulate(const struct run *run)
         if (step * k > settled)
             watch_heights(&frame, &grid, &heights);
         if (k % 100 == 0)
-            write_particles(run, k / 100, &grid);
+            output_state(run, k / 100, &grid);
     }
     metrics_set(run->metrics, "wall_particles", wall.count);
     measure_shape(run, &frame, &grid, steps);
@@ -176,7 +170,7 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
     picture_begin(picture, 1100, 560, 1, 2);
@@ -188,7 +182,7 @@ static void draw(const struct picture *picture, const char *const methods[2])
         fprintf(script,
                 "set title '%s: the grid at the end of its slide, from above'\n"
                 "plot 'grid_%s_places.dat' using 1:2:3 with points pt 7 ps 0.8 lc palette\n",
-                methods[k], methods[k]);
+                picture->titles[k], picture->methods[k]);
 }
 
 int main(int argc, char **argv)

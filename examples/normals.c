@@ -229,7 +229,7 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
     picture_begin(picture, 1100, 560, 1, 2);
@@ -244,7 +244,7 @@ static void draw(const struct picture *picture, const char *const methods[2])
                 "'normals_%s_normals.dat' using 1:2:($3*0.15):($4*0.15):5 "
                 "with vectors filled head lw 1.5 lc palette, "
                 "'' using 1:2:5 with points pt 7 ps 0.6 lc palette\n",
-                methods[k], methods[k], methods[k]);
+                picture->titles[k], picture->methods[k], picture->methods[k]);
 }
 
 int main(int argc, char **argv)

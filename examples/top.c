@@ -108,16 +108,8 @@ static void rigid_rotation(const struct run *run, const struct sph *sph)
 static void write_top(const struct run *run, const struct particles *top, int32_t frame)
 {
     static const double eye[3] = {1, -2, 1.2};
-    double *speed = array_new(top->count, sizeof *speed);
-    FILE *table = output_open(run, "top");
-    for (int32_t i = 0; i < top->count; i++)
-        speed[i] = sqrt(dot(top->v[i], top->v[i]));
-    if (table)
-        picture_project(table, eye, top->count, top->x, speed);
-    output_close(table);
-    const struct output_field fields[] = {{"velocity", top->v[0], 3}, {0}};
-    output_particles(run, frame, top->count, top->x, fields);
-    free(speed);
+    output_speeds(run, "top", eye, top);
+    output_state(run, frame, top);
 }
 
 static void step_explicitly(struct elasticity *elasticity, struct particles *top, vector *force,
@@ -269,26 +261,14 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
-    FILE *script = picture->script;
     picture_begin(picture, 1300, 460, 1, 3);
-    fprintf(script, "set size ratio -1\nset cbrange [0:2.8]\nunset xtics\nunset ytics\n"
-                    "unset border\nset offsets graph 0.05, graph 0.05, graph 0.1, graph 0.1\n"
-                    "set cblabel 'speed [m/s]'\n");
-    for (int k = 0; k < 2; k++)
-        fprintf(script,
-                "set title '%s: after the time of five turns'\n"
-                "plot 'top_%s_top.dat' using 1:2:(%g):3 with circles lc palette "
-                "fillstyle solid border lc rgb '#333333'\n",
-                methods[k], methods[k], 0.5 * spacing_of(picture->full));
-    fprintf(script,
-            "set size noratio\nset xtics\nset ytics\nset border\nset offsets 0, 0, 0, 0\n"
-            "set key bottom left\nset title 'implicit steps'\nset xlabel 'time [s]'\n"
-            "set ylabel 'angular momentum / initial'\nset yrange [0:1.05]\n"
-            "plot 'top_%s_momentum.dat' with lines lw 2 lc rgb '#440154' title '%s', "
-            "'top_%s_momentum.dat' with lines lw 2 lc rgb '#35b779' title '%s'\n",
-            methods[0], methods[0], methods[1], methods[1]);
+    fprintf(picture->script, "set cbrange [0:2.8]\nset cblabel 'speed [m/s]'\n");
+    picture_views(picture, "top", 0.5 * spacing_of(picture->full), "after the time of five turns");
+    fprintf(picture->script, "set key bottom left\nset title 'implicit steps'\n"
+                             "set ylabel 'angular momentum / initial'\nset yrange [0:1.05]\n");
+    picture_series(picture, "momentum");
 }
 
 int main(int argc, char **argv)

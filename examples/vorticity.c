@@ -207,11 +207,11 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
     picture_begin(picture, 1000, 520, 1, 2);
-    fprintf(script, "set size ratio -1\nset cbrange [0.3:1]\n"
+    fprintf(script, "set size ratio -1\nset cbrange [0.4:1.15]\n"
                     "set xrange [-0.33:0.33]\nset yrange [-0.33:0.33]\n"
                     "set cblabel 'spin / angular velocity'\n"
                     "set xlabel 'x [m]'\nset ylabel 'y [m]'\n");
@@ -219,7 +219,7 @@ static void draw(const struct picture *picture, const char *const methods[2])
         fprintf(script,
                 "set title '%s: spin in a rigid rotation, middle layer'\n"
                 "plot 'vorticity_%s_spin.dat' using 1:2:(0.025):3 with circles lc palette\n",
-                methods[k], methods[k]);
+                picture->titles[k], picture->methods[k]);
 }
 
 int main(int argc, char **argv)

@@ -47,6 +47,12 @@ static double spacing_of(bool full)
     return full ? 0.0105 : 0.028;
 }
 
+/* Full: the drum turns twice. */
+static double duration_of(bool full)
+{
+    return full ? 3.7 : 1.2;
+}
+
 static void sort(struct machine *machine, bool with_body)
 {
     const struct particles *all = &machine->load.all;
@@ -161,7 +167,6 @@ static void draw_machine(const struct run *run, const struct load *load, const d
     static const double eye[3] = {0.25, -1, 0.15};
     double *colour = array_new(load->all.count, sizeof *colour);
     vector *upright = array_new(load->all.count, sizeof *upright);
-    FILE *table = output_open(run, "drum");
     int32_t shown = 0;
     for (int32_t i = 0; i < load->all.count; i++) {
         const double *x = load->all.x[i];
@@ -172,8 +177,7 @@ static void draw_machine(const struct run *run, const struct load *load, const d
         upright[shown][1] = -x[2];
         upright[shown++][2] = x[1];
     }
-    picture_project(table, eye, shown, upright, colour);
-    output_close(table);
+    output_view(run, "drum", eye, shown, upright, colour);
     free(colour);
     free(upright);
 }
@@ -273,7 +277,7 @@ static void write_state(FILE *series, const struct machine *machine)
 
 static void simulate(const struct run *run)
 {
-    const double duration = run->options->full ? 3.7 : 1.2, apart = 0.05;
+    const double duration = duration_of(run->options->full), apart = 0.05;
     struct sph sph =
         run_open(run, 3, 2 * spacing_of(run->options->full), run->options->full ? 70000 : 3000);
     struct machine machine;
@@ -299,24 +303,28 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
-static void draw(const struct picture *picture, const char *const methods[2])
+static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
-    picture_begin(picture, 1100, 560, 1, 2);
+    picture_begin(picture, 1100, 600, 1, 2);
     fprintf(script,
             "set size ratio -1\nset cbrange [0:2]\nunset xtics\nunset ytics\n"
             "unset border\nunset colorbox\nset xrange [-0.45:0.45]\n"
             "set yrange [-0.45:0.45]\nset object 1 circle at 0,0 size 0.4 "
             "fillstyle empty border lc rgb '#888888'\n"
             "set palette defined (0 '#d55e00', 1 '#f0e442', 2 '#56b4e9')\n"
+            "set key below horizontal maxrows 1 samplen 1 width -3\n"
             "radius = %g\n",
             0.5 * spacing_of(picture->full));
     for (int k = 0; k < 2; k++)
         fprintf(script,
-                "set title '%s: bunny (red), soap (yellow), water (blue), front cut away'\n"
+                "set title '%s: after %g s, fluids in front cut away'\n"
                 "plot 'washing_machine_%s_drum.dat' using 1:2:(radius):3 with circles lc palette "
-                "fillstyle solid border lc rgb '#333333'\n",
-                methods[k], methods[k]);
+                "fillstyle solid border lc rgb '#333333' notitle, "
+                "NaN with points pt 7 ps 1.5 lc rgb '#d55e00' title 'elastic bunny', "
+                "NaN with points pt 7 ps 1.5 lc rgb '#f0e442' title 'soap', "
+                "NaN with points pt 7 ps 1.5 lc rgb '#56b4e9' title 'water'\n",
+                picture->titles[k], duration_of(picture->full), picture->methods[k]);
 }
 
 int main(int argc, char **argv)

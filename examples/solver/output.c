@@ -2,6 +2,7 @@
 #include "vtkhdf.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,4 +61,29 @@ void output_particles(const struct run *run, int32_t frame, int32_t count, vecto
         fprintf(stderr, "cannot write %s\n", path);
         exit(EXIT_FAILURE);
     }
+}
+
+void output_state(const struct run *run, int32_t frame, const struct particles *particles)
+{
+    const struct output_field fields[] = {
+        {"velocity", particles->v[0], 3}, {"density", particles->density, 1}, {0}};
+    output_particles(run, frame, particles->count, particles->x, fields);
+}
+
+void output_view(const struct run *run, const char *label, const double eye[3], int32_t count,
+                 vector *x, const double *colour)
+{
+    FILE *table = output_open(run, label);
+    picture_project(table, eye, count, x, colour);
+    output_close(table);
+}
+
+void output_speeds(const struct run *run, const char *label, const double eye[3],
+                   const struct particles *particles)
+{
+    double *speed = array_new(particles->count, sizeof *speed);
+    for (int32_t i = 0; i < particles->count; i++)
+        speed[i] = sqrt(dot(particles->v[i], particles->v[i]));
+    output_view(run, label, eye, particles->count, particles->x, speed);
+    free(speed);
 }

@@ -2,6 +2,7 @@
  * SCENE_METHOD_0001.vtkhdf for ParaView. Without a directory all calls do nothing. */
 #ifndef SOLVER_OUTPUT_H
 #define SOLVER_OUTPUT_H
+#include "particles.h"
 #include "scene.h"
 
 #include <stdio.h>
@@ -23,4 +24,15 @@ struct output_field {
 /* Particles as the numbered file `frame`; the table of fields ends with a name of NULL. */
 void output_particles(const struct run *run, int32_t frame, int32_t count, vector *x,
                       const struct output_field *fields);
+
+/* The same with velocity and density as fields. */
+void output_state(const struct run *run, int32_t frame, const struct particles *particles);
+
+/* A table for picture_views: particles as seen from `eye`, and a colour for each. */
+void output_view(const struct run *run, const char *label, const double eye[3], int32_t count,
+                 vector *x, const double *colour);
+
+/* That of the particles' speeds. */
+void output_speeds(const struct run *run, const char *label, const double eye[3],
+                   const struct particles *particles);
 #endif

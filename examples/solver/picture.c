@@ -13,14 +13,19 @@ enum {
     STATUS_NO_PROGRAM = 127 /* as in the shell */
 };
 
-struct picture picture_open(const char *directory, const char *name, bool full)
+struct picture picture_open(const struct options *options)
 {
+    static const char *const titles[METHOD_COUNT] = {"plain SPH", "KGC", "MLS", "RKPM"};
     char path[4096];
-    struct picture picture = {directory, name, full, NULL};
-    if (snprintf(path, sizeof path, "%s/%s.gp", directory, name) < (int)sizeof path)
+    struct picture picture = {.directory = options->output,
+                              .name = options->scene,
+                              .methods = {method_names[SPH], method_names[options->method]},
+                              .titles = {titles[SPH], titles[options->method]},
+                              .full = options->full};
+    if (snprintf(path, sizeof path, "%s/%s.gp", picture.directory, picture.name) < (int)sizeof path)
         picture.script = fopen(path, "w");
     if (!picture.script) {
-        fprintf(stderr, "cannot write %s/%s.gp: %s\n", directory, name, strerror(errno));
+        fprintf(stderr, "cannot write %s: %s\n", path, strerror(errno));
         exit(EXIT_FAILURE);
     }
     return picture;
@@ -38,6 +43,30 @@ void picture_begin(const struct picture *picture, int width, int height, int row
             "unset key\n"
             "set multiplot layout %d,%d\n",
             width, height, picture->name, rows, columns);
+}
+
+void picture_views(const struct picture *picture, const char *label, double radius,
+                   const char *title)
+{
+    fprintf(picture->script, "set size ratio -1\nunset xtics\nunset ytics\nunset border\n"
+                             "set offsets graph 0.05, graph 0.05, graph 0.1, graph 0.1\n");
+    for (int k = 0; k < 2; k++)
+        fprintf(picture->script,
+                "set title '%s: %s'\n"
+                "plot '%s_%s_%s.dat' using 1:2:(%g):3 with circles lc palette "
+                "fillstyle solid border lc rgb '#333333'\n",
+                picture->titles[k], title, picture->name, picture->methods[k], label, radius);
+}
+
+void picture_series(const struct picture *picture, const char *label)
+{
+    static const char *const colours[2] = {"#440154", "#35b779"};
+    fprintf(picture->script, "set size noratio\nset xtics\nset ytics\nset border\n"
+                             "set offsets 0, 0, 0, 0\nset xlabel 'time [s]'\nplot ");
+    for (int k = 0; k < 2; k++)
+        fprintf(picture->script, "'%s_%s_%s.dat' with lines lw 2 lc rgb '%s' title '%s'%s",
+                picture->name, picture->methods[k], label, colours[k], picture->titles[k],
+                k ? "\n" : ", ");
 }
 
 static void become_gnuplot(const struct picture *picture)

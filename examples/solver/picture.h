@@ -1,19 +1,29 @@
-/* Pictures by gnuplot: SCENE.gp and SCENE.png beside the tables of the runs. */
+/* Pictures by gnuplot: SCENE.gp and SCENE.png beside the tables of the runs, plain SPH to the left
+ * of the method that ran beside it. */
 #ifndef SOLVER_PICTURE_H
 #define SOLVER_PICTURE_H
-#include <stdbool.h>
+#include "options.h"
+
 #include <stdio.h>
 
 struct picture {
     const char *directory, *name;
-    bool full;    /* the runs had their full size */
-    FILE *script; /* gnuplot commands go here */
+    const char *methods[2], *titles[2]; /* as files are named, and to be read */
+    bool full;                          /* the runs had their full size */
+    FILE *script;                       /* gnuplot commands go here */
 };
 
-struct picture picture_open(const char *directory, const char *name, bool full);
+struct picture picture_open(const struct options *options);
 
 /* width x height [pixel], and panels side by side. */
 void picture_begin(const struct picture *picture, int width, int height, int rows, int columns);
+
+/* Two panels of particles as output_view wrote them, with axes that mean nothing left away. */
+void picture_views(const struct picture *picture, const char *label, double radius,
+                   const char *title);
+
+/* A panel with a line for each method, from tables of time and value. */
+void picture_series(const struct picture *picture, const char *label);
 
 /* Runs gnuplot. If that is missing, says so and leaves the script. */
 void picture_close(const struct picture *picture);

@@ -45,11 +45,10 @@ static void simulate(const struct scene *scene, const struct options *options, e
 
 static void draw(const struct scene *scene, const struct options *options)
 {
-    const char *const methods[2] = {method_names[SPH], method_names[options->method]};
-    if (!options->output || options->alone || !scene->draw)
+    if (!options->output || options->alone || options->method == SPH)
         return;
-    const struct picture picture = picture_open(options->output, scene->name, options->full);
-    scene->draw(&picture, methods);
+    const struct picture picture = picture_open(options);
+    scene->draw(&picture);
     picture_close(&picture);
 }
 

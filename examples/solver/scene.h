@@ -15,7 +15,7 @@ struct run {
 struct scene {
     const char *name, *about;
     void (*simulate)(const struct run *run); /* sets metrics, writes tables and particles */
-    void (*draw)(const struct picture *picture, const char *const methods[2]); /* or NULL */
+    void (*draw)(const struct picture *picture);
     const struct gate *gates;
     bool checks_all; /* --check runs all methods, else SPH and KGC */
 };
