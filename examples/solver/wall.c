@@ -137,13 +137,12 @@ static double sum(const struct sph *sph, const sphg_scheme *scheme, struct conta
 static void weigh_matrices(const struct sph *sph, const sphg_scheme *scheme,
                            struct contact *contact, const sphg_sources *sources)
 {
-    const int32_t between = 8;
-    if (scheme->method == SPHG_PLAIN || contact->updates++ % between)
+    if (scheme->method == SPHG_PLAIN || contact->updates++ % UPDATES_PER_WEIGHING)
         return;
     const double given = sum(sph, scheme, contact, sources, true);
     const double fused = sum(sph, scheme, contact, sources, false);
-    sph->spent[WALL_MATRICES] += between * (fused - given);
-    sph->spent[PRESSURE] -= between * (fused - given);
+    sph->spent[WALL_MATRICES] += UPDATES_PER_WEIGHING * (fused - given);
+    sph->spent[PRESSURE] -= UPDATES_PER_WEIGHING * (fused - given);
     sph->spent[MEASURING] += fused + given;
 }
 

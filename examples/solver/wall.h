@@ -15,6 +15,10 @@ struct wall {
 struct wall wall_new(const struct sph *sph, int32_t count, vector *x);
 void wall_free(struct wall *wall);
 
+enum {
+    UPDATES_PER_WEIGHING = 8 /* in one of so many it is measured what the matrices cost */
+};
+
 /* Sums over the wall's particles k, one per fluid particle i. */
 struct contact {
     const struct wall *wall;
