@@ -36,5 +36,8 @@ for method in sph mls; do
 done
 if command -v gnuplot >/dev/null 2>&1; then
     [ -s "$directory/vorticity.png" ] || complain "no picture"
+    rm -f "$directory/vorticity.png"
+    "$program" --method sph --output "$directory" >/dev/null || complain "plain SPH alone failed"
+    [ ! -e "$directory/vorticity.png" ] || complain "a picture with nothing beside plain SPH"
 fi
 exit $status
