@@ -76,6 +76,18 @@ static void matrices(struct skip_stage *stage, struct outputs *outputs, int para
                                   numbers_view(&outputs->corrections), sphg_absent()));
 }
 
+/* As if no matrix were certified: 4 eps is more than any of their eigenvalues. */
+static void decomposed_matrices(struct skip_stage *stage, struct outputs *outputs, int parameter)
+{
+    (void)parameter;
+    const sphg_sources sources = sources_of(stage, stage->solid.kept);
+    sphg_scheme scheme = stage->solid.scheme;
+    scheme.threshold = 0.5;
+    library_check(stage->context,
+                  sphg_correction(stage->context, &scheme, &sources, NULL,
+                                  numbers_view(&outputs->corrections), sphg_absent()));
+}
+
 /* With the matrices that the stage keeps. */
 static void jacobian_by_table(struct skip_stage *stage, struct outputs *outputs, int parameter)
 {
@@ -254,6 +266,8 @@ const struct skip_row skip_rows[] = {
      COMPARE_JACOBIAN, -1},
     {"problem", "2D, as many particles and pairs", "Jacobian in 3D", jacobian_in_plane, jacobian, 0,
      0, -1},
+    {"problem", "matrices that need no SVD", "all decomposed", matrices, decomposed_matrices, 0, 0,
+     -1},
     {"problem", "one volume for all", "an array of volumes", jacobian_by_one_volume, jacobian, 0,
      COMPARE_JACOBIAN, -1},
 };

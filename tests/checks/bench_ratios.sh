@@ -27,5 +27,6 @@ takes_at_most 0.5 'active/10 % clustered, list'
 takes_at_most 0.25 'active/1 % clustered, list'
 takes_at_most 0.85 'reuse/neighbours kept'
 takes_at_most 0.85 'reuse/neighbours and matrices kept'
+takes_at_most 0.9 'problem/matrices that need no SVD'
 takes_at_most 1.15 'problem/one volume for all'
 exit $status
