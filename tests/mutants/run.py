@@ -7,10 +7,10 @@ BUILD holds the tests, built with a shared library; OUT gets copies of the sourc
 libraries and report.jsonl. A mutant that does not compile, or compiles to the same machine code,
 is replaced by the next. The same seed on the same sources gives the same mutants. --again: only
 those that survived in OUT/report.jsonl, where their line still reads as it did. --resume: goes on
-behind those in OUT/report.jsonl.
+behind those in OUT/report.jsonl, with the times of tests in OUT/seconds.json.
 
-Of the passes, one template, only the copy for the baseline is compiled: with the others a mutant takes
-five times as long and shows nothing more. Lines that only others have are tried on all."""
+Of the passes, one template, only the copies for the baseline are compiled. Lines that those lack are
+tried on a library with all."""
 import argparse
 import collections
 import concurrent.futures
@@ -77,13 +77,24 @@ def tests_of(build):
 class Experience:
     """What each test costs and how often it killed, so that the cheapest kill is tried first."""
 
-    def __init__(self, tests, library):
+    def __init__(self, tests, library, file, resume):
         self.tests, self.seconds = tests, {}
         self.tried, self.killed = collections.Counter(), collections.Counter()
-        for test in tests:
+        if resume and os.path.exists(file):
+            with open(file) as known:
+                self.seconds = json.load(known)
+        self.measure(library)
+        with open(file, "w") as known:
+            json.dump(self.seconds, known)
+
+    def measure(self, library):
+        for test in self.tests:
+            if test.name in self.seconds:
+                continue
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            if run_test(test.command, library, 3600):
-                sys.exit("%s fails without any change" % test.name)
+            end = run_test(test.command, library, 3600)
+            if end:
+                sys.exit("%s fails without any change: %s" % (test.name, end))
             after = resource.getrusage(resource.RUSAGE_CHILDREN)
             self.seconds[test.name] = (after.ru_utime + after.ru_stime - before.ru_utime -
                                        before.ru_stime)
@@ -139,22 +150,28 @@ class Build:
 
 
 class Tree:
-    """The sources once more, with two builds of the library: of the baseline alone, and of all."""
+    """The sources once more, with a build of the library for the baseline, and of all when needed."""
 
     def __init__(self, original, place):
-        self.source = place + "/source"
+        self.original, self.source, self.place = original, place + "/source", place
         shutil.rmtree(place, ignore_errors=True)
         shutil.copytree(original, self.source)
-        self.builds = [Build(self.source, place + "/baseline", "-DSPHG_COMPILER_HAS_V3=",
-                             "-DSPHG_COMPILER_HAS_V4="),
-                       Build(self.source, place + "/all")]
+        self.baseline = Build(self.source, place + "/baseline", "-DSPHG_COMPILER_HAS_V3=",
+                              "-DSPHG_COMPILER_HAS_V4=")
+        self.builds = [self.baseline]
+
+    def everything(self):
+        """Only while the sources are as they were."""
+        if len(self.builds) == 1:
+            self.builds.append(Build(self.source, self.place + "/all"))
+        return self.builds[1]
 
     def write(self, path, text):
         with open("%s/%s" % (self.source, path), "w") as file:
             file.write(text)
 
-    def restore(self, original, path):
-        shutil.copy2("%s/%s" % (original, path), "%s/%s" % (self.source, path))
+    def restore(self, path):
+        shutil.copy2("%s/%s" % (self.original, path), "%s/%s" % (self.source, path))
         for build in self.builds:
             build.restore()
 
@@ -164,20 +181,21 @@ def text_of(original, path):
         return file.read()
 
 
-def verdict_of(tree, original, mutant, experience):
+def verdict_of(tree, mutant, experience):
     """(how the mutant ended, the test that saw it)."""
-    lines = text_of(original, mutant.path).split("\n")
+    lines = text_of(tree.original, mutant.path).split("\n")
     lines[mutant.line - 1] = mutant.after
-    tree.write(mutant.path, "\n".join(lines))
-    try:
-        for build in tree.builds:
+    for build_of in (lambda: tree.baseline, tree.everything):
+        build = build_of()
+        tree.write(mutant.path, "\n".join(lines))
+        try:
             if not build.compile():
                 return "stillborn", None
             if build.differs():
                 return verdict_of_tests(build.library, mutant, experience)
-        return "same code", None
-    finally:
-        tree.restore(original, mutant.path)
+        finally:
+            tree.restore(mutant.path)
+    return "same code", None
 
 
 def verdict_of_tests(library, mutant, experience):
@@ -234,7 +252,7 @@ def survivors_of(original, report):
     return mutants
 
 
-def hunt(mutants, count, original, trees, experience, log, ends):
+def hunt(mutants, count, trees, experience, log, ends):
     """Verdicts until `count` of them say something of the tests; `ends` counts them."""
     free = queue.Queue()
     for tree in trees:
@@ -245,7 +263,7 @@ def hunt(mutants, count, original, trees, experience, log, ends):
             return
         tree = free.get()
         begin = time.time()
-        end, test = verdict_of(tree, original, mutant, experience)
+        end, test = verdict_of(tree, mutant, experience)
         free.put(tree)
         ends[end] += 1
         entry = dict(mutant._asdict(), end=end, test=test, seconds=round(time.time() - begin, 1))
@@ -281,12 +299,13 @@ def main():
     done = entries_of(report) if options.resume else []
     mutants = [mutant for mutant in mutants if mutant._asdict() not in map(mutant_in, done)]
     trees = [Tree(original, "%s/%d" % (options.out, k)) for k in range(options.jobs)]
-    experience = Experience(tests_of(options.build), trees[0].builds[0].library)
+    experience = Experience(tests_of(options.build), trees[0].baseline.library,
+                            options.out + "/seconds.json", options.resume)
     for entry in done:
         if entry["test"]:
             experience.learn(entry["path"], entry["test"], True)
     with open(report, "a" if options.resume else "w") as log:
-        ends = hunt(mutants, options.count, original, trees, experience, log,
+        ends = hunt(mutants, options.count, trees, experience, log,
                     collections.Counter(entry["end"] for entry in done))
     valid = sum(ends.values()) - ends["stillborn"] - ends["same code"]
     print("seed %d, %d mutants: %d killed, %d survived (%s)" % (
