@@ -55,7 +55,7 @@ run_fuzz() {
         mkdir -p "build/fuzz/corpus/$target"
         printf '== %s\n' "$target"
         "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="${SPHG_FUZZ_SECONDS:-60}" \
-            -max_len=1024 -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -verbosity=0 \
+            -max_len=1024 -timeout=10 -rss_limit_mb=1024 -entropic=0 -print_final_stats=1 -verbosity=0 \
             -artifact_prefix="build/fuzz/$target-" \
             "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" || status=1
     done

@@ -1,7 +1,7 @@
 /* The search finds the pairs of brute force, or refuses, whatever the positions. */
 #include "fuzz.h"
 
-enum { MOST = 64 };
+enum { MOST = 40 }; /* more than two batches of targets that share candidates, and than a group */
 
 typedef struct cloud {
     sphg_type type;
@@ -52,8 +52,7 @@ static void take_cloud(fuzz_bytes *from, cloud *made)
 
 static double rounded(const cloud *on, double x)
 {
-    const volatile float single = (float)x;
-    return on->type == SPHG_F64 ? x : (double)single;
+    return on->type == SPHG_F64 ? x : (double)(float)x;
 }
 
 /* Of fl(x_i - x_j) + k period the smallest. */
