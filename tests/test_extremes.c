@@ -210,7 +210,7 @@ static void lists_that_do_not_fit_are_a_memory_failure(const test_case *test)
     const fixture_array positions = positions_of(test, all);
     const sphg_scheme scheme = fixture_scheme(test, 1);
     const sphg_geometry listed = geometry_of(&positions, 0), list_free = geometry_of(&positions, 1);
-    host *own = host_of((size_t)1 << 29);
+    host *own = host_of((size_t)pairs_of(all)); /* half of what they take */
     assert_int_equal(sphg_neighbors_search(own->context, own->neighbors, &scheme, &listed),
                      SPHG_ERROR_MEMORY);
     assert_true(own->limit.largest >= (size_t)(2 * pairs_of(all)));
