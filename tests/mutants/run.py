@@ -121,7 +121,7 @@ class Build:
     """A build of the library as it was, and what it takes to get back there."""
 
     def __init__(self, source, place, *options):
-        self.place, self.library, self.kept = place, place + "/src", place + "-kept"
+        self.place, self.folder, self.kept = place, place + "/src", place + "-kept"
         # -O1: half of the time goes into compiling passes
         run(["cmake", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Debug",
              "-DCMAKE_C_FLAGS_DEBUG=-O1", "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF",
@@ -129,14 +129,14 @@ class Build:
         if not self.compile():
             sys.exit("the library does not build without any change")
         self.original = self.machine_code()
-        shutil.copytree(self.library, self.kept)
+        shutil.copytree(self.folder, self.kept)
 
     def compile(self):
         return run(["cmake", "--build", self.place]).returncode == 0
 
     def machine_code(self):
         digest = hashlib.sha256()
-        for path in sorted(glob.glob(self.library + "/**/*.o", recursive=True)):
+        for path in sorted(glob.glob(self.folder + "/**/*.o", recursive=True)):
             with open(path, "rb") as file:
                 digest.update(file.read())
         return digest.digest()
@@ -146,7 +146,7 @@ class Build:
 
     def restore(self):
         """With their old times, so that nothing is compiled again."""
-        shutil.copytree(self.kept, self.library, dirs_exist_ok=True)
+        shutil.copytree(self.kept, self.folder, dirs_exist_ok=True)
 
 
 class Tree:
@@ -192,7 +192,7 @@ def verdict_of(tree, mutant, experience):
             if not build.compile():
                 return "stillborn", None
             if build.differs():
-                return verdict_of_tests(build.library, mutant, experience)
+                return verdict_of_tests(build.folder, mutant, experience)
         finally:
             tree.restore(mutant.path)
     return "same code", None
@@ -299,7 +299,7 @@ def main():
     done = entries_of(report) if options.resume else []
     mutants = [mutant for mutant in mutants if mutant._asdict() not in map(mutant_in, done)]
     trees = [Tree(original, "%s/%d" % (options.out, k)) for k in range(options.jobs)]
-    experience = Experience(tests_of(options.build), trees[0].baseline.library,
+    experience = Experience(tests_of(options.build), trees[0].baseline.folder,
                             options.out + "/seconds.json", options.resume)
     for entry in done:
         if entry["test"]:
