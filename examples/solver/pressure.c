@@ -31,6 +31,7 @@ struct pressure pressure_new(const struct sph *sph, struct contact *contact, int
     made.slope = array_new(capacity, sizeof *made.slope);
     made.inverse_diagonal = array_new(capacity, sizeof *made.inverse_diagonal);
     made.potential = array_new(capacity, sizeof *made.potential);
+    made.reached = array_new(capacity, sizeof *made.reached);
     made.stress = array_new(capacity, sizeof *made.stress);
     made.source = array_new(capacity, sizeof *made.source);
     made.change = array_new(capacity, sizeof *made.change);
@@ -46,6 +47,7 @@ void pressure_free(struct pressure *pressure)
     free(pressure->slope);
     free(pressure->inverse_diagonal);
     free(pressure->potential);
+    free(pressure->reached);
     free(pressure->stress);
     free(pressure->source);
     free(pressure->change);
@@ -146,9 +148,10 @@ static void displace(struct pressure *pressure, const struct particles *fluid)
     }
 }
 
-/* One Jacobi step towards source + change = 0, without pulling. Returns the mean compression left
+/* One Jacobi step towards source + change = 0, without pulling, and from what it reached on by
+ * `momentum` times the way from what the step before reached. Returns the mean compression left
  * before it. */
-static double relax(struct pressure *pressure, const struct particles *fluid)
+static double relax(struct pressure *pressure, const struct particles *fluid, double momentum)
 {
     double left = 0;
     displace(pressure, fluid);
@@ -156,20 +159,38 @@ static double relax(struct pressure *pressure, const struct particles *fluid)
     for (int32_t i = 0; i < fluid->count; i++) {
         const double residual = pressure->source[i] + pressure->change[i];
         const double step = pressure->relaxation * residual * pressure->inverse_diagonal[i];
-        pressure->potential[i] = fmax(0, pressure->potential[i] + step);
+        const double reached = fmax(0, pressure->potential[i] + step);
+        const double way = reached - pressure->reached[i];
+        pressure->potential[i] = fmax(0, reached + momentum * way);
+        pressure->reached[i] = reached;
         left += fmax(0, residual);
     }
     return left / fluid->count;
 }
 
-static int32_t solve(struct pressure *pressure, struct particles *fluid, double dt, double error)
+/* Nesterov's acceleration, begun anew where it overshoots: less is left of an error of long wave,
+ * which plain iterations pass on from neighbour to neighbour. */
+static int32_t iterate(struct pressure *pressure, const struct particles *fluid, double error)
 {
     int32_t iterations = 0;
+    double inertia = 1, before = INFINITY;
     while (iterations < pressure->most_iterations) {
-        const double left = relax(pressure, fluid);
+        const double next = 0.5 * (1 + sqrt(1 + 4 * inertia * inertia));
+        const double left = relax(pressure, fluid, (inertia - 1) / next);
         if (++iterations >= pressure->fewest_iterations && left < error)
             break;
+        inertia = left > before ? 1 : next;
+        before = left;
     }
+    return iterations;
+}
+
+static int32_t solve(struct pressure *pressure, struct particles *fluid, double dt, double error)
+{
+    const size_t size = (size_t)fluid->count * sizeof *pressure->potential;
+    memcpy(pressure->reached, pressure->potential, size);
+    const int32_t iterations = iterate(pressure, fluid, error);
+    memcpy(pressure->potential, pressure->reached, size);
     displace(pressure, fluid);
     for (int32_t i = 0; i < fluid->count; i++)
         add_scaled(fluid->v[i], 1 / dt, pressure->displacement[i]);

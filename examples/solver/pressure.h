@@ -1,5 +1,7 @@
 /* Divergence-free SPH (Bender, Koschier 2017, doi:10.1109/TVCG.2016.2578335) for fluids of several
- * rest densities that share one particle volume, beside walls of particles.
+ * rest densities that share one particle volume, beside walls of particles. Its Jacobi iterations
+ * are accelerated (Nesterov 1983) and begin anew as O'Donoghue and Candes propose (2015,
+ * doi:10.1007/s10208-013-9150-3).
  *
  * A step: pressure_prepare, pressure_stop_compression, forces of the scene on v,
  * pressure_keep_density, x += dt v. */
@@ -25,7 +27,7 @@ struct pressure {
     struct contact *contact; /* NULL: no wall */
     sphg_neighbors *neighbors;
     vector *slope; /* of the compression: what moving particle i alone does to it */
-    double *inverse_diagonal, *potential, *stress, *source, *change;
+    double *inverse_diagonal, *potential, *reached, *stress, *source, *change;
     vector *displacement;
 };
 
