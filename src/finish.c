@@ -186,13 +186,28 @@ static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_p
 static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const double inverse_h = w->inverse_h;
     const bool multiply = plan->corrects && !plan->classic;
     w->passes->apply(w->width, plan->dimension, field->components,
                      multiply ? w->coefficients : NULL, sphgi_lane(w, w->reduced, field->sum),
-                     inverse_h, w->jacobian);
+                     w->inverse_h, w->jacobian);
     if (field->form == SPHG_DIRECT && plan->classic && plan->own_set >= 0)
         add_self_gradient(w, field);
+}
+
+/* PLAIN: no matrix stands between the sums and the results, adjoint ones lack V_i. */
+static void finish_plain(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const int32_t d = plan->dimension;
+    const double volume = field->mirrored ? sphgi_power(plan->scheme.radius, d) : 1;
+    const char *each = field->mirrored ? w->volume : NULL;
+    if (field->sums_gradient)
+        w->passes->scale(w->width, field->components * d, sphgi_lane(w, w->reduced, field->sum),
+                         w->inverse_h * volume, each, w->jacobian);
+    if (field->contracts)
+        w->passes->scale(w->width, field->divergence.count,
+                         sphgi_lane(w, w->reduced, field->divergence_sum), w->inverse_h * volume,
+                         each, w->contracted);
 }
 
 /* C_i sum a_j s_ij x_ij; classic: the sum is made of gradients already. */
@@ -204,40 +219,69 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
                      sphgi_lane(w, w->reduced, sum), 1, to);
 }
 
+/* What the terms of both sides are multiplied with; NULL: 1. */
+struct sides {
+    double table; /* from sums over G_ji to units of H ... */
+    const void *other, *own;
+    double factor; /* ... and of the result */
+    const void *each;
+};
+
 /* adjoint: f = (1/H) (V_i A_i G + H^d sum V_j A_j T), with H^d V_i = V_i H^-d H^d; KGC, RKPM and
  * PLAIN have V_i inside T, too. symmetric: f = (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
-static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+static struct sides sides_of(struct sphgi_worker *w, bool symmetric)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
-    const bool symmetric = field->form == SPHG_SYMMETRIC;
     const bool volume_inside = plan->scheme.method != SPHG_MLS && !plan->classic;
-    const int32_t d = plan->dimension, n = field->components * d;
-    const double table = plan->classic || plan->scheme.method == SPHG_PLAIN
-                             ? 1
-                             : 1 / sphgi_table_scales(&plan->scheme).value;
-    const double volume = sphgi_power(plan->scheme.radius, d);
-    char *weight = sphgi_lane(w, w->extra, 4);
-    own_side(w, plan->vector_sum[symmetric], w->extra);
-    p->apply(w->width, d, field->components, NULL, sphgi_lane(w, w->reduced, field->sum), table,
-             w->jacobian);
-    const void *own_weight = NULL;
+    const bool ours = plan->classic || plan->scheme.method == SPHG_PLAIN;
+    struct sides sides = {.table = ours ? 1 : 1 / sphgi_table_scales(&plan->scheme).value};
     if (symmetric) {
-        if (volume_inside)
-            p->scale(w->width, n, w->jacobian, 1, w->density, w->jacobian);
-        else {
-            p->quotient(w->width, w->density, w->volume, weight);
-            p->scale(w->width, n, w->jacobian, 1, weight, w->jacobian);
-        }
-        p->quotient(w->width, NULL, w->density, weight);
-        own_weight = weight;
-    } else if (!volume_inside)
-        own_weight = w->volume;
-    p->add_outer(w->width, d, field->components, sphgi_lane(w, w->at_target, field->at_target),
-                 w->extra, own_weight, w->jacobian);
-    const double factor = w->inverse_h * (symmetric ? 1 : volume);
-    p->scale(w->width, n, w->jacobian, factor, !symmetric && volume_inside ? w->volume : NULL,
-             w->jacobian);
+        char *ratio = sphgi_lane(w, w->extra, 4), *inverse = sphgi_lane(w, w->extra, 5);
+        if (!volume_inside)
+            p->quotient(w->width, w->density, w->volume, ratio);
+        p->quotient(w->width, NULL, w->density, inverse);
+        sides.other = volume_inside ? w->density : ratio;
+        sides.own = inverse;
+        sides.factor = w->inverse_h;
+    } else {
+        sides.own = volume_inside ? NULL : w->volume;
+        sides.factor = w->inverse_h * sphgi_power(plan->scheme.radius, plan->dimension);
+        sides.each = volume_inside ? w->volume : NULL;
+    }
+    return sides;
+}
+
+/* The table comes first: its factor times a density need not be a number of f32. */
+static void join_sides(struct sphgi_worker *w, const struct sphgi_field_plan *field,
+                       const struct sides *sides, bool divergence)
+{
+    const struct sphgi_passes *p = w->passes;
+    const int32_t d = w->sweep->plan->dimension;
+    const int32_t count = divergence ? field->divergence.count : field->components * d;
+    const char *own = sphgi_lane(w, w->at_target, field->at_target);
+    char *to = divergence ? w->contracted : w->jacobian;
+    p->scale(w->width, count,
+             sphgi_lane(w, w->reduced, divergence ? field->divergence_sum : field->sum),
+             sides->table, NULL, to);
+    if (sides->other)
+        p->scale(w->width, count, to, 1, sides->other, to);
+    if (divergence)
+        p->add_product(w->width, d, field->shape, own, w->extra, sides->own, to);
+    else
+        p->add_outer(w->width, d, field->components, own, w->extra, sides->own, to);
+    p->scale(w->width, count, to, sides->factor, sides->each, to);
+}
+
+static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const bool symmetric = field->form == SPHG_SYMMETRIC;
+    const struct sides sides = sides_of(w, symmetric);
+    own_side(w, w->sweep->plan->vector_sum[symmetric], w->extra);
+    if (field->sums_gradient)
+        join_sides(w, field, &sides, false);
+    if (field->contracts)
+        join_sides(w, field, &sides, true);
 }
 
 static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *field)
@@ -264,7 +308,7 @@ static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan 
     const struct sphgi_plan *plan = w->sweep->plan;
     char *divergence = w->contracted, *curl = sphgi_lane(w, w->contracted, 3);
     w->passes->contract(w->width, plan->dimension, field->shape, w->jacobian,
-                        field->divergence.count ? divergence : NULL,
+                        field->divergence.count && !field->contracts ? divergence : NULL,
                         field->curl.count ? curl : NULL);
     const struct sphgi_columns *columns[3] = {&field->gradient, &field->divergence, &field->curl};
     const char *lanes[3] = {w->jacobian, divergence, curl};
@@ -280,8 +324,10 @@ void sphgi_finish_fields(struct sphgi_worker *w)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates) {
-            if (field->form == SPHG_ADJOINT || field->form == SPHG_SYMMETRIC)
+            if (!field->forward)
                 finish_transposed(w, field);
+            else if (plan->scheme.method == SPHG_PLAIN)
+                finish_plain(w, field);
             else
                 finish_forward(w, field);
             store_results(w, field);

@@ -366,7 +366,7 @@ static sphg_result check_needed(struct making *making)
     const char *f = making->checker.function;
     const struct sphgi_plan *plan = making->plan;
     const sphg_method method = plan->scheme.method;
-    const bool transposes = plan->transposes[0] || plan->transposes[1];
+    const bool transposes = plan->adjoint || plan->transposes[1];
     const bool in_weight = method != SPHG_MLS && method != SPHG_CMLS;
     const bool in_value = plan->wants_value && !plan->classic;
     const bool anything = plan->computes || plan->differentiates || plan->wants_value;
@@ -374,7 +374,7 @@ static sphg_result check_needed(struct making *making)
     for (int32_t s = 0; s < plan->set_count && at_sources; ++s)
         if (!plan->sets[s].volume.count)
             REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].volume is absent", f, (int)s);
-    const bool at_targets = plan->transposes[0] || (plan->transposes[1] && !in_weight) ||
+    const bool at_targets = plan->adjoint || (plan->transposes[1] && !in_weight) ||
                             (plan->transposes[1] && plan->classic);
     if (at_targets && !plan->target_volume.count)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: target_volume is absent; this form reads it", f);

@@ -21,9 +21,14 @@ struct sphgi_field_plan {
     sphg_shape shape;
     sphg_form form;
     bool accumulate, differentiates; /* gradient, divergence or curl is wanted */
+    bool forward;                    /* summed over G_ij; else over G_ji, too */
+    bool mirrored;                   /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
+    bool contracts;                  /* the divergence is summed as such */
+    bool sums_gradient;              /* what gradient and curl are made of is summed */
     int32_t components;
     int32_t stream, streams;     /* rows of A_j */
     int32_t sum;                 /* first of components * d sums of A times a gradient */
+    int32_t divergence_sum;      /* first of 1 (vector) or d (tensor) sums, if contracts */
     int32_t value_sum;           /* first of components sums of A Phi, -1: not wanted */
     int32_t at_target;           /* first of the lanes that hold A_i */
     struct sphgi_columns target; /* A_i */
@@ -44,10 +49,11 @@ struct sphgi_plan {
     struct sphgi_columns correction, rank, lambda_min;
     sphg_stats *stats;
 
-    bool computes;          /* corrections, in this call */
-    bool corrects;          /* results are multiplied with a correction, computed or given */
-    bool classic, weighted; /* weighted: V_j stands in the classic weight */
-    bool differentiates, transposes[2]; /* any field; [0] adjoint, [1] symmetric */
+    bool computes;                /* corrections, in this call */
+    bool corrects;                /* results are multiplied with a correction, computed or given */
+    bool classic, weighted;       /* weighted: V_j stands in the classic weight */
+    bool differentiates, adjoint; /* any field */
+    bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
     bool mean_volume;                          /* MLS without volumes at the targets */
     int32_t correction_stream, density_stream; /* -1: not needed */

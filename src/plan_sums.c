@@ -16,10 +16,24 @@ static void decide_sums(struct sphgi_plan *plan)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         struct sphgi_field_plan *field = &plan->fields[k];
         field->sum = plan->sums;
-        plan->sums += field->differentiates ? field->components * d : 0;
+        plan->sums += field->sums_gradient ? field->components * d : 0;
+        field->divergence_sum = plan->sums;
+        plan->sums += field->contracts ? field->divergence.count : 0;
         field->value_sum = field->value.count ? plan->sums : -1;
         plan->sums += field->value.count ? field->components : 0;
     }
+}
+
+/* PLAIN: G_ji = -V_i G_ij / V_j, so that the adjoint form needs no other side. A divergence is
+ * summed as such wherever nothing stands between the sum and the trace: C_i would. */
+static void decide_field(struct sphgi_field_plan *field, sphg_method method)
+{
+    const bool plain = method == SPHG_PLAIN;
+    field->mirrored = plain && field->form == SPHG_ADJOINT;
+    field->forward = field->form <= SPHG_DIRECT || field->mirrored;
+    field->contracts = field->divergence.count && (plain || !field->forward);
+    field->sums_gradient = field->gradient.count || field->curl.count ||
+                           (field->divergence.count && !field->contracts);
 }
 
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
@@ -28,11 +42,14 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
     bool needs_correction = purpose == SPHGI_FOR_PAIR_GRADIENTS;
     plan->differentiates = needs_correction;
     for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
+        struct sphgi_field_plan *field = &plan->fields[k];
+        decide_field(field, method);
         plan->differentiates |= field->differentiates;
         plan->wants_value |= field->value.count > 0;
-        plan->transposes[0] |= field->differentiates && field->form == SPHG_ADJOINT;
-        plan->transposes[1] |= field->differentiates && field->form == SPHG_SYMMETRIC;
+        plan->adjoint |= field->differentiates && field->form == SPHG_ADJOINT;
+        for (int symmetric = 0; symmetric < 2; ++symmetric)
+            plan->transposes[symmetric] |= field->differentiates && !field->forward &&
+                                           symmetric == (field->form == SPHG_SYMMETRIC);
         needs_correction |= field->differentiates || (plan->classic && field->value.count);
     }
     plan->corrects = method != SPHG_PLAIN && needs_correction;

@@ -15,11 +15,16 @@ static enum sphgi_vectors vectors_of(const struct sphgi_worker *w)
     return w->sweep->plan->classic ? SPHGI_GRADIENTS : SPHGI_FACTORS;
 }
 
+/* A times the vectors, A_i subtracted: what gradients are made of, and divergences. */
 static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *field,
                      enum sphgi_vectors vectors, const char *at_target)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    for (int32_t k = 0; k < field->streams; ++k) {
+    if (field->contracts)
+        w->passes->sum_divergence(&w->piece, plan->dimension, field->shape, vectors,
+                                  w->rows + field->stream, at_target,
+                                  sphgi_partial(w, field->divergence_sum));
+    for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
         const int32_t first = k * SPHGI_ROW;
         const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
         w->passes->sum_field(&w->piece, plan->dimension, vectors, w->rows[field->stream + k], count,
@@ -29,12 +34,12 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
     }
 }
 
-/* The target's own value is subtracted in the difference form; elsewhere 0 is. */
+/* The target's own value is subtracted in the difference form, minus it in a mirrored one; in the
+ * direct form 0 is. */
 static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const char *own = sphgi_lane(w, w->at_target, field->at_target);
-    const enum sphgi_vectors vectors = vectors_of(w);
-    sum_rows(w, field, vectors, field->form == SPHG_DIFFERENCE ? own : w->zeros);
+    sum_rows(w, field, vectors_of(w), field->form == SPHG_DIRECT ? w->zeros : own);
 }
 
 /* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
@@ -61,7 +66,8 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         w->passes->transposed(&w->piece, plan->dimension, table, density, weight);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (field->differentiates && field->form == (symmetric ? SPHG_SYMMETRIC : SPHG_ADJOINT))
+        if (field->differentiates && !field->forward &&
+            symmetric == (field->form == SPHG_SYMMETRIC))
             sum_rows(w, field, SPHGI_TRANSPOSED, w->zeros);
     }
     w->passes->sum_vectors(&w->piece, plan->dimension, vectors_of(w), symmetric ? density : NULL,
@@ -98,6 +104,8 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
         for (int32_t c = 0; c < field->components; ++c)
             w->passes->fill(w->width, 0, to + (size_t)c * SPHGI_WIDTH * row / SPHGI_ROW);
     }
+    if (field->mirrored)
+        w->passes->scale(w->width, field->components, to, -1, NULL, to);
 }
 
 void sphgi_load_targets(struct sphgi_worker *w)
@@ -109,7 +117,7 @@ void sphgi_load_targets(struct sphgi_worker *w)
     const struct sphgi_passes *p = w->passes;
     for (int32_t k = 0; k < plan->field_count; ++k)
         load_target(w, k, sphgi_lane(w, w->at_target, plan->fields[k].at_target));
-    if (plan->transposes[0] || plan->transposes[1]) {
+    if (plan->adjoint || plan->transposes[1]) {
         if (plan->target_volume.count)
             sphgi_load_volume(w, &plan->target_volume, sphgi_lane(w, w->volume, 0));
         if (plan->target_density.count)
@@ -127,7 +135,7 @@ static void sum_fields(struct sphgi_worker *w)
                                    sphgi_lane(w, w->coefficients, 0));
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (field->differentiates && field->form <= SPHG_DIRECT)
+        if (field->differentiates && field->forward)
             sum_forward(w, field);
         for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
             w->passes->sum_value(&w->piece, w->rows[field->stream + s],

@@ -289,13 +289,7 @@ static void invert(int32_t width, const struct sphgi_threshold *threshold, const
         invert_as(width, threshold, moments, scale, correction, lambda_min, verdict, false);
 }
 
-/* Index of x_a x_b in an upper triangle, of x_a x_b x_c among the triples of sum_classic. */
-SPHGI_TEMPLATE int pair_index(int a, int b, int d)
-{
-    const int low = a < b ? a : b, high = a < b ? b : a;
-    return low * d - low * (low - 1) / 2 + high - low;
-}
-
+/* Index of x_a x_b x_c among the triples of sum_classic. */
 SPHGI_TEMPLATE int triple_index(int a, int b, int c, int d)
 {
     static const int three[27] = {0, 1, 2, 1, 3, 4, 2, 4, 5, 1, 3, 4, 3, 6,

@@ -222,6 +222,11 @@ struct sphgi_passes {
     void (*sum_field)(const struct sphgi_piece *piece, int32_t dimension,
                       enum sphgi_vectors vectors, const void *rows, int32_t count,
                       const void *at_target, void *partial);
+    /* The same, contracted: vector sum (A_j - A_i) . g, tensors row by row. rows: of each stream.
+     */
+    void (*sum_divergence)(const struct sphgi_piece *piece, int32_t dimension, sphg_shape shape,
+                           enum sphgi_vectors vectors, const void *const *rows,
+                           const void *at_target, void *partial);
     void (*sum_value)(const struct sphgi_piece *piece, const void *rows, int32_t count,
                       void *partial);
     void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension,
@@ -260,6 +265,9 @@ struct sphgi_passes {
     void (*quotient)(int32_t width, const void *a, const void *b, void *out);
     void (*add_outer)(int32_t width, int32_t dimension, int32_t count, const void *a, const void *b,
                       const void *each, void *jacobian);
+    /* divergence += each A . b */
+    void (*add_product)(int32_t width, int32_t dimension, sphg_shape shape, const void *a,
+                        const void *b, const void *each, void *divergence);
     void (*contract)(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
                      void *divergence, void *curl);
     void (*load_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,

@@ -27,6 +27,7 @@
 #include "search.inl.h"
 #include "shape.inl.h"
 #include "sums.inl.h"
+#include "divergence.inl.h"
 #include "classic.inl.h"
 #include "eigen.inl.h"
 #include "invert.inl.h"
@@ -62,6 +63,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_moments = sum_moments,
     .sum_classic = sum_classic,
     .sum_field = sum_field,
+    .sum_divergence = sum_divergence,
     .sum_value = sum_value,
     .sum_vectors = sum_vectors,
     .sum_volume = sum_volume,
@@ -78,6 +80,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .fill = fill,
     .quotient = quotient,
     .add_outer = add_outer,
+    .add_product = add_product,
     .contract = contract,
     .load_lanes = load_lanes,
     .store_lanes = store_lanes,

@@ -130,12 +130,6 @@ static void add_outer(int32_t width, int32_t dimension, int32_t count, const voi
         }
 }
 
-/* Component (a, b) of a tensor among those that the shape holds. */
-SPHGI_TEMPLATE int tensor_index(sphg_shape shape, int a, int b, int d)
-{
-    return shape == SPHG_SYM_TENSOR ? pair_index(a, b, d) : a * d + b;
-}
-
 /* divergence: vector sum_a J[a][a], tensors sum_b J[(a, b)][b] */
 SPHGI_TEMPLATE void diverge(int32_t d, sphg_shape shape, const real *j, real *divergence)
 {

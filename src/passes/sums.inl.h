@@ -11,6 +11,13 @@ SPHGI_TEMPLATE vec begin_sum(const struct sphgi_piece *piece, int32_t p, void *p
     return piece->fresh[p] ? splat(R(0)) : *partial_of(partial, sum, piece->lane[p]);
 }
 
+/* Index of x_a x_b in an upper triangle. */
+SPHGI_TEMPLATE int pair_index(int a, int b, int d)
+{
+    const int low = a < b ? a : b, high = a < b ? b : a;
+    return low * d - low * (low - 1) / 2 + high - low;
+}
+
 SPHGI_TEMPLATE vec from(const struct sphgi_piece *piece, enum sphgi_array array, int32_t k)
 {
     return load((const real *)piece->arrays + array * SPHGI_PIECE + k);
