@@ -151,7 +151,7 @@ static struct roundness form(const struct run *run, const struct sph *sph, doubl
     struct drop drop = drop_new(run, sph);
     const int32_t steps = (int32_t)(duration / step + 0.5);
     FILE *series = kept == KEEPS_FILES ? output_open(run, "roundness") : NULL;
-    drop.viscosity = laplacian_new(sph, &drop.pressure.pairs, drop.fluid.count);
+    drop.viscosity = laplacian_new(sph, drop.pressure.neighbors, drop.fluid.count);
     drop.viscosity.kinematic = kinematic;
     drop.tension = surface_tension_new(&drop.operators, drop.fluid.count);
     drop.tension.strength = strength;

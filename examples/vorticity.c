@@ -54,7 +54,7 @@ static double printed_curl_error(const struct sph *sph, const struct operators *
 {
     struct pairs pairs = pairs_new(block->count);
     vector *curl = array_new(block->count, sizeof *curl);
-    pairs_update(sph, &operators->sources, &pairs);
+    pairs_update(sph, &operators->sources, 0, block->count, &pairs);
     for (int32_t i = 0; i < block->count; i++)
         for (int64_t k = pairs.offsets[i]; k < pairs.offsets[i + 1]; k++) {
             const int32_t j = pairs.indices[k];

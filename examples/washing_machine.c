@@ -91,7 +91,7 @@ static void machine_init(struct machine *machine, const struct run *run, const s
     machine->soap.dynamic = soap_viscosity;
     machine->soap.warm = true;
     machine->soap.implicit.tolerance = 1e-2; /* a warm start: what is left follows in later steps */
-    machine->water = laplacian_new(sph, &machine->pressure.pairs, capacity);
+    machine->water = laplacian_new(sph, machine->pressure.neighbors, capacity);
     machine->water.kinematic = water_viscosity;
     machine->least_volume = INFINITY;
 }

@@ -187,6 +187,8 @@ static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const bool multiply = plan->corrects && !plan->classic;
+    if (!field->sums_gradient)
+        return;
     w->passes->apply(w->width, plan->dimension, field->components,
                      multiply ? w->coefficients : NULL, sphgi_lane(w, w->reduced, field->sum),
                      w->inverse_h, w->jacobian);
@@ -284,6 +286,24 @@ static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_p
         join_sides(w, field, &sides, true);
 }
 
+static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const char *sums = sphgi_lane(w, w->reduced, field->square_sum);
+    if (sphgi_square_sums(plan) > 1) {
+        w->passes->trace_between(w->width, plan->dimension, w->coefficients, sums, w->self);
+        sums = w->self;
+    }
+    w->passes->scale(w->width, 1, sums, w->inverse_h * w->inverse_h, NULL, w->contracted);
+    if (plan->classic && plan->own_set >= 0) {
+        sphgi_self_gradient(w, w->extra);
+        w->passes->add_product(w->width, plan->dimension, SPHG_VECTOR, w->extra, w->extra,
+                               sphgi_lane(w, w->at_target, field->at_target), w->contracted);
+    }
+    w->passes->store_lanes(w->targets, &field->square, sphgi_targets(w), w->contracted,
+                           field->accumulate);
+}
+
 static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
@@ -332,6 +352,8 @@ void sphgi_finish_fields(struct sphgi_worker *w)
                 finish_forward(w, field);
             store_results(w, field);
         }
+        if (field->square.count)
+            finish_square(w, field);
         if (field->value_sum >= 0)
             finish_value(w, field);
     }

@@ -200,6 +200,9 @@ static sphg_result check_field(struct making *making, int32_t k)
         REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].curl of what is no vector", f, (int)k);
     if (field->form != SPHG_DIRECT && !sphgi_is_absent(&field->value))
         REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].value outside the direct form", f, (int)k);
+    if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
+        REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].square outside the direct form of a scalar",
+               f, (int)k);
     return SPHG_OK;
 }
 
@@ -224,7 +227,11 @@ static sphg_result take_results(struct making *making, int32_t k)
     if (!result)
         result = take_output(making, &given->curl, name_of(making, "fields[%d].curl", k, 0),
                              plan->type, curl, 0, &field->curl);
-    field->differentiates = field->gradient.count || field->divergence.count || field->curl.count;
+    if (!result)
+        result = take_output(making, &given->square, name_of(making, "fields[%d].square", k, 0),
+                             plan->type, SPHG_SCALAR, 0, &field->square);
+    field->differentiates = field->gradient.count || field->divergence.count || field->curl.count ||
+                            field->square.count;
     return result;
 }
 
@@ -391,7 +398,7 @@ static bool make_room(struct making *making)
     const sphg_request *request = making->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
     const size_t streams = sets * (3 * fields + 5);
-    const size_t views = sets * (fields + 3) + 5 * fields + 8;
+    const size_t views = sets * (fields + 3) + 6 * fields + 8;
     const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
                             fields * sizeof(struct sphgi_field_plan),
                             streams * sizeof(struct sphgi_stream),

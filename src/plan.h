@@ -20,7 +20,7 @@ struct sphgi_set_plan {
 struct sphgi_field_plan {
     sphg_shape shape;
     sphg_form form;
-    bool accumulate, differentiates; /* gradient, divergence or curl is wanted */
+    bool accumulate, differentiates; /* gradient, divergence, curl or square is wanted */
     bool forward;                    /* summed over G_ij; else over G_ji, too */
     bool mirrored;                   /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
     bool contracts;                  /* the divergence is summed as such */
@@ -29,10 +29,11 @@ struct sphgi_field_plan {
     int32_t stream, streams;     /* rows of A_j */
     int32_t sum;                 /* first of components * d sums of A times a gradient */
     int32_t divergence_sum;      /* first of 1 (vector) or d (tensor) sums, if contracts */
+    int32_t square_sum;          /* of A G G^T its trace, or its triangle where C_i is to come */
     int32_t value_sum;           /* first of components sums of A Phi, -1: not wanted */
     int32_t at_target;           /* first of the lanes that hold A_i */
     struct sphgi_columns target; /* A_i */
-    struct sphgi_columns value, gradient, divergence, curl;
+    struct sphgi_columns value, gradient, divergence, curl, square;
 };
 
 struct sphgi_plan {
@@ -72,6 +73,9 @@ enum sphgi_purpose {
 
 /* From the fields and views of a plan to all that its second half holds. */
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose);
+
+/* Numbers that `square` of a field is summed in. */
+int32_t sphgi_square_sums(const struct sphgi_plan *plan);
 
 /* Everything in request that is wrong is refused here. The plan lives in context->plan. */
 sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *scheme,

@@ -1,6 +1,11 @@
 /* Which sums and streams a plan needs, and their numbers. */
 #include "plan.h"
 
+int32_t sphgi_square_sums(const struct sphgi_plan *plan)
+{
+    return plan->classic || !plan->corrects ? 1 : plan->dimension * (plan->dimension + 1) / 2;
+}
+
 static void decide_sums(struct sphgi_plan *plan)
 {
     const int32_t d = plan->dimension;
@@ -19,6 +24,8 @@ static void decide_sums(struct sphgi_plan *plan)
         plan->sums += field->sums_gradient ? field->components * d : 0;
         field->divergence_sum = plan->sums;
         plan->sums += field->contracts ? field->divergence.count : 0;
+        field->square_sum = plan->sums;
+        plan->sums += field->square.count ? sphgi_square_sums(plan) : 0;
         field->value_sum = field->value.count ? plan->sums : -1;
         plan->sums += field->value.count ? field->components : 0;
     }

@@ -40,6 +40,10 @@ static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *f
 {
     const char *own = sphgi_lane(w, w->at_target, field->at_target);
     sum_rows(w, field, vectors_of(w), field->form == SPHG_DIRECT ? w->zeros : own);
+    if (field->square.count)
+        w->passes->sum_squares(&w->piece, w->sweep->plan->dimension, vectors_of(w),
+                               sphgi_square_sums(w->sweep->plan), w->rows[field->stream],
+                               sphgi_partial(w, field->square_sum));
 }
 
 /* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */

@@ -69,6 +69,10 @@ static void nothing_is_ever_infinite(const test_case *test)
                 require_finite(&found.curl, "curl", on.name);
                 if (form == SPHG_DIRECT)
                     require_finite(&found.value, "value", on.name);
+                stage_field scalar = {SPHG_SCALAR, (sphg_form)form,
+                                      stage_random_field(&on, SPHG_SCALAR, 12)};
+                found = stage_apply(&on, &scalar, &table);
+                require_finite(&found.square, "square", on.name);
             }
         }
     }

@@ -112,6 +112,7 @@ static void require_scaled_field(const stage *small, const stage *large, const s
     require_scaled(&one.divergence, &two.divergence, power, "divergence", k);
     require_scaled(&one.curl, &two.curl, power, "curl", k);
     require_scaled(&one.value, &two.value, a, "value", k);
+    require_scaled(&one.square, &two.square, a - 2 * k, "square", k);
 }
 
 /* As far as V and 1 / H^d are normal numbers, and so are the entries of the table, which has the
@@ -145,6 +146,9 @@ static void powers_of_two_scale_to_the_bit(const test_case *test)
         require_scaled_field(&small, &large, &field, 1, k);
         field.form = SPHG_ADJOINT;
         require_scaled_field(&small, &large, &field, 1, k);
+        field = (stage_field){SPHG_SCALAR, SPHG_DIRECT, stage_random_field(&small, SPHG_SCALAR, 3)};
+        if (e < 3) /* at the limits 1 / H^2 is no normal number */
+            require_scaled_field(&small, &large, &field, 0, k);
     }
 }
 

@@ -120,6 +120,11 @@ static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *tes
     REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "divergence", own->field.gradient = sphg_absent();
             own->field.divergence = own->vectors_out);
     REFUSES(evaluate, SUBJECT_REFUSED, "value", own->field.value = own->scalars_out);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "square", own->field.gradient = sphg_absent();
+            own->field.square = own->scalars_out);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "square", own->field.gradient = sphg_absent();
+            own->field.form = SPHG_DIRECT; own->field.shape = SPHG_TENSOR;
+            own->at_sources[0] = own->tensors; own->field.square = own->scalars_out);
 }
 
 /* ADJOINT and SYMMETRIC read both ends of a pair. */

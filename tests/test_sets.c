@@ -104,7 +104,8 @@ static stage_result evaluate_fluid(const two_sets *sets, const stage_field *fiel
     int width = fixture_width(field->shape, d);
     stage_result found = {fixture_output(type, n, d * width), fixture_output(type, n, 0),
                           fixture_output(type, n, 0),
-                          fixture_output(type, n, field->form == SPHG_DIRECT ? width : 0)};
+                          fixture_output(type, n, field->form == SPHG_DIRECT ? width : 0),
+                          fixture_output(type, n, field->form == SPHG_DIRECT && width == 1)};
     sphg_sources sources[2];
     sphg_view at_sources[2];
     sources_of(sets, 0, sources);
@@ -119,6 +120,8 @@ static stage_result evaluate_fluid(const two_sets *sets, const stage_field *fiel
     asked.gradient = fixture_view(&found.gradient);
     if (field->form == SPHG_DIRECT)
         asked.value = fixture_view(&found.value);
+    if (found.square.width)
+        asked.square = fixture_view(&found.square);
     sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
     request.field_count = 1;
     FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));

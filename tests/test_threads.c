@@ -71,10 +71,11 @@ static sphg_result sweep(sphg_context *context, const stage *own, const sphg_sou
     const int d = own->particles.dimension;
     const sphg_view scalar = fixture_view(&own->scalar), vector = fixture_view(&own->vector);
     const sphg_view tensor = fixture_view(&own->tensor);
-    sphg_field fields[4] = {{.shape = SPHG_SCALAR, .at_sources = &scalar},
+    sphg_field fields[5] = {{.shape = SPHG_SCALAR, .at_sources = &scalar},
                             {.shape = SPHG_VECTOR, .at_sources = &vector},
                             {.shape = SPHG_TENSOR, .at_sources = &tensor},
-                            {.shape = SPHG_VECTOR, .form = SPHG_DIRECT, .at_sources = &vector}};
+                            {.shape = SPHG_VECTOR, .form = SPHG_DIRECT, .at_sources = &vector},
+                            {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &scalar}};
     sphg_request request = {.sources = sources, .set_count = 1, .subset = subset};
     fields[0].gradient = member(found, d);
     fields[1].gradient = member(found, d * d);
@@ -83,8 +84,9 @@ static sphg_result sweep(sphg_context *context, const stage *own, const sphg_sou
     fields[2].divergence = member(found, d);
     fields[3].value = member(found, d);
     fields[3].gradient = member(found, d * d);
+    fields[4].square = member(found, 1);
     request.fields = fields;
-    request.field_count = 4;
+    request.field_count = 5;
     if (own->scheme.method != SPHG_PLAIN) {
         request.correction = member(found, sphg_correction_width(&own->scheme));
         request.lambda_min = member(found, 1);

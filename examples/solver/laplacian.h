@@ -13,13 +13,15 @@ struct laplacian {
 
     /* Private */
     const struct sph *sph;
-    const struct pairs *pairs;
+    const sphg_neighbors *neighbors;
+    struct pairs pairs;
     const struct particles *all;
     int32_t first; /* the fluid is all particles from here on */
 };
 
-/* pairs: of all particles, with volumes at rest. */
-struct laplacian laplacian_new(const struct sph *sph, const struct pairs *pairs, int32_t capacity);
+/* neighbors: of all particles. */
+struct laplacian laplacian_new(const struct sph *sph, const sphg_neighbors *neighbors,
+                               int32_t capacity);
 void laplacian_free(struct laplacian *laplacian);
 
 /* v += dt force(v) / mass for the particles of `all` from `first` on, which share a rest density.

@@ -29,15 +29,17 @@ static void grow(struct pairs *pairs, int64_t count)
     }
 }
 
-void pairs_update(const struct sph *sph, const sphg_sources *sources, struct pairs *pairs)
+void pairs_update(const struct sph *sph, const sphg_sources *sources, int32_t first, int32_t end,
+                  struct pairs *pairs)
 {
+    const sphg_subset subset = {.begin = first, .end = end};
     for (;;) {
         sphg_pairs filled = {.offsets = pairs->offsets,
                              .indices = pairs->indices,
                              .gradient = pairs->capacity ? vectors(pairs->gradient) : sphg_absent(),
                              .capacity = pairs->capacity};
-        const sphg_result result =
-            sphg_pair_gradients(sph->context, &sph->plain, sources, NULL, sphg_absent(), &filled);
+        const sphg_result result = sphg_pair_gradients(sph->context, &sph->plain, sources, &subset,
+                                                       sphg_absent(), &filled);
         if (filled.count > pairs->capacity)
             grow(pairs, filled.count);
         else {

@@ -5,7 +5,7 @@
 #include "library.h"
 
 struct pairs {
-    int64_t *offsets; /* those of particle i: [offsets[i], offsets[i + 1]) */
+    int64_t *offsets; /* those of particle first + k: [offsets[k], offsets[k + 1]) */
     int32_t *indices;
     vector *gradient; /* G_ij */
     int64_t capacity;
@@ -13,5 +13,7 @@ struct pairs {
 
 struct pairs pairs_new(int32_t count);
 void pairs_free(struct pairs *pairs);
-void pairs_update(const struct sph *sph, const sphg_sources *sources, struct pairs *pairs);
+/* Of the particles [first, end). */
+void pairs_update(const struct sph *sph, const sphg_sources *sources, int32_t first, int32_t end,
+                  struct pairs *pairs);
 #endif

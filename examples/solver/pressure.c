@@ -25,9 +25,9 @@ struct pressure pressure_new(const struct sph *sph, struct contact *contact, int
                             .most_iterations = 100,
                             .sph = sph,
                             .contact = contact,
-                            .neighbors = sph_neighbors(sph),
-                            .pairs = pairs_new(capacity)};
+                            .neighbors = sph_neighbors(sph)};
     made.compression = array_new(capacity, sizeof *made.compression);
+    made.offsets = array_new(capacity + 1, sizeof *made.offsets);
     made.slope = array_new(capacity, sizeof *made.slope);
     made.inverse_diagonal = array_new(capacity, sizeof *made.inverse_diagonal);
     made.potential = array_new(capacity, sizeof *made.potential);
@@ -42,8 +42,8 @@ struct pressure pressure_new(const struct sph *sph, struct contact *contact, int
 void pressure_free(struct pressure *pressure)
 {
     sphg_neighbors_destroy(pressure->neighbors);
-    pairs_free(&pressure->pairs);
     free(pressure->compression);
+    free(pressure->offsets);
     free(pressure->slope);
     free(pressure->inverse_diagonal);
     free(pressure->potential);
@@ -61,47 +61,54 @@ static sphg_sources sources_of(const struct pressure *pressure, const struct par
     return sources;
 }
 
-/* Compression sum V W and its slope sum V grad W, of fluid and wall. */
+/* Compression sum V W and its slope sum V grad W, of fluid and wall; into inverse_diagonal the sum
+ * of |V grad W|^2 / rest density, of the fluid. */
 static void sum_compression(struct pressure *pressure, const struct particles *fluid)
 {
     const double one = 1;
-    const sphg_view ones = everywhere(&one);
+    double *lightness = pressure->change;
+    const sphg_view ones = everywhere(&one), light = scalars(lightness);
     const sphg_sources sources = sources_of(pressure, fluid);
     const struct contact *contact = pressure->contact;
-    sphg_field field = direct_field(SPHG_SCALAR, &ones);
-    field.value = scalars(pressure->compression);
-    field.gradient = vectors(pressure->slope);
-    sph_evaluate(pressure->sph, &pressure->sph->plain, &sources, sphg_absent(), 1, &field);
+    sphg_field fields[2] = {direct_field(SPHG_SCALAR, &ones), direct_field(SPHG_SCALAR, &light)};
+    for (int32_t i = 0; i < fluid->count; i++)
+        lightness[i] = 1 / fluid->rest_density[i];
+    fields[0].value = scalars(pressure->compression);
+    fields[0].gradient = vectors(pressure->slope);
+    fields[1].square = scalars(pressure->inverse_diagonal);
+    sph_evaluate(pressure->sph, &pressure->sph->plain, &sources, sphg_absent(), 2, fields);
     for (int32_t i = 0; contact && i < fluid->count; i++) {
         pressure->compression[i] += contact->filling[i];
         add_scaled(pressure->slope[i], 1, contact->slope[i]);
     }
 }
 
+static void count_pairs(struct pressure *pressure, const struct particles *fluid)
+{
+    const sphg_sources sources = sources_of(pressure, fluid);
+    sphg_pairs pairs = {.offsets = pressure->offsets};
+    sph_check(pressure->sph, sphg_pair_gradients(pressure->sph->context, &pressure->sph->plain,
+                                                 &sources, NULL, sphg_absent(), &pairs));
+}
+
 /* How much compression a unit of potential takes from its own particle: by moving that, and by
  * moving its neighbours, of other density perhaps. */
 static double diagonal(const struct pressure *pressure, const struct particles *fluid, int32_t i)
 {
-    const struct pairs *pairs = &pressure->pairs;
-    double sum = dot(pressure->slope[i], pressure->slope[i]);
-    for (int64_t k = pairs->offsets[i]; k < pairs->offsets[i + 1]; k++) {
-        const double ratio = fluid->rest_density[i] / fluid->rest_density[pairs->indices[k]];
-        sum += ratio * dot(pairs->gradient[k], pairs->gradient[k]);
-    }
-    return sum;
+    return dot(pressure->slope[i], pressure->slope[i]) +
+           fluid->rest_density[i] * pressure->inverse_diagonal[i];
 }
 
 void pressure_prepare(struct pressure *pressure, struct particles *fluid)
 {
     const double support_radius = pressure->sph->plain.support_radius;
     const double least = 1e-8 / (support_radius * support_radius); /* a lone particle: no wall */
-    const sphg_sources sources = sources_of(pressure, fluid);
     sph_search(pressure->sph, pressure->neighbors, fluid->count, fluid->x);
     if (pressure->contact)
         contact_update(pressure->sph, pressure->contact, fluid);
     const double start = stopwatch_now();
     sum_compression(pressure, fluid);
-    pairs_update(pressure->sph, &sources, &pressure->pairs);
+    count_pairs(pressure, fluid);
     for (int32_t i = 0; i < fluid->count; i++) {
         const double sum = diagonal(pressure, fluid, i);
         pressure->inverse_diagonal[i] = sum > least ? 1 / sum : 0;
@@ -206,7 +213,7 @@ static void start_from_source(struct pressure *pressure, int32_t count)
 
 static int32_t count_neighbors(const struct pressure *pressure, int32_t i)
 {
-    const int64_t *offsets = pressure->pairs.offsets;
+    const int64_t *offsets = pressure->offsets;
     return (int32_t)(offsets[i + 1] - offsets[i]) +
            (pressure->contact ? pressure->contact->touching[i] : 0);
 }

@@ -7,7 +7,6 @@
  * pressure_keep_density, x += dt v. */
 #ifndef SOLVER_PRESSURE_H
 #define SOLVER_PRESSURE_H
-#include "pairs.h"
 #include "wall.h"
 
 struct pressure {
@@ -20,13 +19,13 @@ struct pressure {
 
     /* Of the last pressure_prepare, one per particle. */
     double *compression; /* density over rest density */
-    struct pairs pairs;  /* plain gradients V grad W among the fluid */
 
     /* Private */
     const struct sph *sph;
     struct contact *contact; /* NULL: no wall */
     sphg_neighbors *neighbors;
-    vector *slope; /* of the compression: what moving particle i alone does to it */
+    int64_t *offsets; /* of the pairs among the fluid */
+    vector *slope;    /* of the compression: what moving particle i alone does to it */
     double *inverse_diagonal, *potential, *reached, *stress, *source, *change;
     vector *displacement;
 };

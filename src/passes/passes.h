@@ -227,6 +227,9 @@ struct sphgi_passes {
     void (*sum_divergence)(const struct sphgi_piece *piece, int32_t dimension, sphg_shape shape,
                            enum sphgi_vectors vectors, const void *const *rows,
                            const void *at_target, void *partial);
+    /* sum A_j g g^T: one sum for its trace, d (d + 1) / 2 for its triangle */
+    void (*sum_squares)(const struct sphgi_piece *piece, int32_t dimension,
+                        enum sphgi_vectors vectors, int32_t sums, const void *rows, void *partial);
     void (*sum_value)(const struct sphgi_piece *piece, const void *rows, int32_t count,
                       void *partial);
     void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension,
@@ -268,6 +271,9 @@ struct sphgi_passes {
     /* divergence += each A . b */
     void (*add_product)(int32_t width, int32_t dimension, sphg_shape shape, const void *a,
                         const void *b, const void *each, void *divergence);
+    /* tr(C S C) of the triangle S */
+    void (*trace_between)(int32_t width, int32_t dimension, const void *correction,
+                          const void *sums, void *trace);
     void (*contract)(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
                      void *divergence, void *curl);
     void (*load_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,

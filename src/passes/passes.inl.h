@@ -27,7 +27,7 @@
 #include "search.inl.h"
 #include "shape.inl.h"
 #include "sums.inl.h"
-#include "divergence.inl.h"
+#include "contracted.inl.h"
 #include "classic.inl.h"
 #include "eigen.inl.h"
 #include "invert.inl.h"
@@ -64,6 +64,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_classic = sum_classic,
     .sum_field = sum_field,
     .sum_divergence = sum_divergence,
+    .sum_squares = sum_squares,
     .sum_value = sum_value,
     .sum_vectors = sum_vectors,
     .sum_volume = sum_volume,
@@ -81,6 +82,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .quotient = quotient,
     .add_outer = add_outer,
     .add_product = add_product,
+    .trace_between = trace_between,
     .contract = contract,
     .load_lanes = load_lanes,
     .store_lanes = store_lanes,

@@ -90,6 +90,8 @@ static sphg_result evaluate(fuzz_bytes *from, host *on, const sphg_neighbors *ne
         field.divergence = fuzz_view(on->type, on->results[1], d);
     if (on->shape == 2)
         field.curl = fuzz_view(on->type, on->results[2], d == 3 ? 3 : 1);
+    if (on->shape == SPHG_SCALAR && form == SPHG_DIRECT && fuzz_byte(from) % 2)
+        field.square = fuzz_view(on->type, on->results[1], 1);
     sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     if (width && form < 2)

@@ -281,9 +281,16 @@ static const argument of_direct[] = {
     VIEW("fields.divergence", field.divergence, OUTPUT),
     VIEW("fields.curl", field.curl, OUTPUT),
 };
+static const argument of_square[] = {
+    VIEW("sources.volume", sources[0].volume, REQUIRED),
+    ROW("sources.volume", VOLUMES, sources[0].volume),
+    VIEW("fields.at_sources", at_sources[0], 0),
+    VIEW("fields.square", field.square, OUTPUT),
+};
 static const probe probes_sphg_evaluate[] = {PROBE(NULL, call_evaluate, of_evaluate),
                                              PROBE(prepare_two_sided, call_evaluate, of_two_sided),
-                                             PROBE(prepare_direct, call_evaluate, of_direct)};
+                                             PROBE(prepare_direct, call_evaluate, of_direct),
+                                             PROBE(prepare_square, call_evaluate, of_square)};
 
 static const argument of_correction[] = {
     CONTEXT,

@@ -76,8 +76,8 @@ typedef struct oracle_field {
 } oracle_field;
 
 typedef struct oracle_result {
-    quad gradient[9], divergence[3], curl[3], value[9];
-    quad bound, value_bound;
+    quad gradient[9], divergence[3], curl[3], value[9], square;
+    quad bound, value_bound, square_bound;
     int touched;   /* a threshold acted on a particle involved */
     int undecided; /* one of them is undecided: do not compare */
 } oracle_result;

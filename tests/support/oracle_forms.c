@@ -255,6 +255,33 @@ static void sum_values(const oracle_scene *scene, const oracle_field *field, int
     add_value(scene, field, &self, point, result);
 }
 
+/* ---- Squares of gradients ------------------------------------------------------------------- */
+
+static void add_square(const oracle_scene *scene, quad a, const quad *gradient, quad size,
+                       quad bound, oracle_result *result)
+{
+    const quad norm = quad_norm(gradient, scene->scheme.dimension);
+    result->square += a * norm * norm;
+    result->square_bound += 2 * quad_abs(a) * size * bound;
+}
+
+/* size: of what C_i is multiplied with, however much of it C_i takes away. */
+static void sum_squares(const oracle_scene *scene, const oracle_field *field, int i,
+                        const oracle_point *point, oracle_result *result)
+{
+    const int d = scene->scheme.dimension, classic = oracle_is_classic(scene->scheme.method);
+    for (int k = 0; k < point->pair_count; k++) {
+        const oracle_pair *pair = &point->pairs[k];
+        add_square(scene, field->at_sources[pair->j], pair->gradient,
+                   classic ? quad_norm(pair->gradient, d)
+                           : point->correction_norm * quad_abs(pair->s) * pair->r,
+                   pair->bound, result);
+    }
+    if (point->has_self && classic)
+        add_square(scene, field->at_sources[i], point->self_gradient,
+                   quad_norm(point->self_gradient, d), point->self_bound, result);
+}
+
 oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i)
 {
     oracle_result result = {.touched = 0};
@@ -266,6 +293,8 @@ oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i)
     if (field->form == SPHG_DIRECT &&
         (reference->scene.volume || oracle_is_classic(reference->scene.scheme.method)))
         sum_values(&reference->scene, field, i, point, &result);
+    if (field->form == SPHG_DIRECT && field->shape == SPHG_SCALAR)
+        sum_squares(&reference->scene, field, i, point, &result);
     return result;
 }
 

@@ -107,10 +107,12 @@ static stage_result empty_result(const stage *on, const stage_field *field)
     int n = on->points.count, d = on->points.dimension;
     sphg_type type = test_field_type(on->test);
     int value_width = field->form == SPHG_DIRECT ? fixture_width(field->shape, d) : 0;
+    int square_width = field->form == SPHG_DIRECT && field->shape == SPHG_SCALAR;
     stage_result result = {fixture_output(type, n, gradient_width(field->shape, d)),
                            fixture_output(type, n, divergence_width(field->shape, d)),
                            fixture_output(type, n, curl_width(field->shape, d)),
-                           fixture_output(type, n, value_width)};
+                           fixture_output(type, n, value_width),
+                           fixture_output(type, n, square_width)};
     return result;
 }
 
@@ -129,6 +131,7 @@ stage_result stage_apply_to(const stage *on, const stage_field *field, const fix
     asked.divergence = wanted(&result.divergence);
     asked.curl = wanted(&result.curl);
     asked.value = wanted(&result.value);
+    asked.square = wanted(&result.square);
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
     request.subset = subset;
@@ -146,7 +149,8 @@ int stage_results_have_same_bits(const stage_result *a, const stage_result *b)
 {
     return fixture_same_bits(&a->gradient, &b->gradient) &&
            fixture_same_bits(&a->divergence, &b->divergence) &&
-           fixture_same_bits(&a->curl, &b->curl) && fixture_same_bits(&a->value, &b->value);
+           fixture_same_bits(&a->curl, &b->curl) && fixture_same_bits(&a->value, &b->value) &&
+           fixture_same_bits(&a->square, &b->square);
 }
 
 /* ---- Comparison ------------------------------------------------------------------------------ */
@@ -188,8 +192,9 @@ void stage_compare(const stage *on, const stage_field *field, const stage_result
     } rows[] = {{"gradient", &found->gradient, exact.gradient, exact.bound},
                 {"divergence", &found->divergence, exact.divergence, exact.bound},
                 {"curl", &found->curl, exact.curl, exact.bound},
-                {"value", &found->value, exact.value, exact.value_bound}};
-    for (int k = 0; k < 4; k++)
+                {"value", &found->value, exact.value, exact.value_bound},
+                {"square", &found->square, &exact.square, exact.square_bound}};
+    for (int k = 0; k < 5; k++)
         if (rows[k].array->width > 0)
             gate(on, test_text("%s %s", forms[field->form], rows[k].what),
                  stage_ratio(rows[k].array, i, rows[k].numbers, rows[k].bound), exact.touched, i);

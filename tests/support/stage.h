@@ -40,7 +40,7 @@ double *stage_random_field(const stage *on, sphg_shape shape, uint64_t seed);
 
 /* Every operator the shape has; arrays without numbers where it has none. */
 typedef struct stage_result {
-    fixture_array gradient, divergence, curl, value;
+    fixture_array gradient, divergence, curl, value, square;
 } stage_result;
 
 /* table: NULL: corrections are computed in the same sweep. Two-sided forms need it. */

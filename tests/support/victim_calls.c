@@ -140,6 +140,14 @@ void prepare_direct(victim *own)
     own->request.fields = &own->field;
 }
 
+void prepare_square(victim *own)
+{
+    own->field.form = SPHG_DIRECT;
+    own->field.at_targets = own->field.gradient = sphg_absent();
+    own->field.square = own->scalar_out;
+    own->request.fields = &own->field;
+}
+
 void prepare_with_table(victim *own)
 {
     own->sources[0].correction = own->table;

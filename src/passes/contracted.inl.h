@@ -1,4 +1,5 @@
-/* Divergences of vectors and tensors, contracted pair by pair: no more sums than results. */
+/* Divergences of vectors and tensors and squares of gradients, contracted pair by pair: as few sums
+ * as results where nothing is to come. */
 
 /* Component (a, b) of a tensor among those that the shape holds. */
 SPHGI_TEMPLATE int tensor_index(sphg_shape shape, int a, int b, int d)
@@ -122,4 +123,86 @@ static void add_product(int32_t width, int32_t dimension, sphg_shape shape, cons
 {
     for (int32_t l = 0; l < width; l += LANES)
         add_product_as(l, dimension, shape, a, b, each, divergence);
+}
+
+/* ---- Squares -------------------------------------------------------------------------------- */
+
+SPHGI_TEMPLATE void squares_as(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                               const real *rows, void *partial, bool three, bool trace, bool wide)
+{
+    const int d = three ? 3 : 2, sums = trace ? 1 : d * (d + 1) / 2;
+    for (int32_t p = 0; p < piece->parts; ++p) {
+        struct listed list = first_listed(piece, p, wide);
+        vec sum[6];
+        for (int c = 0; c < sums; ++c)
+            sum[c] = begin_sum(piece, p, partial, c);
+        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
+             k += LANES, list = after(list, LANES)) {
+            const vec a = gather_rows(rows, list).x;
+            vec g[3];
+            vectors_at(piece, k, vectors, three, g);
+            for (int b = 0; b < d; ++b)
+                for (int c = b; c < (trace ? b + 1 : d); ++c)
+                    sum[trace ? 0 : pair_index(b, c, d)] += a * g[b] * g[c];
+        }
+        for (int c = 0; c < sums; ++c)
+            *partial_of(partial, c, piece->lane[p]) = sum[c];
+    }
+}
+
+SPHGI_TEMPLATE void squares_ids(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                                const void *rows, void *partial, bool three, bool trace)
+{
+    if (piece->wide)
+        squares_as(piece, vectors, rows, partial, three, trace, true);
+    else
+        squares_as(piece, vectors, rows, partial, three, trace, false);
+}
+
+SPHGI_TEMPLATE void squares_in(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
+                               int32_t sums, const void *rows, void *partial, bool three)
+{
+    if (sums > 1)
+        squares_ids(piece, SPHGI_FACTORS, rows, partial, three, false);
+    else if (vectors == SPHGI_FACTORS)
+        squares_ids(piece, SPHGI_FACTORS, rows, partial, three, true);
+    else
+        squares_ids(piece, SPHGI_GRADIENTS, rows, partial, three, true);
+}
+
+static void sum_squares(const struct sphgi_piece *piece, int32_t dimension,
+                        enum sphgi_vectors vectors, int32_t sums, const void *rows, void *partial)
+{
+    if (dimension == 3)
+        squares_in(piece, vectors, sums, rows, partial, true);
+    else
+        squares_in(piece, vectors, sums, rows, partial, false);
+}
+
+/* sum_ab C_ab (C S)_ab */
+SPHGI_TEMPLATE vec trace_between_as(const real *correction, const real *sums, int d)
+{
+    vec c[6], s[6], trace = splat(R(0));
+    for (int k = 0; k < d * (d + 1) / 2; ++k) {
+        c[k] = load(correction + k * SPHGI_WIDTH);
+        s[k] = load(sums + k * SPHGI_WIDTH);
+    }
+    for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b) {
+            vec product = c[pair_index(a, 0, d)] * s[pair_index(0, b, d)];
+            for (int k = 1; k < d; ++k)
+                product += c[pair_index(a, k, d)] * s[pair_index(k, b, d)];
+            trace += c[pair_index(a, b, d)] * product;
+        }
+    return trace;
+}
+
+static void trace_between(int32_t width, int32_t dimension, const void *correction,
+                          const void *sums, void *trace)
+{
+    for (int32_t l = 0; l < width; l += LANES) {
+        const real *c = (const real *)correction + l, *s = (const real *)sums + l;
+        store((real *)trace + l,
+              dimension == 3 ? trace_between_as(c, s, 3) : trace_between_as(c, s, 2));
+    }
 }
