@@ -229,8 +229,8 @@ struct sides {
     const void *each;
 };
 
-/* adjoint: f = (1/H) (V_i A_i G + H^d sum V_j A_j T), with H^d V_i = V_i H^-d H^d; KGC, RKPM and
- * PLAIN have V_i inside T, too. symmetric: f = (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
+/* adjoint: f = (1/H) (V_i A_i G + H^d sum V_j A_j T), with H^d V_i = V_i H^-d H^d; KGC and
+ * RKPM have V_i inside T, too. symmetric: f = (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
 static struct sides sides_of(struct sphgi_worker *w, bool symmetric)
 {
     const struct sphgi_plan *plan = w->sweep->plan;

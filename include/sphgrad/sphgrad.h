@@ -26,9 +26,10 @@
  *           as const may be shared by concurrent calls. Same input, same bits: for any number
  *           of threads, any executor, any split into subsets.
  * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
- *           normal numbers; f64 far beyond. Tables of corrections, and squares, must be numbers,
- * too. Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never
- * an error, never NaN; each target's `rank` tells how much could be corrected. */
+ *           normal numbers; f64 far beyond. Corrections in a table must be representable, too, and
+ *           squares, which have the unit 1 / L^2.
+ * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
+ *           error, never NaN; each target's `rank` tells how much could be corrected. */
 #ifndef SPHGRAD_SPHGRAD_H
 #define SPHGRAD_SPHGRAD_H
 #include <stddef.h>
@@ -350,8 +351,8 @@ typedef struct sphg_field {
     sphg_view gradient;          /* [a/L] scalar -> vector, vector -> tensor */
     sphg_view divergence;        /* [a/L] vector -> scalar, tensor or symmetric -> vector */
     sphg_view curl;              /* [a/L] vector -> vector, in 2D -> scalar */
-    sphg_view square; /* [a/L^2] DIRECT form of a scalar only: sum A_j |G_ij|^2, a scalar;
-                         classic: self included. For diagonals of pressure systems */
+    sphg_view square;            /* [a/L^2] DIRECT scalar only: sum A_j |G_ij|^2, for diagonals of
+                                    pressure systems; classic: self included */
 } sphg_field;
 
 /* Sums over the targets of one call whose corrections were computed. */
