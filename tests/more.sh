@@ -47,8 +47,8 @@ run_long() {
     return $status
 }
 
-# New inputs go to build/fuzz/corpus, the kept ones are only read. SPHG_FUZZ_RUNS ends a target after so
-# many executions, SPHG_FUZZ_TARGETS names some of them.
+# New inputs go to build/fuzz/corpus, the kept ones are only read. SPHG_FUZZ_RUNS ends a target after
+# so many executions, SPHG_FUZZ_TARGETS names some of them.
 run_fuzz() {
     local target status=0
     build_preset fuzz -DSPHG_BUILD_TESTS=ON || return 1
@@ -56,8 +56,8 @@ run_fuzz() {
         mkdir -p "build/fuzz/corpus/$target"
         printf '== %s\n' "$target"
         "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="${SPHG_FUZZ_SECONDS:-60}" \
-            -runs="${SPHG_FUZZ_RUNS:--1}" -max_len=1024 -timeout=10 -rss_limit_mb=1024 -entropic=0 -print_final_stats=1 -verbosity=0 \
-            -artifact_prefix="build/fuzz/$target-" \
+            -runs="${SPHG_FUZZ_RUNS:--1}" -max_len=1024 -timeout=10 -rss_limit_mb=1024 \
+            -entropic=0 -print_final_stats=1 -verbosity=0 -artifact_prefix="build/fuzz/$target-" \
             "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" || status=1
     done
     return $status
