@@ -66,7 +66,7 @@ static sphg_sources sources_of(const struct pressure *pressure, const struct par
 static void sum_compression(struct pressure *pressure, const struct particles *fluid)
 {
     const double one = 1;
-    double *lightness = pressure->change;
+    double *lightness = pressure->change; /* nothing changes yet */
     const sphg_view ones = everywhere(&one), light = scalars(lightness);
     const sphg_sources sources = sources_of(pressure, fluid);
     const struct contact *contact = pressure->contact;
