@@ -398,7 +398,7 @@ static bool make_room(struct making *making)
     const sphg_request *request = making->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
     const size_t streams = sets * (3 * fields + 5);
-    const size_t views = sets * (fields + 3) + 6 * fields + 8;
+    const size_t views = sets * (fields + 3) + 5 * fields + 8;
     const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
                             fields * sizeof(struct sphgi_field_plan),
                             streams * sizeof(struct sphgi_stream),
