@@ -266,6 +266,16 @@ static void pair_gradients_match_the_oracle(const test_case *test)
     }
 }
 
+/* Rows so long that they are sorted in another way. */
+static void pair_gradients_of_a_crowd_match_the_oracle(const test_case *test)
+{
+    random_state random = random_seeded(58);
+    stage on = stage_of(test, "crowd", cloud_random(test->dimension, 200, .5, &random), 1.);
+    pair_list list = list_pairs(&on);
+    for (int i = 0; i < 200; i += 83)
+        compare_row(&on, &list, i);
+}
+
 static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
 {
     stage on = stage_of_scene(test, &scenes_hard[0]);
@@ -333,6 +343,8 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(pair_gradients_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, KERNELS_AT_THE_EXTREMES),
+    TEST_ENTRY(pair_gradients_of_a_crowd_match_the_oracle, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(one_pair_at_a_time_matches_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(fused_sweep_equals_table_to_the_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

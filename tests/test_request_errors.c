@@ -104,6 +104,23 @@ static void evaluate_refuses_bad_fields(const test_case *test)
             own->sources[0].neighbors = own->lone); /* nobody to look them up from */
 }
 
+static void evaluate_refuses_corrections_that_plain_has_not(const test_case *test)
+{
+    subject *own = subject_create(test);
+    sphg_stats stats;
+#define NOTHING_OF_PLAIN                                                                           \
+    own->scheme.method = SPHG_PLAIN;                                                               \
+    own->request.correction = own->request.rank = own->request.lambda_min = sphg_absent();         \
+    own->request.stats = NULL
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "PLAIN", NOTHING_OF_PLAIN;
+            own->request.rank = own->ranks_out);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "PLAIN", NOTHING_OF_PLAIN;
+            own->request.lambda_min = own->scalars_out);
+    REFUSES(evaluate, SPHG_ERROR_UNSUPPORTED, "PLAIN", NOTHING_OF_PLAIN;
+            own->request.stats = &stats);
+#undef NOTHING_OF_PLAIN
+}
+
 /* Which results a shape and a form have. */
 static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *test)
 {
@@ -444,6 +461,7 @@ static const test_entry entries[] = {
     EACH(evaluate_refuses_bad_schemes),
     EACH(evaluate_refuses_bad_sources),
     EACH(evaluate_refuses_bad_fields),
+    EACH(evaluate_refuses_corrections_that_plain_has_not),
     EACH(evaluate_refuses_operators_that_a_shape_has_not),
     EACH(two_sided_forms_need_tables_and_densities),
     EACH(evaluate_refuses_bad_outputs_of_corrections),

@@ -209,13 +209,15 @@ static void compare_probe(const probe *made, sphg_form form)
     double *numbers = stage_random_field(on, SPHG_SCALAR, 23);
     fixture_array field = fixture_numbers(type, on->points.count, 1, numbers);
     fixture_array at_targets = fixture_numbers(type, n, 1, made->at_targets);
-    fixture_array gradient = fixture_output(type, n, d), volume;
+    fixture_array gradient = fixture_output(type, n, d), square = fixture_output(type, n, 1),
+                  volume;
     sphg_view at_sources = fixture_view(&field);
     sphg_sources sources = stage_sources(on);
     sources.neighbors = made->neighbors;
     sphg_field asked = {.shape = SPHG_SCALAR, .form = form, .at_sources = &at_sources};
     asked.at_targets = fixture_view(&at_targets);
     asked.gradient = fixture_view(&gradient);
+    asked.square = form == SPHG_DIRECT ? fixture_view(&square) : sphg_absent();
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
     if (made->target_volume) {
@@ -227,6 +229,9 @@ static void compare_probe(const probe *made, sphg_form form)
     for (int i = 0; i < n; i++) {
         oracle_result exact = oracle_apply(on->reference, &exact_field, i);
         double ratio = stage_ratio(&gradient, i, exact.gradient, exact.bound);
+        double of_square = stage_ratio(&square, i, &exact.square, exact.square_bound);
+        if (form == SPHG_DIRECT && !(of_square <= ratio))
+            ratio = of_square;
         if (exact.touched)
             TEST_WITHIN(oracle_ratio_touched, ratio, "probe");
         else
@@ -277,6 +282,64 @@ static void fields_of_one_call_equal_calls_of_one_field(const test_case *test)
     FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
     for (int f = 0; f < 3; f++)
         TEST_REQUIRE(fixture_same_bits(&together[f], &alone[f].gradient), "field %d", f);
+}
+
+static const fixture_array *result_of(const stage_result *found, int which)
+{
+    const fixture_array *results[] = {&found->gradient, &found->divergence, &found->curl,
+                                      &found->value, &found->square};
+    return results[which];
+}
+
+static void a_result_alone_has_the_bits_it_has_among_all(const test_case *test)
+{
+    random_state random = random_seeded(84);
+    int d = test->dimension;
+    stage on =
+        stage_of(test, "block", cloud_jittered(d, d == 2 ? 6 : 4, .125, .25, &random), 2.5 * .125);
+    fixture_array table = stage_table(&on);
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
+            const fixture_array *given = form < SPHG_SYMMETRIC ? NULL : &table;
+            stage_field field = {(sphg_shape)shape, (sphg_form)form,
+                                 stage_random_field(&on, (sphg_shape)shape, 91)};
+            stage_result all = stage_apply(&on, &field, given);
+            for (int which = 0; which < 5; which++) {
+                stage_result alone = stage_apply_alone(&on, &field, given, which);
+                TEST_REQUIRE(fixture_same_bits(result_of(&all, which), result_of(&alone, which)),
+                             "result %d of shape %d in form %d", which, shape, form);
+            }
+        }
+}
+
+/* One call for everything that is known of the corrections, one for each. */
+static void what_is_known_of_corrections_is_the_same_alone(const test_case *test)
+{
+    random_state random = random_seeded(85);
+    int d = test->dimension, n;
+    stage on = stage_of(test, "thin", cloud_jittered(d, 4, .125, .5, &random), 1.5 * .125);
+    sphg_type type = test_field_type(test);
+    sphg_sources sources = stage_sources(&on);
+    sphg_stats stats[2];
+    fixture_array found[2][3];
+    memset(stats, 0, sizeof stats);
+    n = on.points.count;
+    for (int which = -1; which < 4; which++) {
+        fixture_array *to = found[which >= 0];
+        sphg_request request = {.sources = &sources, .set_count = 1};
+        to[0] = fixture_output(type, n, sphg_correction_width(&on.scheme));
+        to[1] = fixture_output(SPHG_U8, n, 1);
+        to[2] = fixture_output(type, n, 1);
+        request.correction = which < 0 || which == 0 ? fixture_view(&to[0]) : sphg_absent();
+        request.rank = which < 0 || which == 1 ? fixture_view(&to[1]) : sphg_absent();
+        request.lambda_min = which < 0 || which == 2 ? fixture_view(&to[2]) : sphg_absent();
+        request.stats = which < 0 || which == 3 ? &stats[which >= 0] : NULL;
+        FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+        if (which == 3)
+            assert_memory_equal(&stats[0], &stats[1], sizeof stats[0]);
+        else if (which >= 0)
+            TEST_REQUIRE(fixture_same_bits(&found[0][which], &to[which]), "%d", which);
+    }
 }
 
 static void accumulate_adds_to_what_is_there(const test_case *test)
@@ -394,6 +457,10 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(fields_of_one_call_equal_calls_of_one_field, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(a_result_alone_has_the_bits_it_has_among_all, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(what_is_known_of_corrections_is_the_same_alone, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(a_crowd_of_sources_is_summed_alike_for_any_subset, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(accumulate_adds_to_what_is_there, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

@@ -59,8 +59,10 @@ static placed place(sphg_type type, int height, int columns, layout kind)
     unsigned char *first = own.memory + size + (backwards ? (COUNT - 1) * step : 0);
     own.view = (sphg_view){first, NULL, NULL, backwards ? -step : step, type};
     if (has_rows(kind, height)) {
-        own.view.y = first + row_start(kind, 1, columns) * size;
-        own.view.z = height > 2 ? first + row_start(kind, 2, columns) * size : NULL;
+        const void *y = first + row_start(kind, 1, columns) * size;
+        const void *z = height > 2 ? first + row_start(kind, 2, columns) * size : NULL;
+        own.view = type == SPHG_F64 ? sphg_xyz_f64((const void *)first, y, z, own.view.stride)
+                                    : sphg_xyz_f32((const void *)first, y, z, own.view.stride);
     }
     return own;
 }

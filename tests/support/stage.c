@@ -116,8 +116,9 @@ static stage_result empty_result(const stage *on, const stage_field *field)
     return result;
 }
 
-stage_result stage_apply_to(const stage *on, const stage_field *field, const fixture_array *table,
-                            const sphg_subset *subset)
+/* asks: a bit per result */
+static stage_result evaluate(const stage *on, const stage_field *field, const fixture_array *table,
+                             const sphg_subset *subset, unsigned asks)
 {
     int width = fixture_width(field->shape, on->points.dimension);
     fixture_array numbers =
@@ -127,17 +128,34 @@ stage_result stage_apply_to(const stage *on, const stage_field *field, const fix
     sphg_sources sources = stage_sources(on);
     sources.correction = stage_table_view(on, table);
     sphg_field asked = {.shape = field->shape, .form = field->form, .at_sources = &at_sources};
-    asked.gradient = wanted(&result.gradient);
-    asked.divergence = wanted(&result.divergence);
-    asked.curl = wanted(&result.curl);
-    asked.value = wanted(&result.value);
-    asked.square = wanted(&result.square);
+    const struct {
+        sphg_view *view;
+        const fixture_array *array;
+    } results[] = {{&asked.gradient, &result.gradient},
+                   {&asked.divergence, &result.divergence},
+                   {&asked.curl, &result.curl},
+                   {&asked.value, &result.value},
+                   {&asked.square, &result.square}};
+    for (int k = 0; k < 5; k++)
+        *results[k].view = asks >> k & 1 ? wanted(results[k].array) : sphg_absent();
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
     request.subset = subset;
     request.target_correction = sources.correction;
     FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return result;
+}
+
+stage_result stage_apply_to(const stage *on, const stage_field *field, const fixture_array *table,
+                            const sphg_subset *subset)
+{
+    return evaluate(on, field, table, subset, ~0u);
+}
+
+stage_result stage_apply_alone(const stage *on, const stage_field *field,
+                               const fixture_array *table, int which)
+{
+    return evaluate(on, field, table, NULL, 1u << which);
 }
 
 stage_result stage_apply(const stage *on, const stage_field *field, const fixture_array *table)

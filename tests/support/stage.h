@@ -47,6 +47,9 @@ typedef struct stage_result {
 stage_result stage_apply(const stage *on, const stage_field *field, const fixture_array *table);
 stage_result stage_apply_to(const stage *on, const stage_field *field, const fixture_array *table,
                             const sphg_subset *subset);
+/* Asks for one of the five results, in the order of stage_result, and for nothing else. */
+stage_result stage_apply_alone(const stage *on, const stage_field *field,
+                               const fixture_array *table, int which);
 int stage_results_have_same_bits(const stage_result *a, const stage_result *b);
 
 /* |found - exact| / bound; 0 / 0 is 0. */
