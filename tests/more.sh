@@ -26,7 +26,7 @@ run_tsan() {
 }
 
 # The areas that take SPHG_TEST_LONG=1; of the ensembles, whose reference is in quad, one process for
-# each precision.
+# each precision. Then all scenes of the examples, and threads under ThreadSanitizer.
 run_long() {
     local area precision process processes=() status=0
     build_preset release -DSPHG_BUILD_TESTS=ON || return 1
@@ -43,6 +43,7 @@ run_long() {
     done
     cat build/release/f32.log build/release/f64.log
     unset SPHG_TEST_LONG
+    examples/run all --check || status=1
     run_tsan || status=1
     return $status
 }
