@@ -54,9 +54,7 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
         plan->differentiates |= field->differentiates;
         plan->wants_value |= field->value.count > 0;
         plan->adjoint |= field->differentiates && field->form == SPHG_ADJOINT;
-        for (int symmetric = 0; symmetric < 2; ++symmetric)
-            plan->transposes[symmetric] |= field->differentiates && !field->forward &&
-                                           symmetric == (field->form == SPHG_SYMMETRIC);
+        plan->transposes[field->form == SPHG_SYMMETRIC] |= field->differentiates && !field->forward;
         needs_correction |= field->differentiates || (plan->classic && field->value.count);
     }
     plan->corrects = method != SPHG_PLAIN && needs_correction;
