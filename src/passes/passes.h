@@ -222,8 +222,7 @@ struct sphgi_passes {
     void (*sum_field)(const struct sphgi_piece *piece, int32_t dimension,
                       enum sphgi_vectors vectors, const void *rows, int32_t count,
                       const void *at_target, void *partial);
-    /* The same, contracted: vector sum (A_j - A_i) . g, tensors row by row. rows: of each stream.
-     */
+    /* The same, contracted: (A_j - A_i) . g, of tensors row by row. rows: of each stream */
     void (*sum_divergence)(const struct sphgi_piece *piece, int32_t dimension, sphg_shape shape,
                            enum sphgi_vectors vectors, const void *const *rows,
                            const void *at_target, void *partial);
