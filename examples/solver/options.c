@@ -13,7 +13,10 @@ static const struct argp_option described[] = {
     {"alone", 'a', NULL, 0, "this method without sph beside it, and no picture", 0},
     {"size", 's', "NAME", 0, "quick or full (default: quick)", 0},
     {"seed", 'r', "N", 0, "of the random numbers (default: 1)", 0},
-    {"threads", 't', "N", 0, "default: the library's, or 1 for few particles", 0},
+    {"threads", 't', "N", 0,
+     "methods in turn on so many threads (default: quick sizes run methods side by side, each on "
+     "one; full sizes on all, or on one while particles are few)",
+     0},
     {"output", 'o', "DIR", 0, "write pictures, tables and particles there", 0},
     {"check", 'c', NULL, 0, "compare with the gates of this scene; status 1 if one fails", 0},
     {0}};

@@ -1,10 +1,14 @@
-#define _POSIX_C_SOURCE 200809L /* clock_gettime, isatty */
+#define _DEFAULT_SOURCE /* fork, isatty, MAP_ANONYMOUS */
 #include "scene.h"
 #include "output.h"
 #include "stopwatch.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 struct sph run_open(const struct run *run, int32_t dimension, double support_radius,
@@ -19,7 +23,8 @@ struct sph run_open(const struct run *run, int32_t dimension, double support_rad
 void run_progress(const struct run *run, double done, double of)
 {
     static double shown;
-    if (!isatty(STDERR_FILENO) || (done < of && stopwatch_wall() - shown < 0.2))
+    if (!run->shows_progress || !isatty(STDERR_FILENO) ||
+        (done < of && stopwatch_wall() - shown < 0.2))
         return;
     shown = stopwatch_wall();
     fprintf(stderr, "\r%s, %s: %3.0f %%%s", run->options->scene, method_names[run->method],
@@ -34,13 +39,72 @@ static bool is_run(const struct scene *scene, const struct options *options, enu
 }
 
 static void simulate(const struct scene *scene, const struct options *options, enum method method,
-                     struct metrics *metrics)
+                     struct metrics *metrics, bool shows_progress)
 {
-    const struct run run = {options, method, metrics};
+    const struct run run = {options, method, metrics, shows_progress};
     const double start = stopwatch_wall();
     scene->simulate(&run);
     metrics_set(metrics, "seconds", stopwatch_wall() - start);
-    metrics_print(options, method, metrics);
+}
+
+static void simulate_in_turn(const struct scene *scene, const struct options *options,
+                             struct metrics runs[METHOD_COUNT])
+{
+    for (int m = SPH; m < METHOD_COUNT; m++)
+        if (is_run(scene, options, (enum method)m)) {
+            simulate(scene, options, (enum method)m, &runs[m], true);
+            metrics_print(options, (enum method)m, &runs[m]);
+        }
+}
+
+static pid_t begin(const struct scene *scene, const struct options *options, enum method method,
+                   struct metrics *metrics)
+{
+    const pid_t process = fork();
+    if (process < 0) {
+        perror("no process for a method");
+        exit(EXIT_FAILURE);
+    }
+    if (process > 0)
+        return process;
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* no method outlives the scene */
+    simulate(scene, options, method, metrics, method == options->method);
+    exit(EXIT_SUCCESS);
+}
+
+static void await(const struct options *options, enum method method, pid_t process)
+{
+    int status;
+    if (waitpid(process, &status, 0) == process && status == 0)
+        return;
+    fprintf(stderr, "%s, %s: ended early\n", options->scene, method_names[method]);
+    exit(EXIT_FAILURE);
+}
+
+/* Each method in a process of its own. */
+static void simulate_side_by_side(const struct scene *scene, const struct options *options,
+                                  struct metrics runs[METHOD_COUNT])
+{
+    pid_t processes[METHOD_COUNT];
+    for (int m = SPH; m < METHOD_COUNT; m++)
+        if (is_run(scene, options, (enum method)m))
+            processes[m] = begin(scene, options, (enum method)m, &runs[m]);
+    for (int m = SPH; m < METHOD_COUNT; m++)
+        if (is_run(scene, options, (enum method)m)) {
+            await(options, (enum method)m, processes[m]);
+            metrics_print(options, (enum method)m, &runs[m]);
+        }
+}
+
+static struct metrics *shared_metrics(void)
+{
+    void *memory = mmap(NULL, METHOD_COUNT * sizeof(struct metrics), PROT_READ | PROT_WRITE,
+                        MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) {
+        perror("no memory for metrics");
+        exit(EXIT_FAILURE);
+    }
+    return memory;
 }
 
 static void draw(const struct scene *scene, const struct options *options)
@@ -55,12 +119,13 @@ static void draw(const struct scene *scene, const struct options *options)
 int scene_main(const struct scene *scene, int argc, char **argv)
 {
     const struct options options = options_read(scene->name, scene->about, argc, argv);
-    static struct metrics runs[METHOD_COUNT];
+    struct metrics *runs = shared_metrics();
     if (options.output)
         output_explain();
-    for (int m = SPH; m < METHOD_COUNT; m++)
-        if (is_run(scene, &options, (enum method)m))
-            simulate(scene, &options, (enum method)m, &runs[m]);
+    if (options.full || options.threads)
+        simulate_in_turn(scene, &options, runs);
+    else
+        simulate_side_by_side(scene, &options, runs);
     draw(scene, &options);
     return !options.check || gates_hold(&options, scene->gates, runs) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -10,6 +10,7 @@ struct run {
     const struct options *options;
     enum method method;
     struct metrics *metrics;
+    bool shows_progress;
 };
 
 struct scene {
@@ -20,6 +21,8 @@ struct scene {
     bool checks_all; /* --check runs all methods, else SPH and KGC */
 };
 
+/* Quick sizes run their methods side by side, a process with a thread each, unless the user names a
+ * number of threads; full ones run them in turn. */
 int scene_main(const struct scene *scene, int argc, char **argv);
 
 /* The library for a run of so many particles: unless the user said otherwise on one thread while

@@ -28,12 +28,18 @@ rm -rf "$directory"
 lines=$("$program" --method mls --seed 7 --output "$directory") || complain "the scene failed"
 [ "$(printf '%s\n' "$lines" | grep -c '^{"scene": "vorticity", "method": "\(sph\|mls\)", .*"seed": 7, .*}$')" -eq 2 ] ||
     complain "not a line of metrics for each method: $lines"
+without_seconds() { printf '%s\n' "$1" | sed 's/"seconds": [^}]*//'; }
+in_turn=$("$program" --method mls --seed 7 --threads 1) || complain "the scene failed in turn"
+[ "$(without_seconds "$lines")" = "$(without_seconds "$in_turn")" ] ||
+    complain "side by side: $lines, in turn: $in_turn"
 for method in sph mls; do
     [ -s "$directory/vorticity_${method}_spin.dat" ] || complain "no table for $method"
     if [ -n "$reader" ]; then
         "$reader" "$directory/vorticity_${method}_0000.vtkhdf" spin || complain "particles of $method"
     fi
 done
+mkdir "$directory/obstacle" "$directory/obstacle/vorticity_sph_spin.dat"
+"$program" --output "$directory/obstacle" >/dev/null 2>&1 && complain "a method failed, the scene did not"
 if command -v gnuplot >/dev/null 2>&1; then
     [ -s "$directory/vorticity.png" ] || complain "no picture"
     rm -f "$directory/vorticity.png"
