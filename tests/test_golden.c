@@ -248,7 +248,7 @@ static void try_threads(const setting *own, sphg_isa isa, const hashes *expected
 {
     static const int32_t some[] = {3, 64, 2, 5, 8, 16, 33};
     random_state shifts = random_seeded(193);
-    const int count = long_or(64, TEST_SLOWED ? 2 : (int)(sizeof some / sizeof *some));
+    const int count = long_or(64, TEST_SLOWED ? 1 : (int)(sizeof some / sizeof *some));
     for (int k = 0; k < count; k++) {
         const int32_t threads = count == 64 ? k + 1 : some[k];
         const sphg_config config = {.isa = isa, .threads = threads};
@@ -261,7 +261,7 @@ static void try_executors(const setting *own, sphg_isa isa, const hashes *expect
 {
     hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
     random_state shifts = random_seeded(197);
-    for (int k = 2; k < (TEST_SLOWED ? 5 : 9); k++) {
+    for (int k = 2; k < (TEST_SLOWED ? 3 : 9); k++) {
         hooks host;
         hooks_open(&host);
         host.workers = k == 2 ? 64 : k < 6 ? 1 : 7;

@@ -1,5 +1,6 @@
 #include "pairs.h"
 #include "fixture.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -38,47 +39,48 @@ sphg_geometry scene_geometry(const scene *particles)
     return geometry;
 }
 
+/* Floats and doubles are rounded as written: the predicate decides by single bits. */
+_Static_assert(FLT_EVAL_METHOD == 0, "extended precision would decide otherwise");
+
+static double rounded(const scene *particles, double x)
+{
+    return particles->is_double ? x : (double)(float)x;
+}
+
 /* The difference of two coordinates, shifted by whole periods to the nearest image. The tests'
- * periods are short enough in bits for k * period to be exact. */
+ * periods are short enough in bits for k * period to be exact. A sum of two floats that is rounded
+ * to double first and then to float is the one that is rounded once, since 53 >= 2 * 24 + 2. */
 static double separation(const scene *particles, double a, double b, int axis)
 {
     const double period = particles->period[axis];
-    const volatile float single = (float)a - (float)b;
-    const volatile double full = a - b;
-    const double difference = particles->is_double ? full : (double)single;
+    const double difference = rounded(particles, a - b);
     double best = difference;
     const double nearest = period > 0 ? -nearbyint(difference / period) : 0;
     for (int k = -1; k <= 1 && period > 0; k++) {
-        const double shift = (nearest + k) * period;
-        const volatile float single_image = (float)difference + (float)shift;
-        const volatile double full_image = difference + shift;
-        const double image = particles->is_double ? full_image : (double)single_image;
+        const double shift = rounded(particles, (nearest + k) * period);
+        const double image = rounded(particles, difference + shift);
         if (fabs(image) < fabs(best))
             best = image;
     }
     return best;
 }
 
-static int is_near_single(int d, const double *difference, double support_radius)
+static int is_near_single(int d, const double *difference, float support_radius)
 {
-    volatile float sum = 0, square;
+    float sum = 0;
     for (int k = 0; k < d; k++) {
-        square = (float)difference[k] * (float)difference[k];
+        const float square = (float)difference[k] * (float)difference[k];
         sum = sum + square;
     }
-    square = (float)support_radius * (float)support_radius;
-    return sum < square;
+    return sum < support_radius * support_radius;
 }
 
 static int is_near_double(int d, const double *difference, double support_radius)
 {
-    volatile double sum = 0, square;
-    for (int k = 0; k < d; k++) {
-        square = difference[k] * difference[k];
-        sum = sum + square;
-    }
-    square = support_radius * support_radius;
-    return sum < square;
+    double sum = 0;
+    for (int k = 0; k < d; k++)
+        sum = sum + difference[k] * difference[k];
+    return sum < support_radius * support_radius;
 }
 
 static int is_neighbour(const scene *particles, int i, int j, double support_radius)
@@ -86,13 +88,18 @@ static int is_neighbour(const scene *particles, int i, int j, double support_rad
     const int d = particles->dimension;
     const double *target = (particles->targets ? particles->targets : particles->sources) + i * d;
     const double *source = particles->sources + j * d;
+    const double far =
+        support_radius < 1e18 ? 1.5 * support_radius : INFINITY; /* whatever rounding does */
     double difference[3];
     if (!particles->targets && i == j)
         return 0;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; k++) {
         difference[k] = separation(particles, target[k], source[k], k);
+        if (fabs(difference[k]) > far)
+            return 0;
+    }
     return particles->is_double ? is_near_double(d, difference, support_radius)
-                                : is_near_single(d, difference, support_radius);
+                                : is_near_single(d, difference, (float)support_radius);
 }
 
 rows rows_by_brute_force(const scene *particles, double support_radius)
