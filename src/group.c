@@ -1,6 +1,7 @@
 /* A group of targets from its pairs to its results: pieces are filled, summed, finished. */
 #include "worker.h"
 #include "clean.h"
+#include "corrections.h"
 #include "finish.h"
 #include "sums.h"
 #include "view.h"

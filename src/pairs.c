@@ -1,6 +1,5 @@
 /* Pairs one by one: export as CSR, and G_ij. */
 #include "check.h"
-#include "finish.h"
 #include "kernel.h"
 #include "parallel.h"
 #include "plan.h"

@@ -1,6 +1,6 @@
 /* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
 #include "check.h"
-#include "finish.h"
+#include "corrections.h"
 #include "kernel.h"
 #include "parallel.h"
 #include "svd.h"

@@ -1,5 +1,5 @@
 #include "sums.h"
-#include "finish.h"
+#include "corrections.h"
 #include "view.h"
 #include <string.h>
 

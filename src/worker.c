@@ -1,5 +1,5 @@
 #include "worker.h"
-#include "finish.h"
+#include "corrections.h"
 #include "sums.h"
 #include "kernel.h"
 #include "view.h"

@@ -1,0 +1,168 @@
+#include "corrections.h"
+#include "kernel.h"
+#include <math.h>
+
+/* Linearised (theory.md, section 3): KGC C; RKPM C / (mu2 H^2); MLS C H^(d - 2) / mu2, where ours
+ * contains V_i / H^d. Classic: w is W H^d (CMLS) or V W (CRKPM). */
+struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
+{
+    const double h = scheme->radius, mu2 = sphgi_kernel_mu2(scheme->kernel, scheme->dimension);
+    const double volume = sphgi_power(h, scheme->dimension);
+    switch (scheme->method) {
+    case SPHG_MLS:
+        return (struct sphgi_scales){volume / (h * h) / mu2, 0};
+    case SPHG_RKPM:
+        return (struct sphgi_scales){1 / (mu2 * h * h), 0};
+    case SPHG_CMLS:
+        return (struct sphgi_scales){volume, volume / h};
+    case SPHG_CRKPM:
+        return (struct sphgi_scales){1, 1 / h};
+    default:
+        return (struct sphgi_scales){1, 0};
+    }
+}
+
+void sphgi_open_shares(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
+    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const int32_t values = plan->classic ? plan->dimension + 1 : width;
+    for (int k = 0; k < 2; ++k) {
+        int exponent;
+        struct sphgi_share *share = &w->share[k];
+        share->first = k ? values : 0;
+        share->count = k ? width - values : values;
+        share->mantissa = frexp(k ? scales.slope : scales.value, &exponent);
+        if (share->mantissa == 0.5) { /* a power of two: nothing is rounded */
+            share->mantissa = 1;
+            --exponent;
+        }
+        share->power[0] = ldexp(1, exponent / 2);
+        share->power[1] = ldexp(1, exponent - exponent / 2);
+    }
+}
+
+/* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
+ * holds, if one is wanted. */
+static void round_as_table(struct sphgi_worker *w, bool wanted)
+{
+    for (int k = 0; k < 2 && w->share[k].count; ++k) {
+        const struct sphgi_share *share = &w->share[k];
+        const bool exact = share->mantissa == 1;
+        char *ours = sphgi_lane(w, w->coefficients, share->first);
+        char *raw = sphgi_lane(w, w->raw, share->first);
+        if (!exact || wanted)
+            w->passes->scale(w->width, share->count, ours, share->mantissa, NULL, raw);
+        if (!exact)
+            w->passes->divide(w->width, share->count, raw, share->mantissa, ours);
+        for (int p = 0; wanted && p < 2; ++p)
+            if (share->power[p] != 1)
+                w->passes->scale(w->width, share->count, raw, share->power[p], NULL, raw);
+    }
+}
+
+static void take_from_table(struct sphgi_worker *w)
+{
+    for (int k = 0; k < 2 && w->share[k].count; ++k) {
+        const struct sphgi_share *share = &w->share[k];
+        char *raw = sphgi_lane(w, w->raw, share->first);
+        for (int p = 0; p < 2; ++p)
+            if (share->power[p] != 1)
+                w->passes->scale(w->width, share->count, raw, 1 / share->power[p], NULL, raw);
+        w->passes->divide(w->width, share->count, raw, share->mantissa,
+                          sphgi_lane(w, w->coefficients, share->first));
+    }
+}
+
+void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
+{
+    w->passes->load_lanes(w->width, columns, sphgi_targets(w), to);
+    w->tally->bad_volume |= !w->passes->valid_volumes(w->width, to);
+    w->passes->scale(w->width, 1, to, sphgi_volume_unit(w->sweep), NULL, to);
+}
+
+static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verdict)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const void *scale = NULL;
+    if (plan->scheme.method == SPHG_MLS) {
+        if (plan->mean_volume)
+            w->passes->quotient(w->width, sphgi_lane(w, w->reduced, plan->volume_sum),
+                                sphgi_lane(w, w->reduced, plan->volume_sum + 1), w->extra);
+        else
+            sphgi_load_volume(w, &plan->target_volume, w->extra);
+        scale = w->extra;
+    }
+    const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
+    void *correction = sphgi_lane(w, w->coefficients, 0);
+    void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;
+    w->passes->invert(w->width, &w->threshold, moments, scale, correction, lambda_min, verdict);
+    if (verdict->decomposed)
+        w->passes->decompose(w->width, &w->threshold, moments, scale, correction, lambda_min,
+                             verdict);
+}
+
+void sphgi_self_weight(struct sphgi_worker *w, char *to)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
+    w->passes->fill(w->width, plan->own_set < 0 ? 0 : at_zero, to);
+    if (plan->own_set >= 0 && plan->weighted) {
+        sphgi_load_volume(w, &plan->own_volume, to);
+        w->passes->scale(w->width, 1, to, at_zero, NULL, to);
+    }
+}
+
+static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *verdict)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (plan->correction.count)
+        w->passes->store_lanes(w->targets, &plan->correction, sphgi_targets(w),
+                               sphgi_lane(w, w->raw, 0), false);
+    if (plan->lambda_min.count)
+        w->passes->store_lanes(w->targets, &plan->lambda_min, sphgi_targets(w), w->lambda_min,
+                               false);
+    for (int32_t l = 0; plan->rank.count && l < w->targets; ++l)
+        *(uint8_t *)(uintptr_t)(plan->rank.at[0] + sphgi_targets(w)[l] * plan->rank.stride) =
+            verdict->decomposed >> l & 1 ? verdict->rank[l] : (uint8_t)plan->dimension;
+}
+
+void sphgi_finish_corrections(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    struct sphgi_verdict verdict = {.lanes = w->targets};
+    if (plan->classic) {
+        sphgi_self_weight(w, w->self);
+        w->passes->invert_classic(
+            w->width, &w->threshold, sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
+            sphgi_lane(w, w->reduced, plan->moment_sum), w->self, sphgi_lane(w, w->coefficients, 0),
+            plan->lambda_min.count ? w->lambda_min : NULL, &verdict);
+    } else
+        invert_linearised(w, &verdict);
+    round_as_table(w, plan->correction.count > 0);
+    sphgi_tally_verdict(w->tally, &verdict, plan->dimension);
+    store_verdict(w, &verdict);
+}
+
+void sphgi_load_corrections(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (w->sweep->coefficients) {
+        w->passes->load_lanes(w->width, w->sweep->coefficients, sphgi_targets(w),
+                              sphgi_lane(w, w->coefficients, 0));
+        return;
+    }
+    w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
+                          sphgi_lane(w, w->raw, 0));
+    take_from_table(w);
+}
+
+void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
+{
+    const int32_t d = w->sweep->plan->dimension;
+    sphgi_self_weight(w, w->self);
+    for (int32_t k = 0; k < d; ++k)
+        w->passes->scale(w->width, 1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)),
+                         w->inverse_h, w->self, sphgi_lane(w, gradient, k));
+}

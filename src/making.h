@@ -1,0 +1,43 @@
+/* What the files that make a plan share. */
+#ifndef SPHGI_MAKING_H
+#define SPHGI_MAKING_H
+#include "plan.h"
+
+#define SPHGI_REFUSE(result, ...) return sphgi_fail(making->checker.context, result, __VA_ARGS__)
+
+enum { SPHGI_NAME_LENGTH = 64 };
+
+struct sphgi_making {
+    struct sphgi_checker checker;
+    const sphg_request *request;
+    enum sphgi_purpose purpose;
+    struct sphgi_plan *plan;
+    struct sphgi_stream *streams;
+    struct sphgi_extent *extents;
+    int32_t extent_count;
+    char (*names)[SPHGI_NAME_LENGTH];
+};
+
+/* The name of the next view, for messages; the format takes up to two numbers. */
+const char *sphgi_name_view(struct sphgi_making *making, const char *format, int32_t a, int32_t b);
+
+/* Check a view and remember where it lies. shape 0: a flat array of `numbers` an item. */
+sphg_result sphgi_take_input(struct sphgi_making *making, const sphg_view *view, const char *name,
+                             sphg_shape shape, int32_t numbers, int32_t count,
+                             struct sphgi_columns *columns);
+sphg_result sphgi_take_output(struct sphgi_making *making, const sphg_view *view, const char *name,
+                              sphg_type type, sphg_shape shape, int32_t numbers,
+                              struct sphgi_columns *columns);
+
+/* The targets' own view, else the view of the set that they are part of. */
+sphg_result sphgi_take_target_side(struct sphgi_making *making, const sphg_view *own,
+                                   const sphg_view *of_set, const char *name,
+                                   const char *name_of_set, sphg_shape shape, int32_t numbers,
+                                   struct sphgi_columns *columns);
+
+/* plan->fields[k] but for what is read of sources: that comes with the streams, of all fields, once
+ * sphgi_plan_decide() knows which corrections and densities are read, too. */
+sphg_result sphgi_take_field(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_streams(struct sphgi_making *making);
+
+#endif

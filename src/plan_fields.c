@@ -1,0 +1,196 @@
+/* The fields of a request: what is read of them, and where their results go. */
+#include "making.h"
+#include "view.h"
+
+/* ---- Fields --------------------------------------------------------------------------------- */
+
+static sphg_result check_field(struct sphgi_making *making, int32_t k)
+{
+    const char *f = making->checker.function;
+    const sphg_field *field = &making->request->fields[k];
+    if (field->shape < SPHG_SCALAR || field->shape > SPHG_TENSOR)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields[%d].shape is %d, not a shape", f, (int)k,
+                     (int)field->shape);
+    if (field->form < SPHG_DIFFERENCE || field->form > SPHG_ADJOINT)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields[%d].form is %d, not a form", f, (int)k,
+                     (int)field->form);
+    if (!field->at_sources)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields[%d].at_sources is NULL", f, (int)k);
+    const bool tensor = field->shape >= SPHG_SYM_TENSOR, scalar = field->shape == SPHG_SCALAR;
+    if (tensor && !sphgi_is_absent(&field->gradient))
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].gradient of a tensor", f, (int)k);
+    if (scalar && !sphgi_is_absent(&field->divergence))
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].divergence of a scalar", f, (int)k);
+    if (field->shape != SPHG_VECTOR && !sphgi_is_absent(&field->curl))
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].curl of what is no vector", f, (int)k);
+    if (field->form != SPHG_DIRECT && !sphgi_is_absent(&field->value))
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].value outside the direct form", f,
+                     (int)k);
+    if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
+    return SPHG_OK;
+}
+
+static sphg_result take_results(struct sphgi_making *making, int32_t k)
+{
+    struct sphgi_plan *plan = making->plan;
+    const sphg_field *given = &making->request->fields[k];
+    struct sphgi_field_plan *field = &plan->fields[k];
+    const sphg_shape gradient = given->shape == SPHG_SCALAR ? SPHG_VECTOR : SPHG_TENSOR;
+    const sphg_shape divergence = given->shape == SPHG_VECTOR ? SPHG_SCALAR : SPHG_VECTOR;
+    const sphg_shape curl = plan->dimension == 3 ? SPHG_VECTOR : SPHG_SCALAR;
+    sphg_result result =
+        sphgi_take_output(making, &given->value, sphgi_name_view(making, "fields[%d].value", k, 0),
+                          plan->type, given->shape, 0, &field->value);
+    if (!result)
+        result = sphgi_take_output(making, &given->gradient,
+                                   sphgi_name_view(making, "fields[%d].gradient", k, 0), plan->type,
+                                   gradient, 0, &field->gradient);
+    if (!result)
+        result = sphgi_take_output(making, &given->divergence,
+                                   sphgi_name_view(making, "fields[%d].divergence", k, 0),
+                                   plan->type, divergence, 0, &field->divergence);
+    if (!result)
+        result = sphgi_take_output(making, &given->curl,
+                                   sphgi_name_view(making, "fields[%d].curl", k, 0), plan->type,
+                                   curl, 0, &field->curl);
+    if (!result)
+        result = sphgi_take_output(making, &given->square,
+                                   sphgi_name_view(making, "fields[%d].square", k, 0), plan->type,
+                                   SPHG_SCALAR, 0, &field->square);
+    field->differentiates = field->gradient.count || field->divergence.count || field->curl.count ||
+                            field->square.count;
+    return result;
+}
+
+/* A_i: as a target in difference, adjoint and symmetric; as a source (self term) in direct. */
+static sphg_result take_field_at_target(struct sphgi_making *making, int32_t k)
+{
+    struct sphgi_plan *plan = making->plan;
+    const sphg_field *given = &making->request->fields[k];
+    struct sphgi_field_plan *field = &plan->fields[k];
+    const sphg_view absent = sphg_absent();
+    const sphg_view *of_set = plan->own_set < 0 ? NULL : &given->at_sources[plan->own_set];
+    const sphg_view *own = given->form == SPHG_DIRECT ? &absent : &given->at_targets;
+    if (sphgi_is_absent(own) && !of_set && given->form != SPHG_DIRECT && field->differentiates)
+        SPHGI_REFUSE(
+            SPHG_ERROR_ARGUMENT,
+            "%s: fields[%d].at_targets is absent, and the targets are part of no source set",
+            making->checker.function, (int)k);
+    const bool from_set = sphgi_is_absent(own) && of_set;
+    const char *name = sphgi_name_view(
+        making, from_set ? "fields[%d].at_sources[%d]" : "fields[%d].at_targets", k, plan->own_set);
+    return sphgi_take_target_side(making, own, of_set, name, name, given->shape, 0, &field->target);
+}
+
+sphg_result sphgi_take_field(struct sphgi_making *making, int32_t k)
+{
+    struct sphgi_plan *plan = making->plan;
+    const sphg_field *given = &making->request->fields[k];
+    struct sphgi_field_plan *field = &plan->fields[k];
+    sphg_result result = check_field(making, k);
+    if (result)
+        return result;
+    *field =
+        (struct sphgi_field_plan){.shape = given->shape,
+                                  .form = given->form,
+                                  .accumulate = given->accumulate != 0,
+                                  .components = sphgi_components(given->shape, plan->dimension)};
+    field->streams = (field->components + SPHGI_ROW - 1) / SPHGI_ROW;
+    field->stream = plan->stream_count;
+    plan->stream_count += field->streams;
+    field->at_target = plan->target_lanes;
+    plan->target_lanes += field->streams * SPHGI_ROW; /* whole rows may be loaded */
+    result = take_results(making, k);
+    return result ? result : take_field_at_target(making, k);
+}
+
+/* ---- Streams: what is read of each source --------------------------------------------------- */
+
+static void add_streams(struct sphgi_making *making, int32_t s, int32_t first,
+                        const struct sphgi_columns *columns, int32_t components, int32_t width)
+{
+    struct sphgi_stream *stream =
+        making->streams + (ptrdiff_t)s * making->plan->stream_count + first;
+    for (int32_t c = 0; c < components; c += width, ++stream)
+        *stream = (struct sphgi_stream){*columns, c, sphgi_min32(width, components - c)};
+}
+
+static sphg_result take_field_at_sources(struct sphgi_making *making, int32_t s, int32_t k)
+{
+    const struct sphgi_field_plan *field = &making->plan->fields[k];
+    struct sphgi_columns columns = {.count = 0};
+    const sphg_result result =
+        sphgi_take_input(making, &making->request->fields[k].at_sources[s],
+                         sphgi_name_view(making, "fields[%d].at_sources[%d]", k, s), field->shape,
+                         0, making->plan->sets[s].neighbors->source_count, &columns);
+    add_streams(making, s, field->stream, &columns, field->components, SPHGI_ROW);
+    return result;
+}
+
+/* A set needs its own corrections only where one of its fields is summed from the other side. */
+static bool set_transposes(const struct sphgi_making *making, int32_t s, sphg_form form)
+{
+    for (int32_t k = 0; k < making->plan->field_count; ++k) {
+        const sphg_field *field = &making->request->fields[k];
+        if (field->form == form && making->plan->fields[k].differentiates &&
+            !sphgi_is_absent(&field->at_sources[s]))
+            return true;
+    }
+    return false;
+}
+
+static sphg_result take_correction_of_set(struct sphgi_making *making, int32_t s)
+{
+    struct sphgi_plan *plan = making->plan;
+    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const sphg_view *view = &making->request->sources[s].correction;
+    struct sphgi_columns columns = {.count = 0};
+    const bool needed =
+        set_transposes(making, s, SPHG_ADJOINT) || set_transposes(making, s, SPHG_SYMMETRIC);
+    if (needed && sphgi_is_absent(view))
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: sources[%d].correction is absent; adjoint and symmetric forms read it",
+                     making->checker.function, (int)s);
+    const sphg_result result =
+        sphgi_take_input(making, view, sphgi_name_view(making, "sources[%d].correction", s, 0),
+                         (sphg_shape)0, width, plan->sets[s].neighbors->source_count, &columns);
+    add_streams(making, s, plan->correction_stream, &columns, width,
+                plan->classic ? plan->dimension + 1 : SPHGI_ROW);
+    return result;
+}
+
+static sphg_result take_density_of_set(struct sphgi_making *making, int32_t s)
+{
+    struct sphgi_plan *plan = making->plan;
+    const sphg_view *view = &making->request->sources[s].density;
+    struct sphgi_columns columns = {.count = 0};
+    if (sphgi_is_absent(view))
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: sources[%d].density is absent; the symmetric form reads it",
+                     making->checker.function, (int)s);
+    const sphg_result result =
+        sphgi_take_input(making, view, sphgi_name_view(making, "sources[%d].density", s, 0),
+                         SPHG_SCALAR, 1, plan->sets[s].neighbors->source_count, &columns);
+    add_streams(making, s, plan->density_stream, &columns, 1, 1);
+    return result;
+}
+
+sphg_result sphgi_take_streams(struct sphgi_making *making)
+{
+    struct sphgi_plan *plan = making->plan;
+    for (int32_t s = 0; s < plan->set_count; ++s) {
+        sphg_result result = SPHG_OK;
+        plan->sets[s].streams = making->streams + (ptrdiff_t)s * plan->stream_count;
+        for (int32_t k = 0; k < plan->field_count && !result; ++k)
+            result = take_field_at_sources(making, s, k);
+        if (!result && plan->correction_stream >= 0)
+            result = take_correction_of_set(making, s);
+        if (!result && plan->density_stream >= 0)
+            result = take_density_of_set(making, s);
+        if (result)
+            return result;
+    }
+    return SPHG_OK;
+}
