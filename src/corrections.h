@@ -4,9 +4,6 @@
 #define SPHGI_CORRECTIONS_H
 #include "worker.h"
 
-/* worker->share: once per worker. */
-void sphgi_open_shares(struct sphgi_worker *worker);
-
 /* worker->coefficients: from the sums, or from the table; writes what is wanted of them. */
 void sphgi_finish_corrections(struct sphgi_worker *worker);
 void sphgi_load_corrections(struct sphgi_worker *worker);
@@ -17,9 +14,5 @@ void sphgi_load_volume(struct sphgi_worker *worker, const struct sphgi_columns *
 /* Classic: w_0 of targets that are sources, else 0; and G_ii = w_0 z_k[0], d lanes. */
 void sphgi_self_weight(struct sphgi_worker *worker, char *to);
 void sphgi_self_gradient(struct sphgi_worker *worker, char *gradient);
-
-/* Factors between the host's table and coefficients in units of H: value for y, slope for z_k;
- * linearised methods have one factor for all. host = factor * ours. */
-struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme);
 
 #endif

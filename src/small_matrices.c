@@ -1,9 +1,10 @@
 /* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
 #include "check.h"
-#include "corrections.h"
 #include "kernel.h"
 #include "parallel.h"
 #include "svd.h"
+#include "tally.h"
+#include "units.h"
 #include "view.h"
 #include <math.h>
 

@@ -78,17 +78,6 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
                            sphgi_partial(w, plan->vector_sum[symmetric]));
 }
 
-/* Targets that are the sources of this set, with the same values: these stand packed already. */
-bool sphgi_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
-{
-    const struct sphgi_sweep *sweep = w->sweep;
-    const struct sphgi_stream *stream = &sweep->set->streams[field->stream];
-    return sweep->packed && sweep->set_number == sweep->plan->own_set && field->streams == 1 &&
-           sweep->set->neighbors->same && field->target.stride == stream->columns.stride &&
-           memcmp(field->target.at, stream->columns.at,
-                  (size_t)field->components * sizeof field->target.at[0]) == 0;
-}
-
 static void load_target(struct sphgi_worker *w, int32_t number, char *to)
 {
     const struct sphgi_sweep *sweep = w->sweep;

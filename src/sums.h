@@ -10,9 +10,6 @@ void sphgi_evaluate_piece(struct sphgi_worker *worker);
 /* A_i, V_i, rho_i of the targets at work, once. */
 void sphgi_load_targets(struct sphgi_worker *worker);
 
-/* The targets' values of the field can be read from the packed rows of this set. */
-bool sphgi_targets_in_rows(const struct sphgi_worker *worker, const struct sphgi_field_plan *field);
-
 /* Partial sums from number `sum` on. */
 char *sphgi_partial(const struct sphgi_worker *worker, int32_t sum);
 

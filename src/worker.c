@@ -1,6 +1,4 @@
 #include "worker.h"
-#include "corrections.h"
-#include "sums.h"
 #include "kernel.h"
 #include "view.h"
 #include <string.h>
@@ -71,11 +69,22 @@ double sphgi_volume_unit(const struct sphgi_sweep *sweep)
     return sphgi_power(1 / sweep->plan->scheme.radius, sweep->plan->dimension);
 }
 
+/* Targets that are the sources of this set, with the same values: these stand packed already. */
+static bool are_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const struct sphgi_stream *stream = &sweep->set->streams[field->stream];
+    return sweep->packed && sweep->set_number == sweep->plan->own_set && field->streams == 1 &&
+           sweep->set->neighbors->same && field->target.stride == stream->columns.stride &&
+           memcmp(field->target.at, stream->columns.at,
+                  (size_t)field->components * sizeof field->target.at[0]) == 0;
+}
+
 static void find_targets_in_rows(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     for (int32_t k = 0; k < plan->field_count && k < 32; ++k)
-        if (sphgi_targets_in_rows(w, &plan->fields[k]))
+        if (are_targets_in_rows(w, &plan->fields[k]))
             w->targets_in_rows |= 1u << k;
 }
 
@@ -124,7 +133,7 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     w->inverse_h = 1 / sweep->plan->scheme.radius;
     w->pad =
         sphgi_max32(SPHGI_PAD, sphgi_max32(sweep->passes->lanes, sweep->position_passes->lanes));
-    sphgi_open_shares(w);
+    sphgi_shares_of(sweep->plan, w->share);
     w->coefficients_first = needs_coefficients_first(sweep);
     w->piece.arrays = w->arrays;
     const size_t volumes = SPHGI_V * SPHGI_PIECE * sphgi_size_of_type(sweep->plan->type);

@@ -5,6 +5,7 @@
 #include "find.h"
 #include "plan.h"
 #include "tally.h"
+#include "units.h"
 
 /* What one sweep over one source set does. */
 enum sphgi_step {
@@ -48,13 +49,6 @@ struct sphgi_group {
     int32_t target[SPHGI_WIDTH];
     int32_t place[SPHGI_WIDTH]; /* in storage order */
     const void *x[SPHGI_WIDTH]; /* rows */
-};
-
-/* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
- * exact, also where the factor itself is so large or small that no table could hold the result. */
-struct sphgi_share {
-    int32_t first, count;
-    double mantissa, power[2];
 };
 
 struct sphgi_worker {

@@ -1,0 +1,20 @@
+/* Units: between the tables of the host and coefficients in units of H. */
+#ifndef SPHGI_UNITS_H
+#define SPHGI_UNITS_H
+#include "plan.h"
+
+/* Factors between the host's table and coefficients in units of H: value for y, slope for z_k;
+ * linearised methods have one factor for all. host = factor * ours. */
+struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme);
+
+/* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
+ * exact, also where the factor itself is so large or small that no table could hold the result. */
+struct sphgi_share {
+    int32_t first, count;
+    double mantissa, power[2];
+};
+
+/* [0] of y, or of all numbers of a linearised method, [1] of z_k. */
+void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[2]);
+
+#endif
