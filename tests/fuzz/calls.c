@@ -146,7 +146,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     own.scheme = (sphg_scheme){.dimension = 3, .support_radius = 1};
     own.fail = fuzz_byte(&from) % 4;
     if (sphg_context_create(SPHG_VERSION, &config, &own.context) == SPHG_OK)
-        for (int k = 0; k < 40 && from.left; k++) {
+        for (int k = 0; k < 16 && from.left; k++) {
             const int armed = fuzz_byte(&from);
             own.fail = armed > 128 ? armed % 24 : 0;
             for (int i = 0; i < MOST; i++)

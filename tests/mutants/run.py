@@ -126,7 +126,8 @@ class Build:
         run(["cmake", "-S", source, "-B", place, "-DCMAKE_BUILD_TYPE=Debug",
              "-DCMAKE_C_FLAGS_DEBUG=-O1", "-DSPHG_BUILD_TESTS=OFF", "-DSPHG_BUILD_BENCH=OFF",
              "-DSPHG_BUILD_EXAMPLES=OFF", "-DSPHG_INSTALL=OFF", *options], check=True)
-        if not self.compile():
+        # twice: only the second time does make learn which headers the objects depend on
+        if not self.compile() or not self.compile():
             sys.exit("the library does not build without any change")
         self.original = self.machine_code()
         shutil.copytree(self.folder, self.kept)
@@ -159,6 +160,15 @@ class Tree:
         self.baseline = Build(self.source, place + "/baseline", "-DSPHG_COMPILER_HAS_V3=",
                               "-DSPHG_COMPILER_HAS_V4=")
         self.builds = [self.baseline]
+        self.require_that_headers_count("src/passes/passes.h")
+
+    def require_that_headers_count(self, header):
+        """A mutant that is not compiled would pass for one that makes no difference."""
+        for _ in range(2):
+            self.write(header, "#error\n")
+            if self.baseline.compile():
+                sys.exit("a change of %s goes unseen" % header)
+            self.restore(header)
 
     def everything(self):
         """Only while the sources are as they were."""
