@@ -284,7 +284,8 @@ SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is igno
 /* Copies the positions and finds all pairs with r < H, exactly those of brute force. Reads
  * dimension and support_radius of scheme. Call it each step: it does what the skin demands.
  * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY (build again).
- * Cost: time and memory O(n + pairs) for any extent of the domain. */
+ * Cost: time and memory O(n + pairs) for any extent of the domain. On a periodic axis cells are
+ * wider by 2^-20 (f64: 2^-49) of the largest |x|: wrap positions before that counts beside H. */
 SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
                                            const sphg_scheme *scheme,
                                            const sphg_geometry *geometry);
