@@ -44,10 +44,11 @@ static void measure_scales(const struct bench *bench)
 {
     struct stability_case *one = bench->one;
     struct trial base = run_at(bench, 0, 0);
-    for (int exponent = (int)one->at; exponent <= (int)one->end; exponent++) {
+    for (int32_t k = 0; k <= one->steps; k++) {
+        const int exponent = (int)lround(one->at + (one->end - one->at) * k / one->steps);
         struct trial trial = run_at(bench, 0, exponent);
         one->other_bits += trial_other_bits(&trial, &base, exponent);
-        if (exponent == (int)one->at || exponent == (int)one->end)
+        if (k == 0 || k == one->steps)
             compare(bench, &trial);
         trial_destroy(&trial);
     }

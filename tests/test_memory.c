@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COUNT = 400, OUTPUTS = COUNT * 16, ITEMS = 3000 };
+enum { COUNT = 400, ITEMS = 1000 /* several workers share them */, LISTED = 3000 };
 
 /* A host with one context, its arrays, and neighbours that may or may not be built. */
 typedef struct world {
@@ -162,7 +162,7 @@ static sphg_result pair_gradients(world *own)
     sources.neighbors = own->neighbors;
     sources.volume = fixture_view(&own->volume);
     pairs.gradient = items_of(&own->first, own->particles.dimension);
-    pairs.capacity = ITEMS;
+    pairs.capacity = LISTED;
     return sphg_pair_gradients(own->context, &own->scheme, &sources, &subset, sphg_absent(),
                                &pairs);
 }
@@ -412,12 +412,34 @@ static void spreading_clouds_allocate_nothing(const test_case *test)
     }
 }
 
+/* What an object says it holds is what goes back to the host with it. */
+static void neighbors_know_what_they_hold(const test_case *test)
+{
+    world *own = world_create(test);
+    for (call which = SEARCH; which <= USE_LISTS; which++) {
+        prepare(own, which);
+        FIXTURE_OK(own->context, perform(own, which));
+        work(own);
+        sphg_neighbors_info info;
+        FIXTURE_OK(own->context,
+                   sphg_neighbors_get_info(own->context, own->neighbors, &info));
+        const int64_t before = own->host->live_bytes;
+        sphg_neighbors_destroy(own->neighbors);
+        own->neighbors = NULL;
+        const int64_t held = before - own->host->live_bytes;
+        TEST_REQUIRE(info.bytes == held, "%s: says %lld bytes, held %lld", call_names[which],
+                     (long long)info.bytes, (long long)held);
+        require_clean(own, call_names[which]);
+    }
+}
+
 #define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)
 
 static const test_entry entries[] = {
     TEST_ENTRY(any_allocation_may_fail, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     EACH(failed_build_must_be_repeated),
     EACH(spreading_clouds_allocate_nothing),
+    EACH(neighbors_know_what_they_hold),
     TEST_ENTRY(warm_calls_allocate_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
 };
