@@ -218,6 +218,32 @@ static void members_of_one_record_do_not_overlap(const test_case *test)
     FIXTURE_OK(own->context, evaluate(own));
 }
 
+/* A single item has no stride to speak of: it overlaps a record only where it lies on a member. */
+static void single_item_may_stand_inside_a_record(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const ptrdiff_t size = number_size(own), record = 12 * size;
+    char *memory = memset(test_memory(SUBJECT_COUNT * 12 * sizeof(double)), 0,
+                          SUBJECT_COUNT * 12 * sizeof(double));
+    own->request.correction = own->request.rank = sphg_absent();
+    own->field.gradient.x = memory;
+    own->field.gradient.stride = record;
+    own->geometry.targets = own->positions;
+    own->geometry.source_count = 1;
+    FIXTURE_OK(own->context,
+               sphg_neighbors_search(own->context, own->lone, &own->scheme, &own->geometry));
+    own->sources[0].neighbors = own->lone;
+    own->field.at_targets = own->scalars;
+    for (ptrdiff_t at = 0; at < 24; at++) { /* members 0 to d - 1 of records 0 and 1 are written */
+        own->sources[0].volume.x = memory + at * size;
+        own->sources[0].volume.stride = 5 * size;
+        const sphg_result expected =
+            at % 12 < test->dimension ? SPHG_ERROR_ARGUMENT : SPHG_OK;
+        TEST_REQUIRE(evaluate(own) == expected, "at %d: %s", (int)at,
+                     sphg_last_message(own->context));
+    }
+}
+
 static void evaluate_refuses_bad_subsets(const test_case *test)
 {
     subject *own = subject_create(test);
@@ -467,6 +493,7 @@ static const test_entry entries[] = {
     EACH(evaluate_refuses_bad_outputs_of_corrections),
     EACH(overlapping_outputs_are_refused),
     EACH(members_of_one_record_do_not_overlap),
+    EACH(single_item_may_stand_inside_a_record),
     EACH(evaluate_refuses_bad_subsets),
     EACH(several_sets_must_agree),
     EACH(bad_volumes_are_found_and_named),

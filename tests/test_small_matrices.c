@@ -277,6 +277,49 @@ static void singular_values_agree_with_lapack(const test_case *test)
     }
 }
 
+/* ---- Units -------------------------------------------------------------------------------- */
+
+static void require_scaled(const double *found, const double *expected, int count, double factor,
+                           const char *where)
+{
+    for (int k = 0; k < count; k++)
+        TEST_REQUIRE(found[k] == factor * expected[k], "%s: %.17g, not %.17g", where, found[k],
+                     factor * expected[k]);
+}
+
+/* In another unit, with numbers as large or as small as the type holds, the digits are the same. */
+static void units_change_no_digit(const test_case *test)
+{
+    sphg_context *context = fixture_context();
+    const int d = test->dimension;
+    batch items = batch_of(test, SPECTRA_indefinite);
+    items.count = 100;
+    for (int k = 0; k < 9 * items.count; k++) /* eigenvalues below 1, digits that survive */
+        items.full[k] = ldexp(rint(ldexp(tanh(items.full[k]), 18)), -20);
+    batch other = items;
+    other.full = test_memory((size_t)(9 * items.count) * sizeof *other.full);
+    const int f64[] = {-990, -900, -502, -498, 498, 502, 900, 1023};
+    const int f32[] = {-95, -90, -50, 50, 100, 120, 126, 127};
+    const factors expected = eigen_of(context, &items);
+    const singular expected_svd = d == 3 ? svd_of(context, &items) : (singular){0};
+    for (int k = 0; k < 8; k++) {
+        const int exponent = items.is_double ? f64[k] : f32[k];
+        const double factor = ldexp(1, exponent);
+        const char *where = test_text("times 2^%d", exponent);
+        for (int i = 0; i < 9 * items.count; i++)
+            other.full[i] = factor * items.full[i];
+        const factors found = eigen_of(context, &other);
+        require_scaled(found.values, expected.values, d * items.count, factor, where);
+        require_scaled(found.vectors, expected.vectors, d * d * items.count, 1, where);
+        if (d < 3)
+            continue;
+        const singular svd = svd_of(context, &other);
+        require_scaled(svd.sigma, expected_svd.sigma, 3 * items.count, factor, where);
+        require_scaled(svd.u, expected_svd.u, 9 * items.count, 1, where);
+        require_scaled(svd.v, expected_svd.v, 9 * items.count, 1, where);
+    }
+}
+
 /* ---- Batches ------------------------------------------------------------------------------ */
 
 /* A NaN or infinite matrix at each place in turn: all other items keep their bits. */
@@ -399,6 +442,7 @@ static const test_entry entries[] = {
     TEST_ENTRY(svd_is_backward_stable, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
     TEST_ENTRY(singular_values_agree_with_lapack, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
     TEST_ENTRY(bad_matrix_spoils_only_itself, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(units_change_no_digit, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(batches_do_not_change_results, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(nothing_behind_the_last_matrix_is_touched, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, 0, 0),

@@ -201,5 +201,10 @@ int64_t rows_require_search_exact(sphg_context *context, sphg_neighbors *neighbo
     const rows expected = rows_by_brute_force(particles, support_radius);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
     rows_require_equal(&found, &expected, where);
-    return expected.offsets[expected.count];
+    sphg_neighbors_info info = {0};
+    FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+    const int64_t pairs = expected.offsets[expected.count];
+    TEST_REQUIRE(geometry.list_free || geometry.skin > 0 || info.pairs == pairs,
+                 "%s: says %lld pairs, not %lld", where, (long long)info.pairs, (long long)pairs);
+    return pairs;
 }
