@@ -3,6 +3,7 @@
 #include "support/subject.h"
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- Codes -------------------------------------------------------------------------------- */
@@ -86,6 +87,33 @@ static void context_refuses_bad_configurations(const test_case *test)
     expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
     config.allocate = no_memory;
     expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_MEMORY);
+}
+
+#ifdef __x86_64__
+static void require_path(sphg_isa isa, int expected, const char *name)
+{
+    TEST_REQUIRE((fixture_context_on(isa) != NULL) == expected, "%s is %s", name,
+                 expected ? "refused" : "accepted");
+}
+#endif
+
+/* All that the library was built with and the processor has, and no other. */
+static void each_path_of_the_processor_can_be_asked_for(const test_case *test)
+{
+    (void)test;
+    assert_non_null(fixture_context_on(SPHG_ISA_BEST));
+#ifdef __x86_64__
+    const int built = !getenv("SPHG_TEST_BASELINE_ALONE"); /* another library in its place */
+    const int v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                   __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    const int v4 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                   __builtin_cpu_supports("avx512vl");
+    require_path(SPHG_ISA_BASE, 1, "the baseline");
+    require_path(SPHG_ISA_X86_V3, built && TEST_LIBRARY_HAS_V3 && v3, "x86-64-v3");
+    require_path(SPHG_ISA_X86_V4, built && TEST_LIBRARY_HAS_V4 && v3 && v4, "x86-64-v4");
+    require_path(SPHG_ISA_NEON, 0, "NEON");
+#endif
 }
 
 static void no_configuration_is_the_default(const test_case *test)
@@ -437,6 +465,7 @@ static const test_entry entries[] = {
     TEST_ONCE(context_refuses_bad_configurations),
     TEST_ONCE(no_configuration_is_the_default),
     TEST_ONCE(context_refuses_the_instruction_set_of_another_machine),
+    TEST_ONCE(each_path_of_the_processor_can_be_asked_for),
     TEST_ONCE(null_handles_are_refused_and_nothing_is_destroyed_twice),
     EACH(builds_refuse_bad_geometry),
     EACH(builds_refuse_positions_that_are_not_finite),
