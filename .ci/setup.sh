@@ -33,10 +33,11 @@ probe_aarch64() {
 }
 probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
 probe_clang_openmp() { probe_compiler clang c -fopenmp; }
-# Of tests/run --coverage, --analyse and --mutants alone.
+# Of tests/run --coverage, --analyse, --valgrind and --mutants alone.
 probe_llvm() { command -v llvm-cov llvm-profdata >/dev/null; }
 probe_clang_tidy() { command -v clang-tidy >/dev/null; }
 probe_cppcheck() { command -v cppcheck >/dev/null; }
+probe_valgrind() { valgrind -q true 2>/dev/null; }
 probe_python3() { python3 -c '' 2>/dev/null; }
 
 package_of() {
@@ -55,6 +56,7 @@ package_of() {
         llvm) echo llvm ;;
         clang_tidy) echo clang-tidy ;;
         cppcheck) echo cppcheck ;;
+        valgrind) printf '%s\n' valgrind libc6-dbg ;;
         python3) echo python3 ;;
     esac
 }
