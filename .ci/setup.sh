@@ -33,6 +33,8 @@ probe_aarch64() {
 }
 probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
 probe_clang_openmp() { probe_compiler clang c -fopenmp; }
+# What its sanitizers, fuzzers and counters link with: a package of its own, recommended only.
+probe_clang_runtime() { probe_clang && probe_compiler clang c -fsanitize=address,undefined; }
 # Of tests/run --coverage, --analyse, --valgrind and --mutants alone.
 probe_llvm() { command -v llvm-cov llvm-profdata >/dev/null; }
 probe_clang_tidy() { command -v clang-tidy >/dev/null; }
@@ -53,6 +55,7 @@ package_of() {
         aarch64) printf '%s\n' gcc-aarch64-linux-gnu g++-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
         clang) echo clang ;;
         clang_openmp) echo libomp-dev ;;
+        clang_runtime) echo libclang-rt-dev ;;
         llvm) echo llvm ;;
         clang_tidy) echo clang-tidy ;;
         cppcheck) echo cppcheck ;;

@@ -3,7 +3,7 @@
 # that it takes, where these are not those of the tests.
 
 building=(build_essential cmake pkg_config cmocka lapacke cjson hdf5)
-needs_of_coverage() { printf '%s\n' "${building[@]}" clang clang_openmp llvm python3; }
+needs_of_coverage() { printf '%s\n' "${building[@]}" clang clang_openmp clang_runtime llvm python3; }
 needs_of_analyse() { printf '%s\n' "${building[@]}" clang clang_tidy cppcheck; }
 needs_of_valgrind() { printf '%s\n' "${building[@]}" valgrind; }
 needs_of_mutants() { printf '%s\n' "${building[@]}" python3; }
@@ -52,17 +52,21 @@ run_long() {
 # New inputs go to build/fuzz/corpus, the kept ones are only read. SPHG_FUZZ_RUNS ends a target after
 # so many executions, SPHG_FUZZ_TARGETS names some of them.
 run_fuzz() {
-    local target status=0
+    local targets=${SPHG_FUZZ_TARGETS:-search lists matrices calls}
     build_preset fuzz -DSPHG_BUILD_TESTS=ON || return 1
-    for target in ${SPHG_FUZZ_TARGETS:-search lists matrices calls}; do
-        mkdir -p "build/fuzz/corpus/$target"
-        printf '== %s\n' "$target"
-        "build/fuzz/tests/fuzz/fuzz_$target" -max_total_time="${SPHG_FUZZ_SECONDS:-60}" \
+    printf '%s\n' $targets | xargs -P "$(nproc)" -I TARGET sh -c '
+        log=build/fuzz/TARGET.log
+        mkdir -p build/fuzz/corpus/TARGET
+        if build/fuzz/tests/fuzz/fuzz_TARGET -max_total_time="${SPHG_FUZZ_SECONDS:-60}" \
             -runs="${SPHG_FUZZ_RUNS:--1}" -max_len=1024 -timeout=10 -rss_limit_mb=1024 \
-            -entropic=0 -print_final_stats=1 -verbosity=0 -artifact_prefix="build/fuzz/$target-" \
-            "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" || status=1
-    done
-    return $status
+            -entropic=0 -print_final_stats=1 -verbosity=0 -artifact_prefix=build/fuzz/TARGET- \
+            build/fuzz/corpus/TARGET tests/fuzz/corpus/TARGET >"$log" 2>&1; then
+            echo "TARGET: $(sed -n "s/^stat::number_of_executed_units: *//p" "$log") executions, nothing found"
+        else
+            cat "$log" >&2
+            echo "TARGET: failed, the input is build/fuzz/TARGET-*" >&2
+            exit 1
+        fi'
 }
 
 # Valgrind knows no AVX-512 and no rounding mode but the default: v3 is tried, float_environment is not. It
