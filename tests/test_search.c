@@ -1,5 +1,6 @@
 /* The search against brute force: the same pairs, exactly, wherever particles stand. */
 #include "support/fixture.h"
+#include "support/hooks.h"
 #include "support/pairs.h"
 #include <float.h>
 #include <math.h>
@@ -208,9 +209,8 @@ static void far_offsets_have_the_pairs_of_brute_force(const test_case *test)
 }
 
 /* count: the lists of one block fit its worker's memory, or are too long for it. */
-static void require_crowd(const test_case *test, int count)
+static void require_crowd(const test_case *test, sphg_context *context, int count)
 {
-    sphg_context *context = fixture_context();
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(37);
     scene particles = empty_scene(test, count);
@@ -228,8 +228,30 @@ static void require_crowd(const test_case *test, int count)
 
 static void crowded_cells_have_the_pairs_of_brute_force(const test_case *test)
 {
-    require_crowd(test, 600);
-    require_crowd(test, 1300);
+    sphg_context *context = fixture_context();
+    require_crowd(test, context, 600);
+    require_crowd(test, context, 1300);
+}
+
+static void destroy_context(void *context)
+{
+    sphg_context_destroy(context);
+}
+
+/* Fewer blocks than a task is meant to have particles: it still has a block to work on. */
+static void executors_of_the_host_search_crowded_cells(const test_case *test)
+{
+    hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    for (int k = 0; k < 3; k++) {
+        hooks *host = test_memory(sizeof *host);
+        hooks_open(host);
+        sphg_config config = hooks_config(host, host->workers);
+        config.parallel_for = executors[k];
+        sphg_context *context = NULL;
+        FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+        test_at_end(destroy_context, context);
+        require_crowd(test, context, 600);
+    }
 }
 
 /* ---- Relation ----------------------------------------------------------------------------- */
@@ -464,6 +486,7 @@ static const test_entry entries[] = {
     EACH(signs_do_not_matter),
     EACH(far_offsets_have_the_pairs_of_brute_force),
     EACH(crowded_cells_have_the_pairs_of_brute_force),
+    EACH(executors_of_the_host_search_crowded_cells),
     EACH(relation_is_symmetric_and_rows_ascend),
     EACH(smaller_radius_and_subsets_select_from_the_same_pairs),
     EACH(skin_keeps_lists_and_exactness),

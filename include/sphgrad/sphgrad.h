@@ -161,7 +161,8 @@ typedef struct sphg_config {
     void (*release)(void *memory, size_t size, void *user);
     void (*log)(sphg_result result, const char *message, void *user); /* hears each failure */
     /* Calls task on disjoint ranges that make up [0, count), each >= grain long where it can,
-     * and returns when all are done. Order and split are free: results do not depend on them. */
+     * and returns when all are done; grain >= 1. Order and split are free: results do not depend
+     * on them. */
     void (*parallel_for)(sphg_task *task, void *data, int32_t count, int32_t grain, void *user);
     void *user; /* handed back to these four */
 } sphg_config;
