@@ -12,6 +12,7 @@
 
 enum { MOST = 2000, LIST_MOST = 64, ROUNDS_LEAST = 120, ROUNDS_PER_CONTEXT = 40, SAMPLES = 64 };
 enum { RSS_GROWTH = 1 << 20 }; /* [byte] allowed from the first half to the second */
+enum { WARM = 60 };            /* [s] */
 
 typedef enum fault { NONE, MEMORY, POSITION, FIELD, VOLUME, INDEX, ARGUMENT, FAULTS } fault;
 static const char *const fault_names[] = {"none",   "memory", "position", "field",
@@ -221,6 +222,10 @@ static void try_with_argument(world *own)
                      (made.expected == HOSTILE_REFUSED ? result > 0 : (int)result == made.expected),
                  "round %ld, %s %s: %d", own->rounds, hostile_functions[f].name, made.what,
                  (int)result);
+    /* What is allowed may have emptied an object (no sources, say) that later calls count on. */
+    if (result == SPHG_OK)
+        TEST_REQUIRE(tested->call(hostile) == SPHG_OK, "round %ld, %s as ever: %s", own->rounds,
+                     hostile_functions[f].name, sphg_last_message(hostile->context));
 }
 
 static void try_build(world *own, fault what, sphg_neighbors *neighbors)
@@ -334,15 +339,23 @@ static void sample_memory(world *own, double begin, double seconds)
         own->resident[own->samples++] = resident_bytes();
 }
 
+static double seconds_wanted(void)
+{
+    const char *seconds = getenv("SPHG_SOAK_SECONDS");
+    return seconds ? atof(seconds) / 4 : 0; /* there are four cases */
+}
+
+/* In less than WARM seconds not all kinds of scenes have come in the first half. */
 static void require_flat_memory(const world *own)
 {
+    const int watched = !TEST_SANITIZED && seconds_wanted() >= WARM;
     long most[2] = {0, 0};
     for (int k = 0; k < own->samples; k++)
         if (own->resident[k] > most[2 * k / SAMPLES])
             most[2 * k / SAMPLES] = own->resident[k];
     print_message("resident: %ld KiB in the first half at most, %ld KiB in the second\n",
                   most[0] / 1024, most[1] / 1024);
-    TEST_REQUIRE(TEST_SANITIZED || most[1] <= most[0] + RSS_GROWTH, "memory grows");
+    TEST_REQUIRE(!watched || most[1] <= most[0] + RSS_GROWTH, "memory grows");
 }
 
 static world *world_of(const test_case *test)
@@ -365,12 +378,6 @@ static world *world_of(const test_case *test)
     own->offsets = test_memory((MOST + 1) * sizeof *own->offsets);
     own->indices = test_memory((size_t)MOST * LIST_MOST * sizeof *own->indices);
     return own;
-}
-
-static double seconds_wanted(void)
-{
-    const char *seconds = getenv("SPHG_SOAK_SECONDS");
-    return seconds ? atof(seconds) / 4 : 0; /* there are four cases */
 }
 
 static void days_of_faults_change_neither_results_nor_memory(const test_case *test)
