@@ -244,6 +244,26 @@ static void single_item_may_stand_inside_a_record(const test_case *test)
     }
 }
 
+/* Of two sets the second takes part in the difference alone, which reads no corrections of it. */
+static void set_needs_corrections_where_it_is_read_from_the_other_side(const test_case *test)
+{
+    subject *own = subject_create(test);
+    sphg_view adjoint_sources[2] = {own->scalars, sphg_absent()};
+    sphg_field fields[2] = {own->field, own->field};
+    fields[1].form = SPHG_ADJOINT;
+    fields[1].at_sources = adjoint_sources;
+    fields[1].gradient.x = own->tensors_out.x;
+    own->sources[1] = own->sources[0];
+    own->sources[0].correction = own->request.target_correction = own->table;
+    own->request.correction = own->request.rank = sphg_absent();
+    own->request.set_count = own->request.field_count = 2;
+    own->request.fields = fields;
+    FIXTURE_OK(own->context, evaluate(own));
+    adjoint_sources[1] = own->scalars;
+    assert_int_equal(evaluate(own), SPHG_ERROR_ARGUMENT);
+    assert_non_null(strstr(sphg_last_message(own->context), "sources[1].correction"));
+}
+
 static void evaluate_refuses_bad_subsets(const test_case *test)
 {
     subject *own = subject_create(test);
@@ -494,6 +514,7 @@ static const test_entry entries[] = {
     EACH(overlapping_outputs_are_refused),
     EACH(members_of_one_record_do_not_overlap),
     EACH(single_item_may_stand_inside_a_record),
+    EACH(set_needs_corrections_where_it_is_read_from_the_other_side),
     EACH(evaluate_refuses_bad_subsets),
     EACH(several_sets_must_agree),
     EACH(bad_volumes_are_found_and_named),
