@@ -171,20 +171,32 @@ typedef struct outcome {
     sphg_stats stats;
 } outcome;
 
-static outcome inverted(sphg_context *context, const setting *own, const batch *items)
+static outcome outputs_for(const setting *own, int count)
 {
-    const fixture_array moments = packed(own, items);
-    const int count = items->count;
-    outcome found = {.correction = fixture_output(moments.type, count, moments.width),
+    const sphg_type type = own->is_double ? SPHG_F64 : SPHG_F32;
+    const int d = own->scheme.dimension;
+    return (outcome){.correction = fixture_output(type, count, d * (d + 1) / 2),
                      .rank = fixture_output(SPHG_U8, count, 1),
-                     .lambda_min = fixture_output(moments.type, count, 1)};
+                     .lambda_min = fixture_output(type, count, 1)};
+}
+
+static void invert(sphg_context *context, const setting *own, int count, sphg_view moments,
+                   const sphg_inversion *wanted)
+{
     const float single = (float)own->volume;
     const sphg_view volume =
         own->is_double ? sphg_view_f64(&own->volume, 0) : sphg_view_f32(&single, 0);
+    FIXTURE_OK(context,
+               sphg_invert_moments(context, &own->scheme, count, moments, volume, wanted));
+}
+
+static outcome inverted(sphg_context *context, const setting *own, const batch *items)
+{
+    const fixture_array moments = packed(own, items);
+    outcome found = outputs_for(own, items->count);
     const sphg_inversion wanted = {fixture_view(&found.correction), fixture_view(&found.rank),
                                    fixture_view(&found.lambda_min), &found.stats};
-    FIXTURE_OK(context, sphg_invert_moments(context, &own->scheme, count, fixture_view(&moments),
-                                            volume, &wanted));
+    invert(context, own, items->count, fixture_view(&moments), &wanted);
     return found;
 }
 
@@ -403,6 +415,23 @@ static void stats_add_up(const test_case *test)
     }
 }
 
+static void each_output_may_be_asked_for_alone(const test_case *test)
+{
+    sphg_context *context = fixture_context();
+    const setting own = setting_of(test, SPHG_BLEND, 0);
+    const batch items = batch_of(&own, SPECTRA_one_small_small, 100);
+    const fixture_array moments = packed(&own, &items);
+    const outcome all = inverted(context, &own, &items), alone = outputs_for(&own, items.count);
+    const sphg_inversion wanted[] = {{.correction = fixture_view(&alone.correction)},
+                                     {.rank = fixture_view(&alone.rank)},
+                                     {.lambda_min = fixture_view(&alone.lambda_min)}};
+    for (int k = 0; k < 3; k++)
+        invert(context, &own, items.count, fixture_view(&moments), &wanted[k]);
+    assert_true(fixture_same_bits(&alone.correction, &all.correction));
+    assert_true(fixture_same_bits(&alone.rank, &all.rank));
+    assert_true(fixture_same_bits(&alone.lambda_min, &all.lambda_min));
+}
+
 /* C may replace M, in a record with other members, which keep their bytes. */
 static void correction_may_replace_the_moments(const test_case *test)
 {
@@ -418,13 +447,8 @@ static void correction_may_replace_the_moments(const test_case *test)
                (const char *)moments.data + (size_t)i * width, width);
     sphg_view place = fixture_view(&record);
     place.x = (const char *)place.x + size;
-    const float single = (float)own.volume;
-    const sphg_view volume =
-        own.is_double ? sphg_view_f64(&own.volume, 0) : sphg_view_f32(&single, 0);
-    sphg_inversion wanted = {0};
-    wanted.correction = place;
-    FIXTURE_OK(context,
-               sphg_invert_moments(context, &own.scheme, items.count, place, volume, &wanted));
+    const sphg_inversion wanted = {.correction = place};
+    invert(context, &own, items.count, place, &wanted);
     const fixture_array canary = fixture_output(moments.type, 1, 1);
     for (int i = 0; i < items.count; i++) {
         const char *item = (const char *)record.data + (size_t)i * 9 * size;
@@ -448,6 +472,7 @@ static const test_entry entries[] = {
     KGC_ONLY(noise_of_large_moments_is_not_inverted),
     EACH(bad_matrix_spoils_only_itself),
     EACH(stats_add_up),
+    EACH(each_output_may_be_asked_for_alone),
     EACH(correction_may_replace_the_moments),
 };
 TEST_MAIN(entries)
