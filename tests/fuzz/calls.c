@@ -1,7 +1,12 @@
 /* Calls in any order on objects in any state, with an allocator that fails now and then: a code
  * that the header names, every block given back at the end. */
 #include "fuzz.h"
-#if defined(__SANITIZE_ADDRESS__) || (defined(__clang__) && __has_feature(address_sanitizer))
+#ifdef __has_feature /* Clang */
+#if __has_feature(address_sanitizer)
+#define ADDRESSES_ARE_WATCHED
+#endif
+#endif
+#if defined(ADDRESSES_ARE_WATCHED) || defined(__SANITIZE_ADDRESS__) /* GCC */
 #include <sanitizer/asan_interface.h>
 #else
 #define ASAN_POISON_MEMORY_REGION(memory, size) ((void)(memory), (void)(size))
