@@ -199,6 +199,13 @@ static void try_with_index(world *own, sphg_neighbors *neighbors)
     *index = good;
 }
 
+static void restart(victim *hostile, const probe *tested)
+{
+    victim_reset(hostile);
+    if (tested->prepare)
+        tested->prepare(hostile);
+}
+
 /* Any argument of any function, in any of its ways. */
 static void try_with_argument(world *own)
 {
@@ -209,9 +216,7 @@ static void try_with_argument(world *own)
     trial made;
     if (!tested->call || tested->count == 0)
         return;
-    victim_reset(hostile);
-    if (tested->prepare)
-        tested->prepare(hostile);
+    restart(hostile, tested);
     const int a = random_index(&own->random, tested->count);
     if (!hostile_spoil(hostile, tested, a, random_index(&own->random, 8), &made))
         return;
@@ -222,10 +227,12 @@ static void try_with_argument(world *own)
                      (made.expected == HOSTILE_REFUSED ? result > 0 : (int)result == made.expected),
                  "round %ld, %s %s: %d", own->rounds, hostile_functions[f].name, made.what,
                  (int)result);
+    if (result != SPHG_OK)
+        return;
     /* What is allowed may have emptied an object (no sources, say) that later calls count on. */
-    if (result == SPHG_OK)
-        TEST_REQUIRE(tested->call(hostile) == SPHG_OK, "round %ld, %s as ever: %s", own->rounds,
-                     hostile_functions[f].name, sphg_last_message(hostile->context));
+    restart(hostile, tested);
+    TEST_REQUIRE(tested->call(hostile) == SPHG_OK, "round %ld, %s as ever: %s", own->rounds,
+                 hostile_functions[f].name, sphg_last_message(hostile->context));
 }
 
 static void try_build(world *own, fault what, sphg_neighbors *neighbors)
