@@ -279,12 +279,12 @@ static void singular_values_agree_with_lapack(const test_case *test)
 
 /* ---- Units -------------------------------------------------------------------------------- */
 
-static void require_scaled(const double *found, const double *expected, int count, double factor,
+static void require_scaled(const double *found, const double *expected, int count, int exponent,
                            const char *where)
 {
     for (int k = 0; k < count; k++)
-        TEST_REQUIRE(found[k] == factor * expected[k], "%s: %.17g, not %.17g", where, found[k],
-                     factor * expected[k]);
+        TEST_REQUIRE(found[k] == ldexp(expected[k], exponent), "%s: %.17g, not %.17g", where,
+                     found[k], ldexp(expected[k], exponent));
 }
 
 /* In another unit, with numbers as large or as small as the type holds, the digits are the same. */
@@ -294,29 +294,29 @@ static void units_change_no_digit(const test_case *test)
     const int d = test->dimension;
     batch items = batch_of(test, SPECTRA_indefinite);
     items.count = 100;
-    for (int k = 0; k < 9 * items.count; k++) /* eigenvalues below 1, digits that survive */
-        items.full[k] = ldexp(rint(ldexp(tanh(items.full[k]), 18)), -20);
+    for (int k = 0; k < 9 * items.count; k++) /* eigenvalues below 1 / 2, digits that survive */
+        items.full[k] = rint(ldexp(tanh(items.full[k]), 18)) *
+                        (k % 9 % (d + 1) == 0 ? 7 * 0x1p-22 : 0x1p-24);
     batch other = items;
     other.full = test_memory((size_t)(9 * items.count) * sizeof *other.full);
-    const int f64[] = {-990, -900, -502, -498, 498, 502, 900, 1023};
-    const int f32[] = {-95, -90, -50, 50, 100, 120, 126, 127};
+    const int f64[] = {-990, -900, -502, -498, 498, 502, 900, 1025};
+    const int f32[] = {-95, -90, -50, 50, 100, 120, 126, 129};
     const factors expected = eigen_of(context, &items);
     const singular expected_svd = d == 3 ? svd_of(context, &items) : (singular){0};
     for (int k = 0; k < 8; k++) {
         const int exponent = items.is_double ? f64[k] : f32[k];
-        const double factor = ldexp(1, exponent);
         const char *where = test_text("times 2^%d", exponent);
         for (int i = 0; i < 9 * items.count; i++)
-            other.full[i] = factor * items.full[i];
+            other.full[i] = ldexp(items.full[i], exponent);
         const factors found = eigen_of(context, &other);
-        require_scaled(found.values, expected.values, d * items.count, factor, where);
-        require_scaled(found.vectors, expected.vectors, d * d * items.count, 1, where);
+        require_scaled(found.values, expected.values, d * items.count, exponent, where);
+        require_scaled(found.vectors, expected.vectors, d * d * items.count, 0, where);
         if (d < 3)
             continue;
         const singular svd = svd_of(context, &other);
-        require_scaled(svd.sigma, expected_svd.sigma, 3 * items.count, factor, where);
-        require_scaled(svd.u, expected_svd.u, 9 * items.count, 1, where);
-        require_scaled(svd.v, expected_svd.v, 9 * items.count, 1, where);
+        require_scaled(svd.sigma, expected_svd.sigma, 3 * items.count, exponent, where);
+        require_scaled(svd.u, expected_svd.u, 9 * items.count, 0, where);
+        require_scaled(svd.v, expected_svd.v, 9 * items.count, 0, where);
     }
 }
 
