@@ -112,7 +112,7 @@ static void add_case(struct stability *stability, const struct stability_case *d
     one->rank_least = 3;
     one->steps = 0;
     if (one->sweep == SWEEP_SCALE)
-        one->steps = (int32_t)ceil((one->end - one->at) / (stability->quick ? 8 : 1));
+        one->steps = (int32_t)fmax(1, ceil((one->end - one->at) / (stability->quick ? 8 : 1)));
     if (one->sweep == SWEEP_MERGING)
         one->steps = (int32_t)lround((one->at - one->end) * (stability->quick ? 40 : 1000));
 }
