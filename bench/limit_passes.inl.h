@@ -221,8 +221,8 @@ INLINE void run_groups(const struct limit_data *data, enum limit_work work,
     }
 }
 
-/* What is constant here is constant in the loops. */
-#define ARRANGED(work, finished, lanes_are_targets, by_newton, in_passes)                          \
+/* What is constant here is constant in the loops. `finished` is not: it is asked once a group. */
+#define ARRANGED(lanes_are_targets, by_newton, in_passes)                                          \
     run_groups(data, work, (struct limit_arrangement){lanes_are_targets, by_newton, in_passes},    \
                finished, targets)
 
@@ -231,49 +231,40 @@ INLINE void run_arranged(const struct limit_data *data, enum limit_work work, in
 {
     switch (arrangement) {
     case 0:
-        ARRANGED(work, finished, false, false, false);
+        ARRANGED(false, false, false);
         return;
     case 1:
-        ARRANGED(work, finished, true, false, false);
+        ARRANGED(true, false, false);
         return;
     case 2:
-        ARRANGED(work, finished, false, true, false);
+        ARRANGED(false, true, false);
         return;
     case 3:
-        ARRANGED(work, finished, true, true, false);
+        ARRANGED(true, true, false);
         return;
     case 4:
-        ARRANGED(work, finished, false, false, true);
+        ARRANGED(false, false, true);
         return;
     case 5:
-        ARRANGED(work, finished, true, false, true);
+        ARRANGED(true, false, true);
         return;
     case 6:
-        ARRANGED(work, finished, false, true, true);
+        ARRANGED(false, true, true);
         return;
     default:
-        ARRANGED(work, finished, true, true, true);
+        ARRANGED(true, true, true);
     }
-}
-
-INLINE void run_work(const struct limit_data *data, enum limit_work work, int arrangement,
-                     bool finished, int32_t targets)
-{
-    if (finished)
-        run_arranged(data, work, arrangement, true, targets);
-    else
-        run_arranged(data, work, arrangement, false, targets);
 }
 
 static void run(const struct limit_data *data, enum limit_work work, int arrangement, bool finished,
                 int32_t targets)
 {
     if (work == LIMIT_MATRICES)
-        run_work(data, LIMIT_MATRICES, arrangement, finished, targets);
+        run_arranged(data, LIMIT_MATRICES, arrangement, finished, targets);
     else if (work == LIMIT_GRADIENT)
-        run_work(data, LIMIT_GRADIENT, arrangement, finished, targets);
+        run_arranged(data, LIMIT_GRADIENT, arrangement, finished, targets);
     else
-        run_work(data, LIMIT_FUSED, arrangement, finished, targets);
+        run_arranged(data, LIMIT_FUSED, arrangement, finished, targets);
 }
 
 const struct limit_set LIMIT_SET = {LIMIT_SET_NAME, LANES, run};
