@@ -9,7 +9,7 @@
 #if defined(ADDRESSES_ARE_WATCHED) || defined(__SANITIZE_ADDRESS__) /* GCC */
 #include <sanitizer/asan_interface.h>
 #else
-#define ASAN_POISON_MEMORY_REGION(memory, size) ((void)(memory), (void)(size))
+#define ASAN_POISON_MEMORY_REGION(memory, size)   ((void)(memory), (void)(size))
 #define ASAN_UNPOISON_MEMORY_REGION(memory, size) ((void)(memory), (void)(size))
 #endif
 
@@ -195,8 +195,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static world own;
     fuzz_bytes from = {data, size};
     memset(&own, 0, sizeof own);
-    const sphg_config config = {
-        .threads = 1, .allocate = allocate, .release = release, .user = &own};
+    const sphg_config config = {.threads = 1,
+                                .isa = fuzz_isa(size),
+                                .allocate = allocate,
+                                .release = release,
+                                .user = &own};
     own.scheme = (sphg_scheme){.dimension = 3, .support_radius = 1};
     own.fail = fuzz_byte(&from) % 4;
     if (sphg_context_create(SPHG_VERSION, &config, &own.context) == SPHG_OK)

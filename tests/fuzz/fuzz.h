@@ -101,13 +101,29 @@ static inline sphg_view fuzz_view(sphg_type type, const void *array, int width)
     return view;
 }
 
-static inline sphg_context *fuzz_context(void)
+/* The baseline and the best of this machine in turn: the number of bytes decides, so an input keeps
+ * its instruction set. */
+static inline sphg_isa fuzz_isa(size_t size)
 {
-    static sphg_context *context;
-    const sphg_config config = {.threads = 1};
-    if (!context)
-        FUZZ_REQUIRE(sphg_context_create(SPHG_VERSION, &config, &context) == SPHG_OK, "no context");
-    return context;
+    return size % 2 ? SPHG_ISA_BASE : SPHG_ISA_BEST;
+}
+
+/* What outlives an input of so many bytes: a context of its instruction set, and neighbours. */
+typedef struct fuzz_library {
+    sphg_context *context;
+    sphg_neighbors *neighbors;
+} fuzz_library;
+
+static inline const fuzz_library *fuzz_library_for(size_t size)
+{
+    static fuzz_library libraries[2];
+    fuzz_library *own = &libraries[size % 2];
+    const sphg_config config = {.threads = 1, .isa = fuzz_isa(size)};
+    if (!own->context)
+        FUZZ_REQUIRE(sphg_context_create(SPHG_VERSION, &config, &own->context) == SPHG_OK &&
+                         sphg_neighbors_create(own->context, &own->neighbors) == SPHG_OK,
+                     "no context");
+    return own;
 }
 
 #endif

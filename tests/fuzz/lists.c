@@ -5,6 +5,7 @@
 enum { MOST = 24, INDICES = 400 };
 
 typedef struct host {
+    const fuzz_library *library;
     sphg_type type;
     int dimension, count, shape;
     double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 16];
@@ -65,7 +66,7 @@ static int32_t *moved_to_the_end(host *on, sphg_lists *lists)
     return copy;
 }
 
-static sphg_result evaluate(fuzz_bytes *from, host *on, const sphg_neighbors *neighbors)
+static sphg_result evaluate(fuzz_bytes *from, host *on)
 {
     const int d = on->dimension, width = sphg_correction_width(&on->scheme);
     const int form = fuzz_byte(from) % 4, tame = fuzz_byte(from) % 2;
@@ -75,7 +76,7 @@ static sphg_result evaluate(fuzz_bytes *from, host *on, const sphg_neighbors *ne
                      : on->shape == 3 ? d * (d + 1) / 2
                                       : d * d;
     const sphg_view at_sources = numbers(from, on, on->field, item, tame);
-    sphg_sources sources = {.neighbors = neighbors};
+    sphg_sources sources = {.neighbors = on->library->neighbors};
     sources.volume = numbers(from, on, on->volume, 1, fuzz_byte(from) % 4);
     sources.density = numbers(from, on, on->density, 1, tame);
     if (width && form > 1)
@@ -96,18 +97,17 @@ static sphg_result evaluate(fuzz_bytes *from, host *on, const sphg_neighbors *ne
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     if (width && form < 2)
         request.correction = fuzz_view(on->type, on->results[3], width);
-    return sphg_evaluate(fuzz_context(), &on->scheme, &request);
+    return sphg_evaluate(on->library->context, &on->scheme, &request);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static host on;
-    static sphg_neighbors *neighbors;
     fuzz_bytes from = {data, size};
     sphg_lists lists = {0};
-    if (!neighbors)
-        sphg_neighbors_create(fuzz_context(), &neighbors);
     memset(&on, 0, sizeof on);
+    on.library = fuzz_library_for(size);
+    sphg_context *context = on.library->context;
     const int flags = fuzz_byte(&from);
     on.type = flags & 1 ? SPHG_F64 : SPHG_F32;
     on.dimension = flags & 2 ? 3 : 2;
@@ -123,16 +123,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     take_lists(&from, &on, &lists);
     int32_t *copy = moved_to_the_end(&on, &lists);
     sphg_result result =
-        sphg_neighbors_use_lists(fuzz_context(), neighbors, &on.scheme, &geometry, &lists);
+        sphg_neighbors_use_lists(context, on.library->neighbors, &on.scheme, &geometry, &lists);
     FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
                      result == SPHG_ERROR_NOT_FINITE,
-                 "%s", sphg_last_message(fuzz_context()));
+                 "%s", sphg_last_message(context));
     if (!result)
-        result = evaluate(&from, &on, neighbors);
+        result = evaluate(&from, &on);
     FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
                      result == SPHG_ERROR_NOT_FINITE || result == SPHG_ERROR_INDEX ||
                      result == SPHG_ERROR_VOLUME,
-                 "%s", sphg_last_message(fuzz_context()));
+                 "%s", sphg_last_message(context));
     free(copy);
     return 0;
 }

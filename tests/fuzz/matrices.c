@@ -5,6 +5,7 @@
 enum { ITEMS = 5 };
 
 typedef struct batch {
+    sphg_context *context;
     sphg_type type;
     int dimension;
     double unit, grain;
@@ -58,7 +59,7 @@ static void require_product(const batch *on, const long double *a, const void *u
 static void try_eigen(batch *on)
 {
     const int d = on->dimension, width = d * (d + 1) / 2;
-    FUZZ_REQUIRE(sphg_eigen(fuzz_context(), d, ITEMS, fuzz_view(on->type, on->in, width),
+    FUZZ_REQUIRE(sphg_eigen(on->context, d, ITEMS, fuzz_view(on->type, on->in, width),
                             fuzz_view(on->type, on->first, d),
                             fuzz_view(on->type, on->second, d * d)) == SPHG_OK,
                  "eigen");
@@ -77,7 +78,7 @@ static void try_eigen(batch *on)
 
 static void try_svd(batch *on)
 {
-    FUZZ_REQUIRE(sphg_svd(fuzz_context(), ITEMS, fuzz_view(on->type, on->in, 9),
+    FUZZ_REQUIRE(sphg_svd(on->context, ITEMS, fuzz_view(on->type, on->in, 9),
                           fuzz_view(on->type, on->first, 9), fuzz_view(on->type, on->second, 3),
                           fuzz_view(on->type, on->third, 9)) == SPHG_OK,
                  "svd");
@@ -111,10 +112,10 @@ static void try_inversion(batch *on, fuzz_bytes *from)
                                    .rank = sphg_view_u8(rank, 1),
                                    .lambda_min = fuzz_view(on->type, on->second, 1),
                                    .stats = &stats};
-    FUZZ_REQUIRE(sphg_invert_moments(fuzz_context(), &scheme, ITEMS,
+    FUZZ_REQUIRE(sphg_invert_moments(on->context, &scheme, ITEMS,
                                      fuzz_view(on->type, on->in, width),
                                      fuzz_view(on->type, volume, 1), &wanted) == SPHG_OK,
-                 "invert: %s", sphg_last_message(fuzz_context()));
+                 "invert: %s", sphg_last_message(on->context));
     for (int i = 0; i < ITEMS; i++) {
         FUZZ_REQUIRE(rank[i] <= d, "rank %d", rank[i]);
         const long double size = largest(on, on->in, i * width, width);
@@ -131,6 +132,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_bytes from = {data, size};
     batch on;
     memset(&on, 0, sizeof on);
+    on.context = fuzz_library_for(size)->context;
     const int flags = fuzz_byte(&from);
     on.type = flags & 1 ? SPHG_F64 : SPHG_F32;
     on.dimension = flags & 2 ? 3 : 2;

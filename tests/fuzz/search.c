@@ -115,25 +115,23 @@ static int is_finite(cloud *on)
 /* Twice: the second search may keep what the first one found. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static sphg_neighbors *neighbors;
     static int64_t offsets[MOST + 1];
     static int32_t indices[MOST * MOST];
     fuzz_bytes from = {data, size};
     cloud on = {.type = SPHG_F32};
-    sphg_context *context = fuzz_context();
-    if (!neighbors)
-        sphg_neighbors_create(context, &neighbors);
+    const fuzz_library *library = fuzz_library_for(size);
+    sphg_context *context = library->context;
     take_cloud(&from, &on);
     for (int turn = 0; turn < 2; turn++) {
         const sphg_result result =
-            sphg_neighbors_search(context, neighbors, &on.scheme, &on.geometry);
+            sphg_neighbors_search(context, library->neighbors, &on.scheme, &on.geometry);
         FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
                          result == SPHG_ERROR_NOT_FINITE,
                      "%s", sphg_last_message(context));
         if (result)
             return 0;
         FUZZ_REQUIRE(is_finite(&on), "accepted what is not finite");
-        const sphg_sources sources = {.neighbors = neighbors};
+        const sphg_sources sources = {.neighbors = library->neighbors};
         sphg_pairs pairs = {.offsets = offsets, .indices = indices, .capacity = MOST * MOST};
         FUZZ_REQUIRE(sphg_pair_gradients(context, &on.scheme, &sources, NULL, sphg_absent(),
                                          &pairs) == SPHG_OK,
