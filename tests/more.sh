@@ -27,9 +27,10 @@ run_tsan() {
 }
 
 # The areas that take SPHG_TEST_LONG=1; of the ensembles, whose reference is in quad, one process for
-# each precision. Then all scenes of the examples, and threads under ThreadSanitizer.
+# each precision. Then what tests/run halves, whole; all scenes of the examples; and threads under
+# ThreadSanitizer.
 run_long() {
-    local area precision process processes=() status=0
+    local area precision preset process processes=() status=0
     build_preset release -DSPHG_BUILD_TESTS=ON || return 1
     export SPHG_TEST_LONG=1
     for area in extremes golden metamorphic; do
@@ -44,6 +45,9 @@ run_long() {
     done
     cat build/release/f32.log build/release/f64.log
     unset SPHG_TEST_LONG
+    for preset in clang asan; do
+        build_preset "$preset" -DSPHG_BUILD_TESTS=ON && ctest --preset "$preset" -L area -j "$(nproc)" || status=1
+    done
     examples/run all --check || status=1
     run_tsan || status=1
     return $status

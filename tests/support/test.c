@@ -232,18 +232,63 @@ static int is_in(unsigned set, unsigned fallback, int value)
     return ((set ? set : TEST_BIT(fallback)) & TEST_BIT(value)) != 0;
 }
 
-/* Writes the cases of one entry (counts only where cases is NULL). */
-static size_t expand(const test_entry *entry, named_case *cases)
+static int is_of_entry(const test_entry *entry, const test_case *test)
+{
+    return is_in(entry->precisions, TEST_F64, (int)test->precision) &&
+           is_in(entry->dimensions, 3, test->dimension) &&
+           is_in(entry->methods, SPHG_KGC, (int)test->method) &&
+           is_in(entry->kernels, SPHG_CUBIC_SPLINE, (int)test->kernel);
+}
+
+static struct {
+    int part, parts;
+} share = {1, 1};
+
+static void read_share(void)
+{
+    const char *wanted = getenv("SPHG_TEST_SHARE");
+    if (!wanted || !*wanted)
+        return;
+    char behind;
+    if (sscanf(wanted, "%d/%d%c", &share.part, &share.parts, &behind) != 2 || share.part < 1 ||
+        share.part > share.parts) {
+        fprintf(stderr, "SPHG_TEST_SHARE is %s, not a part and a number of parts, as in 1/2\n",
+                wanted);
+        exit(1);
+    }
+}
+
+int test_is_shared(void)
+{
+    return share.parts > 1;
+}
+
+static int has_several(unsigned set)
+{
+    return (set & (set - 1)) != 0;
+}
+
+/* Like the fields of one colour on a chessboard: of two parameters each value stays. `number` keeps
+ * properties of one parameter from losing all the same one; who has one case keeps it. */
+static int is_of_share(const test_entry *entry, const test_case *test, size_t number)
+{
+    if (!has_several(entry->precisions) && !has_several(entry->dimensions) &&
+        !has_several(entry->methods) && !has_several(entry->kernels))
+        return 1;
+    const int colour = (int)test->precision + test->dimension + (int)test->method +
+                       (int)test->kernel + (int)(number % (size_t)share.parts);
+    return colour % share.parts == share.part % share.parts;
+}
+
+/* Writes the cases of an entry, the number-th (counts only where cases is NULL). */
+static size_t expand(const test_entry *entry, size_t number, named_case *cases)
 {
     enum { all = 3 * 4 * 6 * 7 };
     size_t count = 0;
     for (int k = 0; k < all; k++) {
-        test_case test = {(test_precision)(k / 168), k / 42 % 4, (sphg_method)(k / 7 % 6),
-                          (sphg_kernel)(k % 7)};
-        if (!is_in(entry->precisions, TEST_F64, (int)test.precision) ||
-            !is_in(entry->dimensions, 3, test.dimension) ||
-            !is_in(entry->methods, SPHG_KGC, (int)test.method) ||
-            !is_in(entry->kernels, SPHG_CUBIC_SPLINE, (int)test.kernel))
+        const test_case test = {(test_precision)(k / 168), k / 42 % 4, (sphg_method)(k / 7 % 6),
+                                (sphg_kernel)(k % 7)};
+        if (!is_of_entry(entry, &test) || !is_of_share(entry, &test, number))
             continue;
         if (cases)
             cases[count] = name_case(entry, &test);
@@ -256,12 +301,13 @@ int test_run(int argc, char **argv, const test_entry *entries, size_t count)
 {
     size_t total = 0, used = 0;
     chosen_isa = wanted_isa();
+    read_share();
     for (size_t e = 0; e < count; e++)
-        total += expand(&entries[e], NULL);
+        total += expand(&entries[e], e, NULL);
     named_case *cases = required(calloc(total + 1, sizeof *cases));
     struct CMUnitTest *tests = required(calloc(total + 1, sizeof *tests));
     for (size_t e = 0; e < count; e++)
-        used += expand(&entries[e], cases + used);
+        used += expand(&entries[e], e, cases + used);
     for (size_t k = 0; k < used; k++) {
         struct CMUnitTest unit = {cases[k].name, run_case, NULL, end_case, &cases[k]};
         tests[k] = unit;

@@ -56,6 +56,10 @@ typedef struct test_entry {
  * v3, v4 or neon and this machine has that; if it has not, the run says so. */
 sphg_isa test_isa(void);
 
+/* SPHG_TEST_SHARE=1/2 runs every second case of each property, and 2/2 the others; a property of
+ * one case is always run. True when that is asked for: a case may then be smaller, too. */
+int test_is_shared(void);
+
 /* Runs everything, or what matches the pattern in argv[1] ('*' and '?' are wildcards), and prints
  * the worst value measured against each tolerance. Returns main's result. */
 int test_run(int argc, char **argv, const test_entry *entries, size_t count);
