@@ -113,6 +113,25 @@ static void halves_of_the_smallest_box_meet_through_its_side(const test_case *te
     }
 }
 
+/* So little below 0 that a period added rounds to the period itself: outside the box, which has no
+ * cell there. */
+static void positions_just_outside_the_box_have_a_cell(const test_case *test)
+{
+    sphg_context *context = fixture_context();
+    sphg_neighbors *neighbors = pairs_neighbors(context);
+    random_state random = random_seeded(71);
+    for (int k = 0; k < 8; k++) {
+        scene particles = empty_scene(test, 110);
+        particles.list_free = k % 2;
+        for (int axis = 0; axis < test->dimension; axis++)
+            particles.period[axis] = LENGTHS[(k + axis) % 8];
+        scatter_in_box(&particles, 1, 0, &random);
+        for (int i = 0; i < 110 * test->dimension; i += 7)
+            particles.sources[i] = k % 4 < 2 ? -0x1p-60 : -0x1p-140;
+        rows_require_search_exact(context, neighbors, &particles, 1, test_text("box %d", k));
+    }
+}
+
 /* A lattice that fills the box looks the same from each of its points. */
 static void periodic_lattice_has_no_boundary(const test_case *test)
 {
@@ -326,6 +345,7 @@ static const test_entry entries[] = {
     EACH(positions_may_lie_outside_the_box),
     EACH(lengths_of_any_bits_have_the_pairs_of_brute_force),
     EACH(halves_of_the_smallest_box_meet_through_its_side),
+    EACH(positions_just_outside_the_box_have_a_cell),
     EACH(periodic_lattice_has_no_boundary),
     EACH(periodic_targets_need_not_be_sources),
     EACH(periods_shorter_than_twice_the_reach_are_refused),

@@ -398,6 +398,8 @@ static void inversion_refuses_bad_arguments(const test_case *test)
     REFUSES(invert, SPHG_ERROR_ARGUMENT, "moments", own->table.x = NULL);
     REFUSES(invert, SPHG_ERROR_ARGUMENT, "moments", own->table.stride += 1);
     REFUSES(invert, SPHG_ERROR_ARGUMENT, "correction", own->inversion.correction.stride = 0);
+    REFUSES(invert, SPHG_ERROR_ARGUMENT, "overlaps", own->inversion.correction = own->table;
+            own->inversion.correction.stride *= 2; own->count /= 2);
     REFUSES(invert, SPHG_ERROR_TYPE, "correction", own->inversion.correction.type = other);
     REFUSES(invert, SPHG_ERROR_TYPE, "rank", own->inversion.rank.type = other);
     REFUSES(invert, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = 4);

@@ -278,6 +278,44 @@ static void offsets_of_the_host_have_64_bits(const test_case *test)
     munmap(indices, bytes);
 }
 
+/* Memory for more pairs than 2^31 may be offered: address space again, of which a few pages are
+ * written. */
+static void room_for_more_pairs_than_32_bits_count_may_be_offered(const test_case *test)
+{
+    const int64_t room = ((int64_t)1 << 31) + 8;
+    const size_t size = test_field_type(test) == SPHG_F64 ? 8 : 4, width = (size_t)test->dimension;
+    const size_t for_indices = (size_t)room * sizeof(int32_t), bytes = (size_t)room * width * size;
+    char *memory = mmap(NULL, for_indices + bytes, PROT_READ | PROT_WRITE,
+                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) {
+        print_message("skipped: no address space for 2^31 pairs\n");
+        return;
+    }
+    cloud points = cloud_line(test->dimension, 4, .25);
+    const fixture_array positions = fixture_positions(test, &points);
+    const fixture_array volume =
+        fixture_numbers(test_field_type(test), 4, 1, (const double[]){1, 1, 1, 1});
+    const sphg_scheme scheme = fixture_scheme(test, 4);
+    sphg_geometry geometry = geometry_of(&positions, 0);
+    geometry.precision = test_field_type(test);
+    host *own = host_of((size_t)1 << 27);
+    FIXTURE_OK(own->context,
+               sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
+    const sphg_sources sources = {.neighbors = own->neighbors, .volume = fixture_view(&volume)};
+    int64_t offsets[5];
+    sphg_pairs pairs = {.offsets = offsets,
+                        .indices = (int32_t *)(void *)memory,
+                        .gradient = {memory + for_indices, NULL, NULL, (ptrdiff_t)(width * size),
+                                     test_field_type(test)},
+                        .capacity = room};
+    FIXTURE_OK(own->context,
+               sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
+    assert_int_equal(pairs.count, 12);
+    for (int k = 0; k < 12; k++)
+        assert_int_equal(pairs.indices[k], k % 3 + (k % 3 >= k / 3));
+    munmap(memory, for_indices + bytes);
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(escapee_costs_next_to_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(clumps_can_be_summed_without_lists, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0,
@@ -285,5 +323,7 @@ static const test_entry entries[] = {
     TEST_ENTRY(lists_that_do_not_fit_are_a_memory_failure, TEST_BIT(TEST_F32), TEST_3D, 0, 0),
     TEST_ENTRY(pairs_beyond_32_bits_are_counted, TEST_BIT(TEST_F32), TEST_3D, 0, 0),
     TEST_ENTRY(offsets_of_the_host_have_64_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(room_for_more_pairs_than_32_bits_count_may_be_offered, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, 0, 0),
 };
 TEST_MAIN(entries)

@@ -369,6 +369,58 @@ static void no_and_one_particle_give_empty_results(const test_case *test)
     }
 }
 
+/* No target, or none with a neighbour: there is no index to point at. */
+static void lists_without_pairs_need_no_indices(const test_case *test)
+{
+    const stage own = stage_of(test);
+    int64_t *offsets = test_memory((COUNT + 1) * sizeof *offsets);
+    const sphg_lists none = {.offsets = offsets};
+    const fixture_array gradient =
+        gradient_through(&own, fixture_lists(own.context, &own.scheme, &own.geometry, &none));
+    for (int i = 0; i < COUNT; i++)
+        for (int k = 0; k < gradient.width; k++)
+            assert_true(fixture_get(&gradient, i, k) == 0);
+}
+
+/* A set whose particles are all elsewhere today, as in a host that splits its domain. */
+static void targets_without_sources_have_sums_of_nothing(const test_case *test)
+{
+    const stage own = stage_of(test);
+    for (int list_free = 0; list_free < 2; list_free++) {
+        sphg_geometry geometry = own.geometry;
+        geometry.targets = geometry.sources;
+        geometry.target_count = COUNT;
+        geometry.sources = sphg_absent();
+        geometry.source_count = 0;
+        geometry.list_free = list_free;
+        const fixture_array value = fixture_output(own.field.type, COUNT, 1);
+        const sphg_view none = sphg_absent();
+        const sphg_sources sources = {.neighbors =
+                                          fixture_search(own.context, &own.scheme, &geometry),
+                                      .volume = fixture_view(&own.volume)};
+        const sphg_field asked = {.shape = SPHG_SCALAR,
+                                  .form = SPHG_DIRECT,
+                                  .at_sources = &none,
+                                  .value = fixture_view(&value)};
+        const sphg_request request = {
+            .sources = &sources, .fields = &asked, .set_count = 1, .field_count = 1};
+        FIXTURE_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+        for (int i = 0; i < COUNT; i++)
+            assert_true(fixture_get(&value, i, 0) == 0);
+    }
+}
+
+static void no_dimension_means_three(const test_case *test)
+{
+    stage own = stage_of(test);
+    const fixture_array expected =
+        gradient_through(&own, fixture_search(own.context, &own.scheme, &own.geometry));
+    own.scheme.dimension = 0;
+    const fixture_array found =
+        gradient_through(&own, fixture_search(own.context, &own.scheme, &own.geometry));
+    assert_true(fixture_same_bits(&found, &expected));
+}
+
 #define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)
 
 static const test_entry entries[] = {
@@ -382,6 +434,9 @@ static const test_entry entries[] = {
     EACH(sorting_by_the_order_renames_the_pairs),
     EACH(refused_build_keeps_the_old_state),
     EACH(object_can_be_rebuilt_for_other_scenes),
+    EACH(lists_without_pairs_need_no_indices),
+    EACH(targets_without_sources_have_sums_of_nothing),
+    TEST_ENTRY(no_dimension_means_three, TEST_ALL_PRECISIONS, TEST_3D, TEST_ALL_METHODS, 0),
     TEST_ENTRY(no_and_one_particle_give_empty_results, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
 };

@@ -237,8 +237,7 @@ static void single_item_may_stand_inside_a_record(const test_case *test)
     for (ptrdiff_t at = 0; at < 24; at++) { /* members 0 to d - 1 of records 0 and 1 are written */
         own->sources[0].volume.x = memory + at * size;
         own->sources[0].volume.stride = 5 * size;
-        const sphg_result expected =
-            at % 12 < test->dimension ? SPHG_ERROR_ARGUMENT : SPHG_OK;
+        const sphg_result expected = at % 12 < test->dimension ? SPHG_ERROR_ARGUMENT : SPHG_OK;
         TEST_REQUIRE(evaluate(own) == expected, "at %d: %s", (int)at,
                      sphg_last_message(own->context));
     }
@@ -382,10 +381,62 @@ static void lists_of_no_length_are_found_where_operators_read_them(const test_ca
     }
 }
 
+/* The first of the targets, in whatever order they are asked for. */
+static void first_bad_list_is_named_in_any_order_of_targets(const test_case *test)
+{
+    subject *own = subject_create(test);
+    const int32_t picked[] = {50, 9, 30, 3, 40};
+    bad_rows bad;
+    for (int i = 0; i < SUBJECT_COUNT; i++) {
+        bad.rows[i] = own->indices;
+        bad.lengths[i] = i % 10 == 0 || i == 9 ? -1 : 3;
+    }
+    const sphg_lists rows = {.rows = bad.rows, .lengths = bad.lengths};
+    FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
+                                                      &own->geometry, &rows));
+    own->sources[0].neighbors = own->lone;
+    own->subset = (sphg_subset){0, 5, picked, NULL};
+    own->request.subset = &own->subset;
+    assert_int_equal(evaluate(own), SPHG_ERROR_INDEX);
+    TEST_REQUIRE(strstr(sphg_last_message(own->context), "target 9 has"), "%s",
+                 sphg_last_message(own->context));
+}
+
+/* ---- Hosts that know their numbers -------------------------------------------------------- */
+
+static sphg_result invert(subject *own)
+{
+    return sphg_invert_moments(own->context, own->scheme_given, own->count, own->tensors,
+                               own->volumes, own->inversion_given);
+}
+
+/* A volume is bad: the context that looks says so, the one that trusts goes on. */
+static void trusted_contexts_do_not_look_at_volumes(const test_case *test)
+{
+    subject *own = subject_create(test);
+    double numbers[SUBJECT_COUNT];
+    for (int i = 0; i < SUBJECT_COUNT; i++)
+        numbers[i] = i == 41 ? -1 : 0.125;
+    const fixture_array volumes = fixture_numbers(test_field_type(test), SUBJECT_COUNT, 1, numbers);
+    own->scheme.method = SPHG_MLS;
+    own->volumes = own->sources[0].volume = own->sources[1].volume = fixture_view(&volumes);
+    assert_int_equal(evaluate(own), SPHG_ERROR_VOLUME);
+    assert_int_equal(invert(own), SPHG_ERROR_VOLUME);
+    const sphg_config config = {.threads = 2, .isa = test_isa(), .trusted = 1};
+    sphg_context *looking = own->context;
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->context));
+    FIXTURE_OK(own->context, evaluate(own));
+    FIXTURE_OK(own->context, invert(own));
+    sphg_context_destroy(own->context);
+    own->context = looking;
+}
+
+/* ---- Calls in calls ----------------------------------------------------------------------- */
+
 typedef struct reentry {
     subject *own;
     const int32_t *row;
-    sphg_result inner;
+    sphg_result inner, refused;
 } reentry;
 
 static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t **indices,
@@ -394,9 +445,12 @@ static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t
     reentry *call = user;
     subject *own = call->own;
     (void)worker;
-    if (target == 0)
+    if (target == 0) {
         call->inner = sphg_eigen(own->context, own->dimension, own->count, own->table,
                                  own->vectors_out, own->tensors_out);
+        call->refused =
+            sphg_gradient(own->context, &own->scheme, NULL, NULL, own->scalars, own->vectors_out);
+    }
     *indices = call->row;
     return SUBJECT_COUNT;
 }
@@ -404,7 +458,7 @@ static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t
 static void context_in_use_is_busy(const test_case *test)
 {
     subject *own = subject_create(test);
-    reentry call = {own, own->indices, SPHG_OK};
+    reentry call = {own, own->indices, SPHG_OK, SPHG_OK};
     memset(&own->lists, 0, sizeof own->lists);
     own->lists.row = row_that_calls_back;
     own->lists.user = &call;
@@ -413,6 +467,7 @@ static void context_in_use_is_busy(const test_case *test)
     own->sources[0].neighbors = own->lone;
     FIXTURE_OK(own->context, evaluate(own));
     assert_int_equal(call.inner, SPHG_ERROR_BUSY);
+    assert_int_equal(call.refused, SPHG_ERROR_BUSY); /* before it looks at what is wrong */
     FIXTURE_OK(own->context, evaluate(own));
 }
 
@@ -520,6 +575,8 @@ static const test_entry entries[] = {
     EACH(bad_volumes_are_found_and_named),
     EACH(bad_indices_are_found_where_operators_read_them),
     EACH(lists_of_no_length_are_found_where_operators_read_them),
+    EACH(first_bad_list_is_named_in_any_order_of_targets),
+    EACH(trusted_contexts_do_not_look_at_volumes),
     EACH(context_in_use_is_busy),
     EACH(pairs_refuse_bad_arguments),
     EACH(pairs_report_the_capacity_they_need),

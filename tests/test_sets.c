@@ -1,6 +1,8 @@
 /* Fluid and wall as two source sets give what their union gives; targets may lie anywhere; fields
  * and calls add up. */
+#include "support/pairs.h"
 #include "support/stage.h"
+#include <math.h>
 #include <string.h>
 
 /* A block whose lower layers are wall: the first `fluid` points are fluid. */
@@ -34,7 +36,7 @@ static int by_height(const cloud *points, cloud *sorted)
     return fluid;
 }
 
-static sphg_neighbors *neighbors_between(const two_sets *sets, int targets, int sources)
+static sphg_geometry geometry_between(const two_sets *sets, int targets, int sources)
 {
     const test_case *test = sets->whole.test;
     sphg_geometry geometry =
@@ -43,6 +45,12 @@ static sphg_neighbors *neighbors_between(const two_sets *sets, int targets, int 
         geometry.targets = fixture_view(&sets->positions[targets]);
         geometry.target_count = sets->part[targets].count;
     }
+    return geometry;
+}
+
+static sphg_neighbors *neighbors_between(const two_sets *sets, int targets, int sources)
+{
+    const sphg_geometry geometry = geometry_between(sets, targets, sources);
     return fixture_search(sets->whole.context, &sets->whole.scheme, &geometry);
 }
 
@@ -167,6 +175,71 @@ static void an_absent_field_is_zero(const test_case *test)
     assert_true(fixture_same_bits(&found[0], &found[1]));
 }
 
+/* Lists of the host from the search's own pairs. */
+static sphg_neighbors *brought_between(const two_sets *sets, int targets, int sources)
+{
+    const stage *on = &sets->whole;
+    const sphg_geometry geometry = geometry_between(sets, targets, sources);
+    const rows found = rows_listed(on->context, sets->from[targets][sources], &on->scheme, NULL);
+    const sphg_lists lists = {.offsets = found.offsets, .indices = found.indices};
+    return fixture_lists(on->context, &on->scheme, &geometry, &lists);
+}
+
+/* Through lists of the host, with a field that one of the sets has not. */
+static void lists_of_the_host_may_lack_a_field(const test_case *test)
+{
+    const two_sets sets = split_block(test);
+    const stage *on = &sets.whole;
+    const fixture_array here = fixture_numbers(test_field_type(test), sets.fluid, 1,
+                                               stage_random_field(on, SPHG_SCALAR, 23));
+    const sphg_view at_sources[] = {fixture_view(&here), sphg_absent()};
+    fixture_array found[2];
+    for (int way = 0; way < 2; way++) {
+        sphg_sources sources[2];
+        sources_of(&sets, 0, sources);
+        for (int s = 0; s < 2 && way; s++)
+            sources[s].neighbors = brought_between(&sets, 0, s);
+        found[way] = fixture_output(here.type, sets.fluid, test->dimension);
+        const sphg_field asked = {
+            .shape = SPHG_SCALAR, .at_sources = at_sources, .gradient = fixture_view(&found[way])};
+        const sphg_request request = {
+            .sources = sources, .fields = &asked, .set_count = 2, .field_count = 1};
+        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    }
+    double largest = 0;
+    for (int k = 0; k < sets.fluid * test->dimension; k++)
+        largest =
+            fmax(largest, fabs(fixture_get(&found[0], k / test->dimension, k % test->dimension)));
+    for (int k = 0; k < sets.fluid * test->dimension; k++) {
+        const int i = k / test->dimension, c = k % test->dimension;
+        const double apart = fabs(fixture_get(&found[0], i, c) - fixture_get(&found[1], i, c));
+        TEST_WITHIN(order_of_summation, apart / (largest * on->scene.unit), "an absent field");
+    }
+}
+
+/* Sums of several sets are finished in a sweep of its own, which a mask concerns as well. */
+static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *test)
+{
+    const two_sets sets = split_block(test);
+    const stage *on = &sets.whole;
+    const fixture_array whole = table_of(&sets, 0);
+    fixture_array some = fixture_output(whole.type, sets.fluid, whole.width);
+    uint8_t *mask = test_memory((size_t)sets.fluid);
+    for (int i = 0; i < sets.fluid; i++)
+        mask[i] = i % 3 == 1;
+    const sphg_subset subset = {0, sets.fluid, NULL, mask};
+    sphg_sources sources[2];
+    sources_of(&sets, 0, sources);
+    const sphg_request request = {
+        .sources = sources, .set_count = 2, .subset = &subset, .correction = fixture_view(&some)};
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    for (int i = 0; i < sets.fluid; i++)
+        for (int c = 0; c < whole.width; c++)
+            TEST_REQUIRE(mask[i] ? fixture_get(&some, i, c) == fixture_get(&whole, i, c)
+                                 : fixture_is_canary(&some, i),
+                         "target %d, number %d", i, c);
+}
+
 /* ---- Targets unlike sources ---------------------------------------------------------------------
  */
 
@@ -193,11 +266,11 @@ static probe make_probe(const test_case *test, int with_volume)
     made.at_targets = cloud_numbers(&made.targets, -1, 1, &random);
     if (with_volume)
         made.target_volume = cloud_volumes(&points, .2, &random);
-    oracle_scene *scene = &made.on.scene;
-    scene->targets = made.targets.x;
-    scene->target_count = made.targets.count;
-    scene->target_volume = made.target_volume;
-    made.on.reference = oracle_of(scene);
+    oracle_scene *probed = &made.on.scene;
+    probed->targets = made.targets.x;
+    probed->target_count = made.targets.count;
+    probed->target_volume = made.target_volume;
+    made.on.reference = oracle_of(probed);
     return made;
 }
 
@@ -453,6 +526,10 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(an_absent_field_is_zero, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS,
                0),
+    TEST_ENTRY(lists_of_the_host_may_lack_a_field, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(masked_targets_of_two_sets_have_the_bits_of_all, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(targets_unlike_sources_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(fields_of_one_call_equal_calls_of_one_field, TEST_ALL_PRECISIONS,

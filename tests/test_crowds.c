@@ -1,0 +1,147 @@
+/* More sources around a target than 16-bit ids tell apart, and many times the pairs that are summed
+ * at once: kept or found on the way, with corrections of the same sweep or of a table. */
+#include "support/fixture.h"
+#include <math.h>
+
+enum { SOURCES = 33000, TARGETS = 5, STEPS = 256 };
+
+typedef struct crowd {
+    const test_case *test;
+    sphg_context *context;
+    sphg_scheme scheme;
+    fixture_array sources, targets, volume, linear, at_targets;
+    double slope[3];
+} crowd;
+
+/* On a lattice of so few digits that the linear field has no rounding. */
+static fixture_array places(const test_case *test, int count, random_state *random)
+{
+    const int d = test->dimension;
+    double *x = test_memory((size_t)(count * d) * sizeof *x);
+    for (int k = 0; k < count * d; k++)
+        x[k] = random_index(random, STEPS) / (4. * STEPS);
+    return fixture_numbers(test_position_type(test), count, d, x);
+}
+
+static fixture_array linear_field(const crowd *on, const fixture_array *at)
+{
+    double *values = test_memory((size_t)at->count * sizeof *values);
+    for (int i = 0; i < at->count; i++)
+        for (int c = 0; c < at->width; c++)
+            values[i] += on->slope[c] * fixture_get(at, i, c);
+    return fixture_numbers(test_field_type(on->test), at->count, 1, values);
+}
+
+static crowd crowd_of(const test_case *test)
+{
+    crowd made = {.test = test, .context = fixture_context(), .slope = {.5, -1.25, 2}};
+    random_state random = random_seeded(977);
+    double *volume = test_memory(SOURCES * sizeof *volume);
+    for (int k = 0; k < SOURCES; k++)
+        volume[k] = random_between(&random, .5, 1.5) / SOURCES;
+    made.scheme = fixture_scheme(test, 1);
+    made.sources = places(test, SOURCES, &random);
+    made.targets = places(test, TARGETS, &random);
+    made.volume = fixture_numbers(test_field_type(test), SOURCES, 1, volume);
+    made.linear = linear_field(&made, &made.sources);
+    made.at_targets = linear_field(&made, &made.targets);
+    return made;
+}
+
+static const sphg_neighbors *neighbors_of(const crowd *on, int own_targets, int list_free)
+{
+    sphg_geometry geometry = {.sources = fixture_view(&on->sources),
+                              .source_count = SOURCES,
+                              .target_count = own_targets ? TARGETS : SOURCES,
+                              .precision = test_field_type(on->test),
+                              .list_free = list_free};
+    if (own_targets)
+        geometry.targets = fixture_view(&on->targets);
+    return fixture_search(on->context, &on->scheme, &geometry);
+}
+
+typedef struct sums {
+    fixture_array gradient, correction, lambda, rank;
+} sums;
+
+/* Of the first TARGETS targets. table: NULL: corrections are computed on the way. */
+static sums sum_up(const crowd *on, const sphg_neighbors *neighbors, int own_targets,
+                   const fixture_array *table)
+{
+    const sphg_type type = test_field_type(on->test);
+    const int width = sphg_correction_width(&on->scheme);
+    const int count = own_targets ? TARGETS : SOURCES;
+    sums found = {fixture_output(type, count, on->test->dimension),
+                  fixture_output(type, count, width), fixture_output(type, count, 1),
+                  fixture_output(SPHG_U8, count, 1)};
+    const sphg_view field = fixture_view(&on->linear);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = fixture_view(&on->volume)};
+    const sphg_subset first = {0, TARGETS, NULL, NULL};
+    sphg_field asked = {
+        .shape = SPHG_SCALAR, .at_sources = &field, .gradient = fixture_view(&found.gradient)};
+    sphg_request request = {
+        .sources = &sources, .fields = &asked, .set_count = 1, .field_count = 1, .subset = &first};
+    if (own_targets) {
+        asked.at_targets = fixture_view(&on->at_targets);
+        request.target_volume = fixture_view(&on->volume);
+    }
+    if (table) {
+        request.target_correction = fixture_view(table);
+    } else {
+        request.correction = fixture_view(&found.correction);
+        request.lambda_min = fixture_view(&found.lambda);
+        request.rank = fixture_view(&found.rank);
+    }
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static void require_linear(const crowd *on, const sums *found, const char *where)
+{
+    const double *slope = on->slope;
+    const int d = on->test->dimension;
+    for (int i = 0; i < TARGETS; i++) {
+        double error = 0, scale = 0;
+        assert_int_equal((int)fixture_get(&found->rank, i, 0), d);
+        for (int c = 0; c < d; c++) {
+            error += pow(fixture_get(&found->gradient, i, c) - slope[c], 2);
+            scale += slope[c] * slope[c];
+        }
+        TEST_WITHIN(linear_exactness,
+                    sqrt(error / scale) * fixture_get(&found->lambda, i, 0) /
+                        test_unit_roundoff(on->test),
+                    where);
+    }
+}
+
+/* The sweep that computes corrections, and one that is given them. */
+static void require_exact(const crowd *on, const sphg_neighbors *neighbors, int own_targets,
+                          const char *where)
+{
+    const sums fused = sum_up(on, neighbors, own_targets, NULL);
+    const sums given = sum_up(on, neighbors, own_targets, &fused.correction);
+    TEST_REQUIRE(fixture_same_bits(&fused.gradient, &given.gradient), "%s: table", where);
+    require_linear(on, &fused, where);
+}
+
+static void gradient_at_targets_in_a_crowd_is_exact(const test_case *test)
+{
+    const crowd on = crowd_of(test);
+    require_exact(&on, neighbors_of(&on, 1, 0), 1, "targets, kept lists");
+    require_exact(&on, neighbors_of(&on, 1, 1), 1, "targets, list-free");
+}
+
+/* Lists of all would not fit. */
+static void gradient_at_members_of_a_crowd_is_exact(const test_case *test)
+{
+    const crowd on = crowd_of(test);
+    require_exact(&on, neighbors_of(&on, 0, 1), 0, "members, list-free");
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(gradient_at_targets_in_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
+    TEST_ENTRY(gradient_at_members_of_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
+};
+TEST_MAIN(entries)

@@ -1,0 +1,164 @@
+/* Pairs and their gradients as CSR, for loops of the host: whose they are, which of their arrays
+ * are wanted, and which targets. Their values are compared with the oracle in test_accuracy.c. */
+#include "support/pairs.h"
+#include "support/stage.h"
+#include <math.h>
+
+enum { PROBES = 40 };
+
+/* A block, and targets elsewhere in it. */
+typedef struct targets {
+    stage on;
+    const sphg_neighbors *neighbors;
+    int count, are_sources;
+    fixture_array table;
+} targets;
+
+static fixture_array table_of(const targets *own)
+{
+    const stage *on = &own->on;
+    const int width = sphg_correction_width(&on->scheme);
+    const fixture_array table = fixture_output(test_field_type(on->test), own->count, width);
+    sphg_sources sources = stage_sources(on);
+    sources.neighbors = own->neighbors;
+    const fixture_array volume = fixture_numbers(table.type, own->count, 1, on->scene.volume);
+    const sphg_request request = {.sources = &sources,
+                                  .set_count = 1,
+                                  .target_volume = fixture_view(&volume),
+                                  .correction = fixture_view(&table)};
+    if (width > 0)
+        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return table;
+}
+
+static targets targets_of(const test_case *test, int are_sources)
+{
+    const int d = test->dimension;
+    random_state random = random_seeded(95);
+    const cloud points = cloud_jittered(d, d == 2 ? 8 : 5, .125, .25, &random);
+    targets own = {.on = stage_of(test, "block", points, 2.5 * .125), .are_sources = are_sources};
+    own.neighbors = own.on.neighbors;
+    own.count = points.count;
+    if (!are_sources) {
+        cloud probes = cloud_random(d, PROBES, .5, &random);
+        const fixture_array at = fixture_positions(test, &own.on.points);
+        const fixture_array places = fixture_positions(test, &probes);
+        sphg_geometry geometry = fixture_geometry(test, &own.on.points, &at);
+        geometry.targets = fixture_view(&places);
+        geometry.target_count = own.count = PROBES;
+        own.neighbors = fixture_search(own.on.context, &own.on.scheme, &geometry);
+    }
+    own.table = table_of(&own);
+    return own;
+}
+
+typedef struct pair_rows {
+    rows listed;
+    fixture_array gradient;
+} pair_rows;
+
+/* The count first, then what is wanted. */
+static pair_rows pairs_of(const targets *own, const sphg_subset *subset, int with_gradients)
+{
+    const stage *on = &own->on;
+    sphg_sources sources = stage_sources(on);
+    sources.neighbors = own->neighbors;
+    pair_rows found = {{own->count, test_memory(((size_t)own->count + 1) * 8), NULL}, {0}};
+    sphg_pairs pairs = {.offsets = found.listed.offsets};
+    const sphg_view table = stage_table_view(on, &own->table);
+    FIXTURE_OK(on->context,
+               sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
+    found.listed.indices = test_memory((size_t)pairs.count * sizeof(int32_t));
+    found.gradient = fixture_output(test_field_type(on->test), (int)pairs.count,
+                                    with_gradients ? on->points.dimension : 0);
+    pairs.indices = found.listed.indices;
+    pairs.capacity = pairs.count;
+    if (with_gradients)
+        pairs.gradient = fixture_view(&found.gradient);
+    FIXTURE_OK(on->context,
+               sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
+    return found;
+}
+
+/* A target stands among its own pairs where the method has a gradient for it. */
+static void require_searched(const targets *own, const rows *found)
+{
+    const stage *on = &own->on;
+    const rows expected = rows_listed(on->context, own->neighbors, &on->scheme, NULL);
+    const int self = own->are_sources && test_is_classic(on->test);
+    for (int i = 0; i < own->count; i++) {
+        int64_t at = found->offsets[i];
+        for (int64_t k = expected.offsets[i]; k < expected.offsets[i + 1]; k++, at++) {
+            at += self && found->indices[at] == i;
+            assert_int_equal(found->indices[at], expected.indices[k]);
+        }
+        at += self && at < found->offsets[i + 1] && found->indices[at] == i;
+        assert_int_equal(found->offsets[i + 1], at);
+        assert_int_equal(at - found->offsets[i],
+                         expected.offsets[i + 1] - expected.offsets[i] + self);
+    }
+}
+
+static void pairs_are_those_of_the_search(const test_case *test)
+{
+    for (int are_sources = 0; are_sources < 2; are_sources++) {
+        const targets own = targets_of(test, are_sources);
+        const pair_rows full = pairs_of(&own, NULL, 1), bare = pairs_of(&own, NULL, 0);
+        require_searched(&own, &full.listed);
+        rows_require_equal(&bare.listed, &full.listed, "without gradients");
+    }
+}
+
+static void require_row(const pair_rows *all, int target, const pair_rows *some, int row)
+{
+    const int64_t first = all->listed.offsets[target], at = some->listed.offsets[row];
+    const int64_t length = all->listed.offsets[target + 1] - first;
+    assert_int_equal(some->listed.offsets[row + 1] - at, length);
+    for (int64_t k = 0; k < length; k++) {
+        assert_int_equal(some->listed.indices[at + k], all->listed.indices[first + k]);
+        for (int c = 0; c < all->gradient.width; c++)
+            TEST_REQUIRE(fixture_get(&some->gradient, (int)(at + k), c) ==
+                             fixture_get(&all->gradient, (int)(first + k), c),
+                         "target %d: other bits", target);
+    }
+}
+
+static void masked_targets_have_the_pairs_they_have_among_all(const test_case *test)
+{
+    for (int are_sources = 0; are_sources < 2; are_sources++) {
+        const targets own = targets_of(test, are_sources);
+        uint8_t *mask = test_memory((size_t)own.count);
+        for (int i = 0; i < own.count; i++)
+            mask[i] = i % 4 == 2;
+        const sphg_subset subset = {0, own.count, NULL, mask};
+        const pair_rows all = pairs_of(&own, NULL, 1), some = pairs_of(&own, &subset, 1);
+        for (int i = 0, row = 0; i < own.count; i++)
+            if (mask[i])
+                require_row(&all, i, &some, row++);
+    }
+}
+
+/* Of one pair: a place that is not given has no gradient, in as many components as the scheme has.
+ * Who forgets the corrections gets something else, but a number. */
+static void single_pairs_have_as_many_components_as_the_scheme(const test_case *test)
+{
+    const sphg_scheme scheme = fixture_scheme(test, 1);
+    const double x_ij[3] = {.25, -.125, .5};
+    double gradient[3] = {-7, -7, -7};
+    sphg_pair_gradient(&scheme, NULL, .01, NULL, gradient);
+    for (int c = 0; c < 3; c++)
+        assert_true(c < test->dimension ? isnan(gradient[c]) : gradient[c] == -7);
+    sphg_pair_gradient(&scheme, x_ij, .01, NULL, gradient);
+    for (int c = 0; c < 3; c++)
+        assert_true(c < test->dimension ? isfinite(gradient[c]) : gradient[c] == -7);
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(pairs_are_those_of_the_search, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(masked_targets_have_the_pairs_they_have_among_all, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(single_pairs_have_as_many_components_as_the_scheme, 0, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+};
+TEST_MAIN(entries)
