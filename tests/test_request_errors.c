@@ -448,8 +448,8 @@ static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t
     if (target == 0) {
         call->inner = sphg_eigen(own->context, own->dimension, own->count, own->table,
                                  own->vectors_out, own->tensors_out);
-        call->refused =
-            sphg_gradient(own->context, &own->scheme, NULL, NULL, own->scalars, own->vectors_out);
+        call->refused = sphg_gradient(own->context, &own->scheme, own->sources, NULL, sphg_absent(),
+                                      own->vectors_out);
     }
     *indices = call->row;
     return SUBJECT_COUNT;
