@@ -1,19 +1,9 @@
 /* Calls in any order on objects in any state, with an allocator that fails now and then: a code
  * that the header names, every block given back at the end. */
+#include "blocks.h"
 #include "fuzz.h"
-#ifdef __has_feature /* Clang */
-#if __has_feature(address_sanitizer)
-#define ADDRESSES_ARE_WATCHED
-#endif
-#endif
-#if defined(ADDRESSES_ARE_WATCHED) || defined(__SANITIZE_ADDRESS__) /* GCC */
-#include <sanitizer/asan_interface.h>
-#else
-#define ASAN_POISON_MEMORY_REGION(memory, size)   ((void)(memory), (void)(size))
-#define ASAN_UNPOISON_MEMORY_REGION(memory, size) ((void)(memory), (void)(size))
-#endif
 
-enum { MOST = 20, OBJECTS = 3, HEADER = 64 };
+enum { MOST = 20, OBJECTS = 3 };
 
 typedef struct world {
     int fail; /* the allocation from now on that fails; 0: none */
@@ -27,70 +17,23 @@ typedef struct world {
     sphg_scheme scheme;
 } world;
 
-/* Large blocks wait here to be taken again, poisoned: mapping them would take half of the time. */
-enum { LARGE = 1 << 16, WAITING = 16 };
-
-static struct {
-    char *memory;
-    size_t size;
-} waiting[WAITING];
-
-static char *take(size_t size)
-{
-    for (int k = 0; size >= LARGE && k < WAITING; k++)
-        if (waiting[k].memory && waiting[k].size == size) {
-            char *memory = waiting[k].memory;
-            waiting[k].memory = NULL;
-            ASAN_UNPOISON_MEMORY_REGION(memory, size);
-            return memory;
-        }
-    return aligned_alloc(HEADER, size);
-}
-
-static void give(char *memory, size_t size)
-{
-    static int oldest;
-    if (size >= LARGE) {
-        const int k = oldest++ % WAITING;
-        char *other = waiting[k].memory;
-        const size_t other_size = waiting[k].size;
-        ASAN_POISON_MEMORY_REGION(memory, size);
-        waiting[k].memory = memory;
-        waiting[k].size = size;
-        if (!other)
-            return;
-        ASAN_UNPOISON_MEMORY_REGION(other, other_size);
-        memory = other;
-    }
-    free(memory);
-}
-
-static size_t whole(size_t size)
-{
-    return (size + HEADER + HEADER - 1) / HEADER * HEADER;
-}
-
 static void *allocate(size_t size, size_t alignment, void *user)
 {
     world *own = user;
     if (own->fail > 0 && --own->fail == 0)
         return NULL;
-    char *memory = take(whole(size));
-    FUZZ_REQUIRE(memory && alignment <= HEADER, "no memory");
-    memcpy(memory, &size, sizeof size);
-    ASAN_POISON_MEMORY_REGION(memory + HEADER + size, whole(size) - HEADER - size);
+    void *memory = block_take(size);
+    FUZZ_REQUIRE(memory && alignment <= BLOCK_HEADER, "no memory");
     own->blocks++;
-    return memory + HEADER;
+    return memory;
 }
 
 static void release(void *memory, size_t size, void *user)
 {
     world *own = user;
-    size_t asked;
-    memcpy(&asked, (char *)memory - HEADER, sizeof asked);
-    FUZZ_REQUIRE(asked == size, "released %zu bytes of %zu", size, asked);
+    FUZZ_REQUIRE(block_size(memory) == size, "released %zu bytes of %zu", size, block_size(memory));
     own->blocks--;
-    give((char *)memory - HEADER, whole(size));
+    block_give(memory);
 }
 
 static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
