@@ -23,14 +23,6 @@ static fixture_array places(const test_case *test, int count, random_state *rand
     return fixture_numbers(test_position_type(test), count, d, x);
 }
 
-static void put(const fixture_array *array, int number, double value)
-{
-    if (array->type == SPHG_F64)
-        ((double *)array->data)[number] = value;
-    else
-        ((float *)array->data)[number] = (float)value;
-}
-
 static fixture_array linear_field(const crowd *on, const fixture_array *at)
 {
     double *values = test_memory((size_t)at->count * sizeof *values);
@@ -50,7 +42,8 @@ static crowd crowd_of(const test_case *test)
     made.scheme = fixture_scheme(test, 1);
     made.sources = places(test, SOURCES, &random);
     made.targets = places(test, TARGETS, &random);
-    put(&made.targets, (TARGETS - 1) * test->dimension, 1.5); /* near the crowd, and sees nobody */
+    fixture_put(&made.targets, (TARGETS - 1) * test->dimension,
+                1.5); /* near the crowd, and sees nobody */
     made.volume = fixture_numbers(test_field_type(test), SOURCES, 1, volume);
     made.linear = linear_field(&made, &made.sources);
     made.at_targets = linear_field(&made, &made.targets);

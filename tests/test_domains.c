@@ -1,7 +1,6 @@
 /* Domains of any extent: periodic axes, and open ones that reach as far as numbers do while memory
  * stays linear in the number of particles. */
 #include "support/fixture.h"
-#include "support/hooks.h"
 #include "support/pairs.h"
 #include <float.h>
 #include <math.h>
@@ -195,27 +194,12 @@ static void periods_shorter_than_twice_the_reach_are_refused(const test_case *te
  * the room that sorting it needs. */
 enum { FIXED_BYTES = 4096, BYTES_PER_PARTICLE = 768 };
 
-static void destroy_context(void *context)
-{
-    sphg_context_destroy(context);
-}
-
-static void close_hooks(void *host)
-{
-    hooks_close(host);
-}
-
 /* A context whose memory is counted; one thread, so that nothing is per worker. */
 static sphg_context *counted_context(hooks **host)
 {
-    *host = test_memory(sizeof **host);
-    hooks_open(*host);
-    test_at_end(close_hooks, *host);
+    *host = fixture_hooks();
     const sphg_config config = hooks_config(*host, 1);
-    sphg_context *context = NULL;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
-    test_at_end(destroy_context, context);
-    return context;
+    return fixture_context_with(&config);
 }
 
 /* The most memory that was live during a search in a fresh context, and after it. */

@@ -31,11 +31,6 @@ static void close_world(void *object)
     own->context = NULL;
 }
 
-static void close_hooks(void *host)
-{
-    hooks_close(host);
-}
-
 /* Arrays of the tests' own; the library is not called yet. */
 static world *world_create(const test_case *test)
 {
@@ -44,9 +39,7 @@ static world *world_create(const test_case *test)
     const int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 20 : 7, 0.25, 0.2, &random);
     double *matrices = test_memory(ITEMS * 9 * sizeof *matrices);
-    own->host = test_memory(sizeof *own->host);
-    hooks_open(own->host);
-    test_at_end(close_hooks, own->host);
+    own->host = fixture_hooks();
     test_at_end(close_world, own);
     own->particles = scene_of_cloud(test, &points);
     own->scheme = fixture_scheme(test, 0.5);
@@ -421,8 +414,7 @@ static void neighbors_know_what_they_hold(const test_case *test)
         FIXTURE_OK(own->context, perform(own, which));
         work(own);
         sphg_neighbors_info info;
-        FIXTURE_OK(own->context,
-                   sphg_neighbors_get_info(own->context, own->neighbors, &info));
+        FIXTURE_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
         const int64_t before = own->host->live_bytes;
         sphg_neighbors_destroy(own->neighbors);
         own->neighbors = NULL;

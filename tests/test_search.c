@@ -233,24 +233,15 @@ static void crowded_cells_have_the_pairs_of_brute_force(const test_case *test)
     require_crowd(test, context, 1300);
 }
 
-static void destroy_context(void *context)
-{
-    sphg_context_destroy(context);
-}
-
 /* Fewer blocks than a task is meant to have particles: it still has a block to work on. */
 static void executors_of_the_host_search_crowded_cells(const test_case *test)
 {
     hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
     for (int k = 0; k < 3; k++) {
-        hooks *host = test_memory(sizeof *host);
-        hooks_open(host);
+        hooks *host = fixture_hooks();
         sphg_config config = hooks_config(host, host->workers);
         config.parallel_for = executors[k];
-        sphg_context *context = NULL;
-        FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
-        test_at_end(destroy_context, context);
-        require_crowd(test, context, 600);
+        require_crowd(test, fixture_context_with(&config), 600);
     }
 }
 

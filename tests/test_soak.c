@@ -40,18 +40,10 @@ typedef struct world {
 
 /* ---- Scenes ------------------------------------------------------------------------------- */
 
-static void put(const fixture_array *array, int k, double value)
-{
-    if (array->type == SPHG_F64)
-        ((double *)array->data)[k] = value;
-    else
-        ((float *)array->data)[k] = (float)value;
-}
-
 static void fill(world *own, const fixture_array *array, double low, double high)
 {
     for (int k = 0; k < own->count * array->width; k++)
-        put(array, k, random_between(&own->random, low, high));
+        fixture_put(array, k, random_between(&own->random, low, high));
 }
 
 /* Random lists that are right as lists: sources i + 1, i + 2, ... without duplicates. */
@@ -183,9 +175,9 @@ static void try_with_number(world *own, fault what, step *act, const fixture_arr
         return;
     const int k = random_index(&own->random, own->count * array->width);
     const double good = fixture_get(array, k / array->width, k % array->width);
-    put(array, k, bad);
+    fixture_put(array, k, bad);
     fails_as(own, what, act(own, own->context, neighbors), expected);
-    put(array, k, good);
+    fixture_put(array, k, good);
 }
 
 static void try_with_index(world *own, sphg_neighbors *neighbors)

@@ -44,14 +44,6 @@ static ensemble *ensemble_of(const test_case *test, uint64_t seed)
     return own;
 }
 
-static void put(const ensemble *own, const fixture_array *array, int k, double number)
-{
-    if (own->is_double)
-        ((double *)array->data)[k] = number;
-    else
-        ((float *)array->data)[k] = (float)number;
-}
-
 /* In quad, descending. */
 static void exact_values(int d, const double *a, quad *values)
 {
@@ -76,9 +68,9 @@ static void fill(ensemble *own, spectrum set)
         spectra_matrix(set, d, own->is_double, &own->random, a);
         for (int r = 0; r < d; r++)
             for (int c = r; c < d; c++)
-                put(own, &own->matrices, next++, a[r * d + c]);
+                fixture_put(&own->matrices, next++, a[r * d + c]);
         for (int k = 0; k < 9 && d == 3; k++)
-            put(own, &own->full, 9 * i + k, a[k]);
+            fixture_put(&own->full, 9 * i + k, a[k]);
         if ((int)set < (int)SPECTRA_SYMMETRIC)
             exact_values(d, a, own->exact + 3 * i);
     }

@@ -15,15 +15,18 @@ static void destroy_context(void *context)
     sphg_context_destroy(context);
 }
 
-sphg_context *fixture_context_of(int threads)
+sphg_context *fixture_context_with(const sphg_config *config)
 {
-    sphg_config config = {0};
-    config.threads = threads;
-    config.isa = test_isa();
     sphg_context *context = NULL;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, config, &context));
     test_at_end(destroy_context, context);
     return context;
+}
+
+sphg_context *fixture_context_of(int threads)
+{
+    const sphg_config config = {.threads = threads, .isa = test_isa()};
+    return fixture_context_with(&config);
 }
 
 sphg_context *fixture_context_on(sphg_isa isa)
@@ -43,6 +46,19 @@ sphg_context *fixture_context_on(sphg_isa isa)
 sphg_context *fixture_context(void)
 {
     return fixture_context_of(2);
+}
+
+static void close_hooks(void *host)
+{
+    hooks_close(host);
+}
+
+hooks *fixture_hooks(void)
+{
+    hooks *host = test_memory(sizeof *host);
+    hooks_open(host);
+    test_at_end(close_hooks, host);
+    return host;
 }
 
 /* ---- Arrays ------------------------------------------------------------------------------- */
@@ -106,6 +122,14 @@ int fixture_same_bits(const fixture_array *a, const fixture_array *b)
     size_t bytes = (size_t)a->count * (size_t)a->width * size_of(a->type);
     return a->type == b->type && a->count == b->count && a->width == b->width &&
            memcmp(a->data, b->data, bytes) == 0;
+}
+
+void fixture_put(const fixture_array *array, int number, double value)
+{
+    if (array->type == SPHG_F64)
+        ((double *)array->data)[number] = value;
+    else
+        ((float *)array->data)[number] = (float)value;
 }
 
 int fixture_is_canary(const fixture_array *array, int item)

@@ -3,6 +3,7 @@
 #ifndef TESTS_SUPPORT_FIXTURE_H
 #define TESTS_SUPPORT_FIXTURE_H
 #include "clouds.h"
+#include "hooks.h"
 #include "test.h"
 
 /* Fails the test with the library's message unless the call succeeded. */
@@ -14,6 +15,9 @@ sphg_context *fixture_context(void);
 sphg_context *fixture_context_of(int threads);
 /* On one instruction set; NULL where the machine or the build lacks it. */
 sphg_context *fixture_context_on(sphg_isa isa);
+sphg_context *fixture_context_with(const sphg_config *config);
+/* A host to be named in such a config: opened, and closed after the context. */
+hooks *fixture_hooks(void);
 
 /* count items of width numbers, in f32 or f64. */
 typedef struct fixture_array {
@@ -31,6 +35,8 @@ double fixture_get(const fixture_array *array, int item, int component);
 double *fixture_doubles(const fixture_array *array);
 /* Equal to the bit, NaN included. */
 int fixture_same_bits(const fixture_array *a, const fixture_array *b);
+/* number: over all items and components. */
+void fixture_put(const fixture_array *array, int number, double value);
 int fixture_is_canary(const fixture_array *array, int item);
 
 /* Scheme of the case: blend, eps 1e-2. */
