@@ -240,18 +240,26 @@ static void pairs_beyond_32_bits_are_counted(const test_case *test)
                      (long long)offsets[i]);
 }
 
+/* Without memory behind it until it is touched. */
+static void *address_space(size_t bytes)
+{
+    void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
+                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory != MAP_FAILED)
+        return memory;
+    print_message("skipped: no address space for %zu bytes\n", bytes);
+    return NULL;
+}
+
 /* The host's CSR: the second target's indices begin behind 2^33 others. Address space for them is
  * reserved; the pages in between are never touched. */
 static void offsets_of_the_host_have_64_bits(const test_case *test)
 {
     const int64_t far = (int64_t)1 << 33;
     const size_t bytes = (size_t)(far + 4) * sizeof(int32_t);
-    int32_t *indices = mmap(NULL, bytes, PROT_READ | PROT_WRITE,
-                            MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (indices == MAP_FAILED) {
-        print_message("skipped: no address space for 2^33 indices\n");
+    int32_t *indices = address_space(bytes);
+    if (!indices)
         return;
-    }
     cloud points = cloud_line(test->dimension, 4, .25);
     const fixture_array positions = fixture_positions(test, &points);
     const sphg_scheme scheme = fixture_scheme(test, 4);
@@ -285,12 +293,9 @@ static void room_for_more_pairs_than_32_bits_count_may_be_offered(const test_cas
     const int64_t room = ((int64_t)1 << 31) + 8;
     const size_t size = test_field_type(test) == SPHG_F64 ? 8 : 4, width = (size_t)test->dimension;
     const size_t for_indices = (size_t)room * sizeof(int32_t), bytes = (size_t)room * width * size;
-    char *memory = mmap(NULL, for_indices + bytes, PROT_READ | PROT_WRITE,
-                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (memory == MAP_FAILED) {
-        print_message("skipped: no address space for 2^31 pairs\n");
+    char *memory = address_space(for_indices + bytes);
+    if (!memory)
         return;
-    }
     cloud points = cloud_line(test->dimension, 4, .25);
     const fixture_array positions = fixture_positions(test, &points);
     const fixture_array volume =
