@@ -58,9 +58,9 @@ double sphgi_kernel_w(sphg_kernel kernel, double q)
 double sphgi_power(double scale, int32_t power)
 {
     double result = 1;
-    for (int32_t k = 0; k < (power < 0 ? -power : power); ++k)
+    for (int32_t k = 0; k < power; ++k)
         result *= scale;
-    return power < 0 ? 1 / result : result;
+    return result;
 }
 
 static bool scheme_has_kernel(const sphg_scheme *scheme)

@@ -8,7 +8,7 @@ double sphgi_kernel_sigma(sphg_kernel kernel, int32_t dimension);
 double sphgi_kernel_mu2(sphg_kernel kernel, int32_t dimension);
 double sphgi_kernel_w(sphg_kernel kernel, double q); /* w(q) */
 
-/* scale^power for the whole powers needed of lengths: exact for powers of two. */
+/* scale^power, power >= 0: exact for powers of two. */
 double sphgi_power(double scale, int32_t power);
 
 #endif
