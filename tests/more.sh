@@ -78,7 +78,7 @@ run_fuzz() {
 # names other areas.
 run_valgrind() {
     local areas=${SPHG_VALGRIND_AREAS:-errors request_errors metamorphic fields memory_failures
-        views small_matrices neighbors conservation classic exactness invariance}
+        views small_matrices neighbors pairs crowds conservation classic exactness invariance}
     build_preset release -DSPHG_BUILD_TESTS=ON || return 1
     printf '%s\n' $areas | xargs -P "$(nproc)" -I AREA sh -c '
         log=build/release/AREA.valgrind
