@@ -45,20 +45,6 @@ static fixture_array gradient_through(const stage *own, const sphg_neighbors *ne
     return gradient;
 }
 
-/* Another order of summation: a few hundred roundings of the largest term. */
-static void require_close(const stage *own, const fixture_array *a, const fixture_array *b)
-{
-    const double unit = a->type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
-    double largest = 0;
-    for (int k = 0; k < a->count * a->width; k++)
-        largest = fmax(largest, fabs(fixture_get(a, k / a->width, k % a->width)));
-    for (int i = 0; i < a->count; i++)
-        for (int k = 0; k < a->width; k++)
-            TEST_WITHIN(order_of_summation,
-                        fabs(fixture_get(a, i, k) - fixture_get(b, i, k)) / (largest * unit),
-                        test_method_name(own->scheme.method));
-}
-
 /* ---- Lists of the host -------------------------------------------------------------------- */
 
 static void shuffle(int32_t *items, int64_t count, random_state *random)
@@ -152,7 +138,7 @@ static void lists_of_the_host_give_the_pairs_of_the_search(const test_case *test
         const rows found = rows_listed(own.context, brought, &own.scheme, NULL);
         rows_require_equal(&found, &expected, test_text("group %d", k % GROUPS));
         const fixture_array other = gradient_through(&own, brought);
-        require_close(&own, &gradient, &other);
+        fixture_require_close(&gradient, &other, test_method_name(test->method));
     }
 }
 
@@ -169,7 +155,7 @@ static void exported_pairs_can_be_used_as_lists(const test_case *test)
     const rows again = rows_listed(own.context, brought, &own.scheme, NULL);
     rows_require_equal(&again, &exported, "round trip");
     const fixture_array a = gradient_through(&own, searched), b = gradient_through(&own, brought);
-    require_close(&own, &a, &b);
+    fixture_require_close(&a, &b, "exported");
 }
 
 /* Lists work across periodic faces and for targets that are not sources. */
@@ -325,7 +311,7 @@ static void refused_build_keeps_the_old_state(const test_case *test)
     FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
                                                      &own.geometry, &given));
     const fixture_array third = gradient_through(&own, neighbors);
-    require_close(&own, &before, &third);
+    fixture_require_close(&before, &third, "lists of the host");
 }
 
 /* One object serves scenes of any size, dimension and kind in turn; none and one are sizes too. */

@@ -423,12 +423,12 @@ static void trusted_contexts_do_not_look_at_volumes(const test_case *test)
     assert_int_equal(evaluate(own), SPHG_ERROR_VOLUME);
     assert_int_equal(invert(own), SPHG_ERROR_VOLUME);
     const sphg_config config = {.threads = 2, .isa = test_isa(), .trusted = 1};
-    sphg_context *looking = own->context;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->context));
-    FIXTURE_OK(own->context, evaluate(own));
-    FIXTURE_OK(own->context, invert(own));
-    sphg_context_destroy(own->context);
+    sphg_context *looking = own->context, *trusting = fixture_context_with(&config);
+    own->context = trusting;
+    const sphg_result evaluated = evaluate(own), inverted = invert(own);
     own->context = looking;
+    FIXTURE_OK(trusting, evaluated);
+    FIXTURE_OK(trusting, inverted);
 }
 
 /* ---- Calls in calls ----------------------------------------------------------------------- */

@@ -1,4 +1,5 @@
 #include "fixture.h"
+#include <math.h>
 #include <string.h>
 
 void fixture_ok(const sphg_context *context, sphg_result result, const char *call)
@@ -122,6 +123,19 @@ int fixture_same_bits(const fixture_array *a, const fixture_array *b)
     size_t bytes = (size_t)a->count * (size_t)a->width * size_of(a->type);
     return a->type == b->type && a->count == b->count && a->width == b->width &&
            memcmp(a->data, b->data, bytes) == 0;
+}
+
+void fixture_require_close(const fixture_array *a, const fixture_array *b, const char *where)
+{
+    const double unit = a->type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
+    double largest = 0;
+    for (int k = 0; k < a->count * a->width; k++)
+        largest = fmax(largest, fabs(fixture_get(a, k / a->width, k % a->width)));
+    for (int i = 0; i < a->count; i++)
+        for (int c = 0; c < a->width; c++)
+            TEST_WITHIN(order_of_summation,
+                        fabs(fixture_get(a, i, c) - fixture_get(b, i, c)) / (largest * unit),
+                        where);
 }
 
 void fixture_put(const fixture_array *array, int number, double value)

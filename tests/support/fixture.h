@@ -35,6 +35,8 @@ double fixture_get(const fixture_array *array, int item, int component);
 double *fixture_doubles(const fixture_array *array);
 /* Equal to the bit, NaN included. */
 int fixture_same_bits(const fixture_array *a, const fixture_array *b);
+/* Equal but for the order of summation: a few hundred roundings of the largest number. */
+void fixture_require_close(const fixture_array *a, const fixture_array *b, const char *where);
 /* number: over all items and components. */
 void fixture_put(const fixture_array *array, int number, double value);
 int fixture_is_canary(const fixture_array *array, int item);
