@@ -109,15 +109,15 @@ static inline sphg_isa fuzz_isa(size_t size)
 }
 
 /* What outlives an input of so many bytes: a context of its instruction set, and neighbours. */
-typedef struct fuzz_library {
+typedef struct fuzz_instance {
     sphg_context *context;
     sphg_neighbors *neighbors;
-} fuzz_library;
+} fuzz_instance;
 
-static inline const fuzz_library *fuzz_library_for(size_t size)
+static inline const fuzz_instance *fuzz_instance_for(size_t size)
 {
-    static fuzz_library libraries[2];
-    fuzz_library *own = &libraries[size % 2];
+    static fuzz_instance instances[2];
+    fuzz_instance *own = &instances[size % 2];
     const sphg_config config = {.threads = 1, .isa = fuzz_isa(size)};
     if (!own->context)
         FUZZ_REQUIRE(sphg_context_create(SPHG_VERSION, &config, &own->context) == SPHG_OK &&

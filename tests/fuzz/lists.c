@@ -5,7 +5,7 @@
 enum { MOST = 24, INDICES = 400 };
 
 typedef struct host {
-    const fuzz_library *library;
+    const fuzz_instance *instance;
     sphg_type type;
     int dimension, count, shape;
     double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 16];
@@ -76,7 +76,7 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
                      : on->shape == 3 ? d * (d + 1) / 2
                                       : d * d;
     const sphg_view at_sources = numbers(from, on, on->field, item, tame);
-    sphg_sources sources = {.neighbors = on->library->neighbors};
+    sphg_sources sources = {.neighbors = on->instance->neighbors};
     sources.volume = numbers(from, on, on->volume, 1, fuzz_byte(from) % 4);
     sources.density = numbers(from, on, on->density, 1, tame);
     if (width && form > 1)
@@ -97,7 +97,7 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     if (width && form < 2)
         request.correction = fuzz_view(on->type, on->results[3], width);
-    return sphg_evaluate(on->library->context, &on->scheme, &request);
+    return sphg_evaluate(on->instance->context, &on->scheme, &request);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -106,8 +106,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_bytes from = {data, size};
     sphg_lists lists = {0};
     memset(&on, 0, sizeof on);
-    on.library = fuzz_library_for(size);
-    sphg_context *context = on.library->context;
+    on.instance = fuzz_instance_for(size);
+    sphg_context *context = on.instance->context;
     const int flags = fuzz_byte(&from);
     on.type = flags & 1 ? SPHG_F64 : SPHG_F32;
     on.dimension = flags & 2 ? 3 : 2;
@@ -123,7 +123,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     take_lists(&from, &on, &lists);
     int32_t *copy = moved_to_the_end(&on, &lists);
     sphg_result result =
-        sphg_neighbors_use_lists(context, on.library->neighbors, &on.scheme, &geometry, &lists);
+        sphg_neighbors_use_lists(context, on.instance->neighbors, &on.scheme, &geometry, &lists);
     FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
                      result == SPHG_ERROR_NOT_FINITE,
                  "%s", sphg_last_message(context));

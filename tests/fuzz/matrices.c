@@ -132,7 +132,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_bytes from = {data, size};
     batch on;
     memset(&on, 0, sizeof on);
-    on.context = fuzz_library_for(size)->context;
+    on.context = fuzz_instance_for(size)->context;
     const int flags = fuzz_byte(&from);
     on.type = flags & 1 ? SPHG_F64 : SPHG_F32;
     on.dimension = flags & 2 ? 3 : 2;

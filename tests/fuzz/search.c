@@ -119,19 +119,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static int32_t indices[MOST * MOST];
     fuzz_bytes from = {data, size};
     cloud on = {.type = SPHG_F32};
-    const fuzz_library *library = fuzz_library_for(size);
-    sphg_context *context = library->context;
+    const fuzz_instance *instance = fuzz_instance_for(size);
+    sphg_context *context = instance->context;
     take_cloud(&from, &on);
     for (int turn = 0; turn < 2; turn++) {
         const sphg_result result =
-            sphg_neighbors_search(context, library->neighbors, &on.scheme, &on.geometry);
+            sphg_neighbors_search(context, instance->neighbors, &on.scheme, &on.geometry);
         FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
                          result == SPHG_ERROR_NOT_FINITE,
                      "%s", sphg_last_message(context));
         if (result)
             return 0;
         FUZZ_REQUIRE(is_finite(&on), "accepted what is not finite");
-        const sphg_sources sources = {.neighbors = library->neighbors};
+        const sphg_sources sources = {.neighbors = instance->neighbors};
         sphg_pairs pairs = {.offsets = offsets, .indices = indices, .capacity = MOST * MOST};
         FUZZ_REQUIRE(sphg_pair_gradients(context, &on.scheme, &sources, NULL, sphg_absent(),
                                          &pairs) == SPHG_OK,
