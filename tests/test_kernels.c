@@ -1,6 +1,7 @@
 /* The smoothing functions W and W'/r against the table of docs/theory.md: closed forms, quadrature
  * that is exact for the polynomial pieces, and finite differences. */
-#include "support/test.h"
+#include "support/fixture.h"
+#include "support/oracle_kernel.h"
 #include <complex.h>
 #include <float.h>
 #include <limits.h>
@@ -187,6 +188,7 @@ static void constants_equal_the_rational_values(const test_case *test)
     assert_true(alone == found_mu2);
 }
 
+/* int W = 1, (1/H^2) int W x_k^2 = mu2, and - int x_k dW/dx_k = 1: KGC's full neighbourhood. */
 static void integral_is_one_second_moment_mu2_and_gradient_moment_one(const test_case *test)
 {
     const int dimension = test->dimension;
@@ -207,7 +209,6 @@ static void integral_is_one_second_moment_mu2_and_gradient_moment_one(const test
     }
 }
 
-/* int W = 1, (1/H^2) int W x_k^2 = mu2, and - int x_k dW/dx_k = 1: KGC's full neighbourhood. */
 /* The error is measured against |f| + q |f'|: q = r/H is rounded before anything else. */
 static void values_equal_the_closed_form(const test_case *test)
 {
@@ -228,6 +229,110 @@ static void values_equal_the_closed_form(const test_case *test)
             TEST_WITHIN(kernel_value, (double)(w_error / w_size / UNIT), row->name);
             TEST_WITHIN(kernel_value, (double)(s_error / s_size / UNIT), row->name);
         }
+    }
+}
+
+/* ---- The same from the centre to the rim, in the passes, too ----------------------------------
+ */
+
+/* Where sums of truncated powers would cancel, near 0, the places stand close. f32 holds them all.
+ */
+enum { PLACES = 128 + 512 + 1024 };
+
+static double place(int n)
+{
+    if (n < 128)
+        return (double)(float)exp2(-n / 8.0 - 4);
+    return n < 128 + 512 ? (double)(float)((n - 127.7) / 8192) : (n - 639.5) / 1024;
+}
+
+/* What is found of w(q) and w'(q)/q at place n, beside the reference: over |f| + q |f'|. */
+static void require_shape(const struct row *row, int n, double w, double s, double u)
+{
+    quad exact[3], q = place(n);
+    oracle_shape_of(row->kernel, q, exact);
+    const quad slope = exact[1] / q, w_size = quad_abs(exact[0]) + q * quad_abs(exact[1]);
+    const quad s_size = 2 * quad_abs(slope) + quad_abs(exact[2]);
+    TEST_WITHIN(kernel_value, (double)(quad_abs(w - exact[0]) / w_size) / u, row->name);
+    TEST_WITHIN(kernel_value, (double)(quad_abs(s - slope) / s_size) / u, row->name);
+}
+
+static void values_keep_their_digits_near_the_centre(const test_case *test)
+{
+    const struct row *row = row_of(test);
+    const sphg_scheme scheme = scheme_of(row, test->dimension, 1);
+    const double sigma = (double)sigma_of(row, test->dimension);
+    for (int n = 0; n < PLACES; n++)
+        require_shape(row, n, value(&scheme, place(n)) / sigma,
+                      slope_over_r(&scheme, place(n)) / sigma, (double)UNIT);
+}
+
+/* One target at 0 for each source at place(n) on the first axis, H = V = 1: what operators sum is
+ * a single W or W' each. */
+static sphg_neighbors *lonely_pairs(const test_case *test, sphg_context *context,
+                                    const sphg_scheme *scheme)
+{
+    const int d = test->dimension;
+    double *sources = test_memory((size_t)(PLACES * d) * sizeof *sources);
+    double *targets = test_memory((size_t)(PLACES * d) * sizeof *targets);
+    int64_t *offsets = test_memory((PLACES + 1) * sizeof *offsets);
+    int32_t *indices = test_memory(PLACES * sizeof *indices);
+    for (int n = 0; n < PLACES; n++) {
+        sources[n * d] = place(n);
+        indices[n] = n;
+        offsets[n + 1] = n + 1;
+    }
+    const sphg_type type = test_position_type(test);
+    const fixture_array from = fixture_numbers(type, PLACES, d, sources);
+    const fixture_array to = fixture_numbers(type, PLACES, d, targets);
+    const sphg_geometry geometry = {.sources = fixture_view(&from),
+                                    .targets = fixture_view(&to),
+                                    .source_count = PLACES,
+                                    .target_count = PLACES,
+                                    .precision = test_field_type(test)};
+    const sphg_lists lists = {.offsets = offsets, .indices = indices};
+    return fixture_lists(context, scheme, &geometry, &lists);
+}
+
+/* sum A_j V_j W and sum A_j V_j W'/r x_ij of A = 1. */
+static void sum_pairs(const test_case *test, sphg_context *context, const sphg_scheme *scheme,
+                      fixture_array *values, fixture_array *gradients)
+{
+    const sphg_type type = test_field_type(test);
+    const double one = 1;
+    const fixture_array ones = fixture_numbers(type, 1, 1, &one);
+    sphg_view everywhere = fixture_view(&ones);
+    everywhere.stride = 0;
+    const sphg_sources sources = {.neighbors = lonely_pairs(test, context, scheme),
+                                  .volume = everywhere};
+    *values = fixture_output(type, PLACES, 1);
+    *gradients = fixture_output(type, PLACES, test->dimension);
+    const sphg_field field = {.shape = SPHG_SCALAR,
+                              .form = SPHG_DIRECT,
+                              .at_sources = &everywhere,
+                              .value = fixture_view(values),
+                              .gradient = fixture_view(gradients)};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
+    FIXTURE_OK(context, sphg_evaluate(context, scheme, &request));
+}
+
+static void passes_keep_their_digits_on_every_instruction_set(const test_case *test)
+{
+    const struct row *row = row_of(test);
+    const double sigma = (double)sigma_of(row, test->dimension);
+    sphg_scheme scheme = scheme_of(row, test->dimension, 1);
+    scheme.method = SPHG_PLAIN;
+    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+        sphg_context *context = fixture_context_on((sphg_isa)isa);
+        fixture_array values, gradients;
+        if (!context)
+            continue;
+        sum_pairs(test, context, &scheme, &values, &gradients);
+        for (int n = 0; n < PLACES; n++)
+            require_shape(row, n, fixture_get(&values, n, 0) / sigma,
+                          fixture_get(&gradients, n, 0) / (sigma * -place(n)),
+                          test_unit_roundoff(test));
     }
 }
 
@@ -391,6 +496,9 @@ static const test_entry entries[] = {
     EACH(constants_equal_the_rational_values),
     EACH(integral_is_one_second_moment_mu2_and_gradient_moment_one),
     EACH(values_equal_the_closed_form),
+    EACH(values_keep_their_digits_near_the_centre),
+    TEST_ENTRY(passes_keep_their_digits_on_every_instruction_set, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, 0, TEST_ALL_KERNELS),
     EACH(slope_agrees_with_central_differences),
     EACH(slope_integrates_back_to_the_value),
     EACH(kernel_is_zero_from_the_support_radius_on),

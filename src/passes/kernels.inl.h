@@ -28,9 +28,9 @@ SPHGI_TEMPLATE vec power4(vec v)
 
 SPHGI_TEMPLATE vec quintic_spline_w(vec q)
 {
-    const vec a = positive(R(3) - R(3) * q), b = positive(R(2) - R(3) * q);
-    const vec c = positive(R(1) - R(3) * q);
-    return power4(a) * a - R(6) * power4(b) * b + R(15) * power4(c) * c;
+    const vec a = positive(R(3) - R(3) * q), b = positive(R(2) - R(3) * q), square = q * q;
+    const vec inner = R(66) + square * (square * (R(2430) - R(2430) * q) - R(540));
+    return select(less(q, splat(R(1.0 / 3))), inner, power4(a) * a - R(6) * power4(b) * b);
 }
 
 SPHGI_TEMPLATE vec quintic_spline_d(vec q)
