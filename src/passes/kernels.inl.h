@@ -26,11 +26,13 @@ SPHGI_TEMPLATE vec power4(vec v)
     return square * square;
 }
 
+/* The inner polynomial is the larger one for q < 1/3, by 15 (1 - 3q)^5, and the smaller one beyond.
+ */
 SPHGI_TEMPLATE vec quintic_spline_w(vec q)
 {
     const vec a = positive(R(3) - R(3) * q), b = positive(R(2) - R(3) * q), square = q * q;
-    const vec inner = R(66) + square * (square * (R(2430) - R(2430) * q) - R(540));
-    return select(less(q, splat(R(1.0 / 3))), inner, power4(a) * a - R(6) * power4(b) * b);
+    const vec inner = R(66) + square * (square * (R(810) * a) - R(540));
+    return vmax(inner, power4(a) * a - R(6) * power4(b) * b);
 }
 
 SPHGI_TEMPLATE vec quintic_spline_d(vec q)
