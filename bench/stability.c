@@ -7,13 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { OPTION_OUTPUT = 256, OPTION_QUICK, OPTION_SWEEP };
+enum { OPTION_OUTPUT = 256, OPTION_QUICK, OPTION_SWEEP, OPTION_KERNEL };
 
 static const struct argp_option option_list[] = {
     {"output", OPTION_OUTPUT, "FOLDER", 0, "where CSV, scripts and pictures go (stability)", 0},
     {"quick", OPTION_QUICK, NULL, 0, "a few places of each sweep, in seconds", 0},
     {"sweep", OPTION_SWEEP, "NAME", 0,
      "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging", 0},
+    {"kernel", OPTION_KERNEL, "NAME", 0, "one of the seven smoothing functions (cubic)", 0},
     {0}};
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
@@ -31,6 +32,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case OPTION_SWEEP:
         stability->first = stability->last = option_choice("sweep", text, sweep_names);
+        return 0;
+    case OPTION_KERNEL:
+        stability->kernel = (sphg_kernel)option_choice("kernel", text, kernel_names);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -25,6 +25,7 @@ enum { STABILITY_METHODS = 6, STABILITY_POLICIES = 4, STABILITY_PRECISIONS = 3 }
 struct stability_case {
     enum stability_sweep sweep;
     sphg_method method;
+    sphg_kernel kernel;
     sphg_policy policy;
     enum precision precision;
     double at, end; /* scale and merging walk from `at` to `end`, in `steps` steps; else the same */
@@ -56,7 +57,8 @@ struct stability {
     struct settings settings;
     const char *output;
     bool quick;
-    int first, last;  /* sweeps */
+    int first, last; /* sweeps */
+    sphg_kernel kernel;
     int32_t compared; /* targets of a case that stand beside the reference */
     int case_count;
     struct stability_case *cases; /* those of a sweep stand together */

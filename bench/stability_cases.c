@@ -148,6 +148,7 @@ void stability_create_cases(struct stability *stability)
             for (int method = 0; method < STABILITY_METHODS; method++)
                 for (int precision = 0; precision < STABILITY_PRECISIONS; precision++) {
                     struct stability_case one = {.sweep = (enum stability_sweep)sweep,
+                                                 .kernel = stability->kernel,
                                                  .policy = (sphg_policy)policy,
                                                  .method = (sphg_method)method,
                                                  .precision = (enum precision)precision};

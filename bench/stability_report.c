@@ -65,11 +65,12 @@ void stability_print(const struct stability *stability)
     const struct settings *settings = &stability->settings;
     char count[TEXT_SIZE];
     const int32_t side = settings_side(settings->particles, 3);
-    printf("particles  %s in the largest block, jitter %g spacings, H = %g spacings, cubic "
-           "spline, eps 1e-2, but\n           for what a sweep changes; %d round%s of random "
+    printf("particles  %s in the largest block, jitter %g spacings, H = %g spacings, %s, "
+           "eps 1e-2, but\n           for what a sweep changes; %d round%s of random "
            "numbers\n",
            text_grouped((int64_t)side * side * side, count), settings->jitter, settings->support,
-           settings->repetitions, settings->repetitions > 1 ? "s" : "");
+           kernel_names[stability->kernel], settings->repetitions,
+           settings->repetitions > 1 ? "s" : "");
     text_print_machine(settings->threads);
     printf("ratios     largest error of the gradient of a random field over its bound, beside "
            "brute force in\n           quadruple precision; limits: 10 at full rank, 16 where "

@@ -32,6 +32,7 @@ struct trial trial_create(sphg_context *context, const struct stability_case *on
                           .count = cloud->count,
                           .target_count = cloud->target_count,
                           .scheme = {.method = one->method,
+                                     .kernel = one->kernel,
                                      .policy = one->policy,
                                      .dimension = 3,
                                      .support_radius = ldexp(cloud->support, exponent),

@@ -27,7 +27,8 @@
  *           of threads, any executor, any split into subsets.
  * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
  *           normal numbers; f64 far beyond. Corrections in a table must be representable, too, and
- *           squares, which have the unit 1 / L^2.
+ *           squares, which have the unit 1 / L^2. Finite input gives NaN or Inf only where A_j - A_i,
+ *           a sum, or a ratio of volumes or densities leaves the type (f32: about 1e38).
  * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
  *           error, never NaN; each target's `rank` tells how much could be corrected. */
 #ifndef SPHGRAD_SPHGRAD_H
@@ -382,7 +383,7 @@ typedef struct sphg_request {
     /* Wanted of the corrections, where they are computed: not beside a table. */
     sphg_view correction; /* C_i, sphg_correction_width() numbers an item */
     sphg_view rank;       /* U8: fully corrected directions, 0..d */
-    sphg_view lambda_min; /* smallest normalised moment: exact where decomposed, elsewhere a
+    sphg_view lambda_min; /* smallest normalised moment, >= 0: exact where decomposed, elsewhere a
                              lower bound, at most a factor sqrt(d) too small */
     sphg_stats *stats;
 } sphg_request;

@@ -24,7 +24,8 @@ struct corrected {
     dvec c[6], lambda_min, rank;
 };
 
-/* What the threshold leaves of A = Q diag(l) Q^T. */
+/* What the threshold leaves of A = Q diag(l) Q^T. Where volumes span many orders, rounding of a
+ * large trace makes the smallest eigenvalue negative; the smallest moment is then 0. */
 SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold, const dvec *m,
                                         const struct eigen *e, double low, bool three)
 {
@@ -48,6 +49,7 @@ SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold,
             f[k] = dselect(drop, dsplat(low), f[k]);
         out.rank = dselect(all, out.rank, dsplat(0));
     }
+    out.lambda_min = dselect(out.lambda_min <= 0, dsplat(0), out.lambda_min);
     for (int a = 0, c = 0; a < d; ++a)
         for (int b = a; b < d; ++b, ++c) {
             out.c[c] = e->q[3 * a] * f[0] * e->q[3 * b] + e->q[3 * a + 1] * f[1] * e->q[3 * b + 1];

@@ -351,6 +351,21 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
     return sum + unit_part / scene->scheme.support_radius;
 }
 
+/* The largest |A^-1| |B_k|: what z_k answers to a change of y, however much of z_k itself cancels.
+ */
+static quad blur_of_y(int d, oracle_matrix inverse, const classic_sums *sums)
+{
+    quad largest = 0;
+    for (int k = 0; k < d; k++) {
+        quad square = 0;
+        for (int a = 0; a <= d; a++)
+            for (int b = 0; b <= d; b++)
+                square += sums->b[k][a][b] * sums->b[k][a][b];
+        largest = quad_max(largest, quad_sqrt(square));
+    }
+    return oracle_spectral_norm(d + 1, inverse) * largest;
+}
+
 /* Where the policy's f acts, its slope may be much steeper than that of 1 / lambda, as at the lower
  * end of blend, and the condition of A knows nothing of it: what a change of C does to y and z. */
 static void add_blur_of_filter(const oracle_scene *scene, oracle_matrix inverse,
@@ -417,7 +432,9 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
         point->self_gradient[k] = point->self_weight * point->z[k][0];
     }
     point->y_bound = point->condition * point->y_norm;
-    point->z_bound = point->condition * point->z_norm + blur_of_slopes(scene, inverse, point);
+    point->z_bound =
+        point->condition * (point->z_norm + blur_of_y(d, inverse, &sums) * point->y_norm) +
+        blur_of_slopes(scene, inverse, point);
     if (point->rank < d)
         add_blur_of_filter(scene, inverse, &sums, centre, point);
     point->self_bound = scene->unit * point->self_weight * point->z_bound;

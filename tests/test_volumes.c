@@ -1,0 +1,76 @@
+/* Volumes that differ by twelve orders of magnitude: sums whose terms cancel, and moments of which
+ * one source is all. */
+#include "support/random.h"
+#include "support/stage.h"
+#include <math.h>
+
+/* Volumes between a particle's share and 10^decades times that; each twentieth 10^12 times. */
+static stage uneven_stage(const test_case *test, const char *name, cloud points, double decades,
+                          uint64_t seed)
+{
+    random_state random = random_seeded(seed);
+    const stage even = stage_of(test, name, points, 2.25 * points.spacing);
+    double *volume = test_memory((size_t)points.count * sizeof *volume);
+    for (int i = 0; i < points.count; i++) {
+        const double share = pow(points.spacing, test->dimension);
+        const double grown = i % 20 ? pow(10, random_between(&random, 0, decades)) : 1e12;
+        const double given = share * grown;
+        volume[i] = test->precision == TEST_F64 ? given : (double)(float)given;
+    }
+    return stage_with_volumes(&even, volume);
+}
+
+static void smallest_moments_are_never_negative(const test_case *test)
+{
+    random_state random = random_seeded(70);
+    const int d = test->dimension;
+    const stage on =
+        uneven_stage(test, "block", cloud_jittered(d, d == 2 ? 30 : 10, .125, .3, &random), 1, 71);
+    const fixture_array lambda = fixture_output(test_field_type(test), on.points.count, 1);
+    const sphg_sources sources = stage_sources(&on);
+    sphg_stats stats = {0};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .lambda_min = fixture_view(&lambda), .stats = &stats};
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    for (int i = 0; i < on.points.count; i++) {
+        const double found = fixture_get(&lambda, i, 0);
+        TEST_REQUIRE(found >= 0 && !signbit(found), "lambda_min %g of particle %d", found, i);
+    }
+    assert_true(stats.lambda_min >= 0);
+}
+
+static void compare(const stage *on, sphg_shape shape, sphg_form form, const fixture_array *table,
+                    int samples)
+{
+    const stage_field field = {shape, form, stage_random_field(on, shape, 6)};
+    const stage_result found = stage_apply(on, &field, table);
+    for (int k = 0; k < samples; k++)
+        stage_compare(on, &field, &found, (int)((long)k * on->points.count / samples));
+}
+
+static void every_form_matches_the_oracle(const test_case *test)
+{
+    const int d = test->dimension, side = d == 2 ? 10 : 5;
+    random_state random = random_seeded(72);
+    const stage stages[] = {
+        uneven_stage(test, "uneven block", cloud_jittered(d, side, .125, .3, &random), 12, 73),
+        uneven_stage(test, "uneven layers", cloud_sheets(d, side, .125, .01), 12, 74)};
+    for (int s = 0; s < 2; s++)
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy += SPHG_IDENTITY) {
+            const stage on = stage_under(&stages[s], (sphg_policy)policy, 0);
+            const fixture_array table = stage_table(&on);
+            compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table, 12);
+            compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table, 12);
+            compare(&on, SPHG_SCALAR, SPHG_ADJOINT, &table, 2);
+            compare(&on, SPHG_SCALAR, SPHG_SYMMETRIC, &table, 2);
+        }
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(smallest_moments_are_never_negative, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
+    TEST_ENTRY(every_form_matches_the_oracle, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS,
+               TEST_BIT(SPHG_CUBIC_SPLINE) | TEST_BIT(SPHG_QUINTIC_SPLINE) | TEST_BIT(SPHG_POLY6)),
+};
+TEST_MAIN(entries)
