@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { OPTION_OUTPUT = 256, OPTION_QUICK, OPTION_SWEEP, OPTION_KERNEL };
+enum { OPTION_OUTPUT = 256, OPTION_QUICK, OPTION_SWEEP, OPTION_KERNEL, OPTION_COMPARE };
 
 static const struct argp_option option_list[] = {
     {"output", OPTION_OUTPUT, "FOLDER", 0, "where CSV, scripts and pictures go (stability)", 0},
@@ -15,6 +15,8 @@ static const struct argp_option option_list[] = {
     {"sweep", OPTION_SWEEP, "NAME", 0,
      "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging", 0},
     {"kernel", OPTION_KERNEL, "NAME", 0, "one of the seven smoothing functions (cubic)", 0},
+    {"compare", OPTION_COMPARE, "N", 0,
+     "targets of a case that stand beside the reference (32, quick 2)", 0},
     {0}};
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
@@ -35,6 +37,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case OPTION_KERNEL:
         stability->kernel = (sphg_kernel)option_choice("kernel", text, kernel_names);
+        return 0;
+    case OPTION_COMPARE:
+        stability->compared = option_integer("compare", text, 1, 1 << 20);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -61,7 +66,8 @@ int command_stability(int argc, char **argv)
                "exit status tells whether every promise held."};
     options_parse(&argp, argc, argv, &stability);
     option_folder("output", stability.output);
-    stability.compared = stability.quick ? 2 : 32;
+    if (stability.compared == 0)
+        stability.compared = stability.quick ? 2 : 32;
     stability_create_cases(&stability);
     stability_measure(&stability);
     stability_print(&stability);
