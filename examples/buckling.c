@@ -207,14 +207,32 @@ static void more(const struct run *run, const struct sph *flat, const int32_t si
     sph_close(&sph);
 }
 
+/* What viscosity makes of a shear flow in the sheet as it stands. */
+static void measure_start(const struct run *run, const struct sph *sph, const int32_t sides[3])
+{
+    struct sheet sheet;
+    sheet_init(&sheet, run, sph, sides, kinematic);
+    pressure_prepare(&sheet.pressure, &sheet.fluid);
+    operators_update(&sheet.operators, &sheet.fluid);
+    metrics_set(run->metrics, "shear_error", viscosity_shear_error(&sheet.viscosity, &sheet.fluid));
+    sheet_free(&sheet);
+}
+
+static void simulate_sheets(const struct run *run, const struct sph *sph, const int32_t sides[3])
+{
+    const struct outcome outcome = sink(run, sph, sides, kinematic, true);
+    set_outcome(run, &outcome);
+    if (run->options->full)
+        more(run, sph, sides);
+}
+
 static void simulate(const struct run *run)
 {
     static const int32_t sides[3] = {4, 80, 1};
     struct sph sph = run_open(run, 2, support_radius, 320);
-    const struct outcome outcome = sink(run, &sph, sides, kinematic, true);
-    set_outcome(run, &outcome);
-    if (run->options->full)
-        more(run, &sph, sides);
+    measure_start(run, &sph, sides);
+    if (!run->options->brief)
+        simulate_sheets(run, &sph, sides);
     sph_close(&sph);
 }
 
@@ -239,9 +257,16 @@ static void draw(const struct picture *picture)
 
 int main(int argc, char **argv)
 {
-    static const struct gate gates[] = {{"amplitude", ONLY_KGC, TIMES_SPH, 1.5},
+    static const struct gate gates[] = {{"shear_error", EACH_CORRECTED, AT_MOST, 1e-12},
+                                        {"amplitude", ONLY_KGC, TIMES_SPH, 1.5},
+                                        {"amplitude", EACH_CORRECTED, AT_MOST, 0.6},
                                         {"reversals", ONLY_SPH, AT_MOST, 0},
                                         {"reversals", ONLY_KGC, MORE_THAN_SPH, 1},
+                                        {"reversals", EACH_CORRECTED, AT_MOST, 4},
+                                        {"top_early", EACH_CORRECTED, AT_LEAST, 1.8},
+                                        {"top_early", EACH_CORRECTED, AT_MOST, 2.6},
+                                        {"top_late", EACH_CORRECTED, AT_LEAST, 0.5},
+                                        {"top_late", EACH_CORRECTED, AT_MOST, 1.2},
                                         {0}};
     static const struct scene scene = {
         "buckling", "A sinking sheet of viscous fluid.", simulate, draw, gates, false};

@@ -253,6 +253,8 @@ int main(int argc, char **argv)
                                         {"plane_max_degrees", EACH_CORRECTED, AT_MOST, 1e-6},
                                         {"distance_error", EACH_CORRECTED, AT_MOST, 1e-9},
                                         {"beside_fluid_max_degrees", EACH_CORRECTED, AT_MOST, 1e-6},
+                                        {"shared_matrix_max_degrees", EACH_CORRECTED, AT_LEAST, 5},
+                                        {"sphere_mean_degrees", EACH_CORRECTED, AT_LEAST, 0.5},
                                         {"sphere_mean_degrees", EACH_CORRECTED, SHARE_OF_SPH, 0.5},
                                         {0}};
     static const struct scene scene = {

@@ -226,7 +226,10 @@ int main(int argc, char **argv)
 {
     static const struct gate gates[] = {{"spin_error", ONLY_SPH, AT_LEAST, 0.4},
                                         {"curl_error", EACH_CORRECTED, AT_MOST, 1e-12},
+                                        {"printed_curl_error", EACH_CORRECTED, AT_LEAST, 1},
                                         {"spin_error", EACH_CORRECTED, AT_MOST, 1e-8},
+                                        {"angular_momentum_moved", EACH_CORRECTED, AT_LEAST, 0.3},
+                                        {"angular_momentum_moved", EACH_CORRECTED, AT_MOST, 1},
                                         {"angular_momentum_lost", EACH_CORRECTED, AT_MOST, 1e-10},
                                         {0}};
     static const struct scene scene = {

@@ -115,6 +115,28 @@ void elasticity_solve(struct elasticity *elasticity, struct particles *body, dou
     implicit_solve(implicit, body, dt * dt, find_rate, elasticity);
 }
 
+double elasticity_stretch_error(struct elasticity *elasticity, const struct particles *body,
+                                double share)
+{
+    const int32_t count = elasticity->rest.count;
+    vector *stretched = array_new(count, sizeof *stretched);
+    vector *force = array_new(count, sizeof *force);
+    double work = 0, volume = 0;
+    for (int32_t i = 0; i < count; i++) {
+        add_scaled(stretched[i], 1, body->x[i]);
+        stretched[i][2] += share * body->x[i][2];
+    }
+    elasticity_rotate(elasticity, stretched);
+    elasticity_force(elasticity, force);
+    for (int32_t i = 0; i < count; i++) {
+        work += body->x[i][2] * force[i][2];
+        volume += elasticity->rest.volume[i];
+    }
+    free(stretched);
+    free(force);
+    return fabs(work / (-(2 * elasticity->shear + elasticity->lame) * share * volume) - 1);
+}
+
 double elasticity_least_volume(const struct elasticity *elasticity)
 {
     double least = INFINITY;

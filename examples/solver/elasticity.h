@@ -35,5 +35,11 @@ void elasticity_rate(struct elasticity *elasticity, vector *u, vector *force);
 /* A step of v: implicit in the force, with rotations as they are at body->x. */
 void elasticity_solve(struct elasticity *elasticity, struct particles *body, double dt);
 
+/* The body as it stands at rest, stretched along z by a share: the work of its force beside what it
+ * must be, -(2 mu + lambda) e V for e the stretch, per unit of stretch: |found / true - 1|. Exact
+ * where the Jacobian is. */
+double elasticity_stretch_error(struct elasticity *elasticity, const struct particles *body,
+                                double share);
+
 double elasticity_least_volume(const struct elasticity *elasticity); /* smallest det F */
 #endif

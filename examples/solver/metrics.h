@@ -39,7 +39,8 @@ struct gate {
     double bound;
 };
 
-/* Compares all runs that were made and prints a line per gate. true: all hold. */
+/* Compares all runs that were made and prints a line per gate. true: all hold, and there are some.
+ * Brief runs are compared with the gates on what they have measured. */
 bool gates_hold(const struct options *options, const struct gate *gates,
                 const struct metrics runs[METHOD_COUNT]);
 #endif

@@ -19,6 +19,8 @@ static const struct argp_option described[] = {
      0},
     {"output", 'o', "DIR", 0, "write pictures, tables and particles there", 0},
     {"check", 'c', NULL, 0, "compare with the gates of this scene; status 1 if one fails", 0},
+    {"brief", 'b', NULL, 0,
+     "measure the beginning and do not simulate; --check then takes the gates on that", 0},
     {0}};
 
 static int one_of(struct argp_state *state, const char *text, const char *const names[], int count)
@@ -75,12 +77,17 @@ static error_t take(int key, char *text, struct argp_state *state)
     case 'c':
         options->check = true;
         return 0;
+    case 'b':
+        options->brief = true;
+        return 0;
     case 'a':
         options->alone = true;
         return 0;
     case ARGP_KEY_END:
         if (options->check && options->alone)
             argp_error(state, "gates compare with sph: --check cannot go with --alone");
+        if (options->brief && options->output)
+            argp_error(state, "--brief has nothing to write to --output");
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

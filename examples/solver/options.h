@@ -20,6 +20,7 @@ struct options {
     bool alone; /* without SPH beside it */
     bool full;
     bool check;
+    bool brief; /* no simulation: what the scene finds at its beginning */
 };
 
 /* Ends the program on a bad option (status 2) and after --help. */
