@@ -288,8 +288,8 @@ int main(int argc, char **argv)
                                         {"ground_drift", EACH_CORRECTED, AT_MOST, 1e-3},
                                         {"ground_spin_change", EACH_CORRECTED, AT_MOST, 1e-6},
                                         {"ground_tilt", EACH_CORRECTED, AT_MOST, 2e-3},
-                                        {"ground_height", EACH_CORRECTED, AT_LEAST, 0.5},
-                                        {"ground_height", EACH_CORRECTED, AT_MOST, 1.5},
+                                        {"ground_height", EACH_CORRECTED, AT_LEAST, 0.4},
+                                        {"ground_height", EACH_CORRECTED, AT_MOST, 1.1},
                                         {0}};
     static const struct scene scene = {"top", "A spinning elastic top.", simulate, draw, gates,
                                        false};

@@ -198,6 +198,21 @@ static void conjugate_gradients_take_a_step_per_eigenvalue(const test_case *test
 
 /* ---- Gates -------------------------------------------------------------------------------- */
 
+static void brief_runs_are_compared_with_what_they_measured(const test_case *test)
+{
+    (void)test;
+    const struct options brief = {.scene = "test", .brief = true};
+    const struct gate gates[] = {
+        {"later", EACH_CORRECTED, AT_MOST, 1}, {"start", EACH_CORRECTED, AT_MOST, 1}, {0}};
+    struct metrics runs[METHOD_COUNT] = {{0}};
+    metrics_set(&runs[KGC], "other", 0);
+    assert_false(gates_hold(&brief, gates, runs)); /* nothing to compare */
+    metrics_set(&runs[KGC], "start", 1);
+    assert_true(gates_hold(&brief, gates, runs));
+    metrics_set(&runs[KGC], "later", 2);
+    assert_false(gates_hold(&brief, gates, runs));
+}
+
 static bool holds(enum relation relation, double sph, double kgc, double bound)
 {
     const struct options options = {.scene = "test"};
@@ -228,5 +243,6 @@ static const test_entry entries[] = {
     TEST_ONCE(nearest_rotation_is_proper_even_of_reflections),
     TEST_ONCE(conjugate_gradients_take_a_step_per_eigenvalue),
     TEST_ONCE(gates_fail_beyond_their_bound_and_on_nan),
+    TEST_ONCE(brief_runs_are_compared_with_what_they_measured),
 };
 TEST_MAIN(entries)

@@ -23,6 +23,7 @@ refuses --seed x
 refuses --threads -1
 refuses --output /dev/null
 refuses --check --alone
+refuses --brief --output "$directory"
 
 rm -rf "$directory"
 lines=$("$program" --method mls --seed 7 --output "$directory") || complain "the scene failed"
