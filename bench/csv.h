@@ -1,24 +1,32 @@
-/* Comma-separated numbers with one header line; lines that start with # are comments. */
+/* Particles from a text table: one line of names, then one of numbers for each particle. Takes what
+ * solvers, viewers and spreadsheets write: any usual separator, lines before the names, comments,
+ * columns that nobody needs, no names at all (x, y, z), dumps of LAMMPS, XYZ. */
 #ifndef SPHGRAD_BENCH_CSV_H
 #define SPHGRAD_BENCH_CSV_H
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "column_names.h"
 
-struct csv_table {
-    char **names;   /* column_count header cells */
-    double *values; /* row_count x column_count, all finite */
-    int64_t *lines; /* line of each row in the file, from 1 */
-    int32_t column_count;
+struct csv {
+    const char *path;
+    struct text_file text;
+    struct cells names; /* none: x, y, z */
+    int32_t columns[QUANTITIES];
+    char separator;                  /* of the rows */
+    int64_t first_line;              /* that may be a row */
+    int64_t most_rows;               /* where the file says how many; or -1 */
+    int32_t least_cells, most_cells; /* of a row; cells at its end that are empty do not count */
     int32_t row_count;
+    int64_t *lines;               /* line of each row in the file, from 1 */
+    double (*values)[QUANTITIES]; /* of each row, finite; 0 where there is no column */
+    char message[600];
 };
 
-/* required: names of columns that must be there, NULL after the last. false: `message` says in one
- * line what is wrong and where; the table is empty then. */
-bool csv_read(const char *path, const char *const required[], struct csv_table *table,
-              char *message, size_t message_size);
-void csv_destroy(struct csv_table *table);
+/* Reads the file and finds its columns. false: `message` says in one line what is wrong and where,
+ * and nothing is left to destroy. */
+bool csv_open(struct csv *csv, const char *path);
+/* Reads the rows; set columns that are not needed to -1 before. As csv_open. */
+bool csv_read(struct csv *csv);
+void csv_destroy(struct csv *csv);
 
-int32_t csv_column(const struct csv_table *table, const char *name); /* -1: there is none */
-double csv_value(const struct csv_table *table, int32_t row, int32_t column);
+/* The name of a quantity's column, cut to what fits. */
+const char *csv_name(const struct csv *csv, enum quantity quantity, char *name, size_t size);
 #endif

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 
 struct particle_source {
-    const char *input; /* CSV file; NULL: a lattice */
-    double mass;       /* of each particle in a file with densities; 0: not known */
+    const char *input; /* text file; NULL: a lattice */
+    double mass;       /* of each particle in a file with densities; 0: as the file says */
     int32_t side;      /* of the lattice, in particles */
     double jitter;     /* share of the spacing */
     bool shuffled;     /* random order in memory */
@@ -18,9 +18,11 @@ struct particle_source {
 struct particles {
     struct numbers positions, velocities;
     struct numbers volumes; /* count 0: not known yet */
-    int32_t count;
-    bool own_velocities;       /* read from the file; else v = (-y, x, 2z) */
+    int32_t count, dimension;
+    bool own_velocities;       /* read from the file; else v = (-y, x, 2z), in 2D (-y, x) */
     const char *volume_origin; /* where the volumes are from, in words */
+    char columns[160];         /* of the file that were read */
+    char flat[64];             /* why it is in 2D; empty in 3D */
 };
 
 /* 1/128: a power of two, so that pairs at exactly r = H are exactly not neighbours. */
@@ -30,6 +32,7 @@ extern const double lattice_spacing;
 struct particles particles_create(const struct particle_source *source);
 void particles_destroy(struct particles *particles);
 
-/* v = (-y, x, 2z) at the positions as stored. Exact in the precision of positions. */
+/* v = (-y, x, 2z), in 2D (-y, x), at the positions as stored. Exact in the precision of positions.
+ */
 void particles_linear_field(const struct particles *particles, struct numbers *field);
 #endif

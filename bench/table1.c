@@ -30,11 +30,14 @@ static const struct argp_option option_list[] = {
      0},
     {"order", OPTION_ORDER, "ORDER", 0,
      "particles in memory: lattice (or as in the input file), or shuffled", 0},
-    {"input", OPTION_INPUT, "FILE.csv", 0,
-     "particles of your own instead of a lattice: columns x, y, z and, if there, vx, vy, vz, "
-     "and density or volume; lines that start with # are comments",
+    {"input", OPTION_INPUT, "FILE", 0,
+     "particles of your own instead of a lattice, from a text file with columns as solvers, "
+     "ParaView and spreadsheets write it: positions (x, y, z; Points:0; Pos.x [m] ...; without z, "
+     "or "
+     "where one is constant, in 2D) and, if there, velocities, and volumes or densities and masses",
      0},
-    {"mass", OPTION_MASS, "M", 0, "of each particle of an input file with densities", 0},
+    {"mass", OPTION_MASS, "M", 0,
+     "of each particle of an input file with densities, instead of its own masses", 0},
     {"support", OPTION_SUPPORT, "H", 0,
      "support radius, in spacings (2); with --input in the file's unit of length", 0},
     {"kernel", OPTION_KERNEL, "NAME", 0,

@@ -20,8 +20,8 @@ struct column {
     sphg_method method;
     double paper_matrix, paper_gradient; /* [ms], 32 cores of a Threadripper PRO 5975WX */
     struct samples matrix, gradient, fused;
-    /* Untimed: the field v = (-y, x, 2z), max |J_i - J|_F / |J|_F over particles of full rank
-     * (plain SPH, which has no rank: over all); NaN if there are none. */
+    /* Untimed: the field v = (-y, x, 2z), in 2D (-y, x), max |J_i - J|_F / |J|_F over particles of
+     * full rank (plain SPH, which has no rank: over all); NaN if there are none. */
     double gradient_error, fused_error;
     int64_t not_finite; /* numbers in any Jacobian, of v and of the timed field */
     sphg_stats stats;
@@ -32,6 +32,7 @@ struct table1 {
     struct particles particles;
     double support_radius;
     sphg_neighbors_info neighbors;
+    double volume_ratio; /* median of the file's volumes over 1 / sum W */
     double first_search; /* [ms], with all allocations */
     struct samples search;
     struct samples probe[PROBE_WORKS]; /* for as many particles as its cube holds */

@@ -11,6 +11,7 @@ static void describe(struct report *report, const struct table1 *table)
     report_text(report, "particles_from",
                 options->source.input ? options->source.input : "lattice");
     report_number(report, "particles", count);
+    report_number(report, "dimension", table->particles.dimension);
     report_number(report, "pairs", (double)table->neighbors.pairs);
     report_number(report, "pairs_per_particle", (double)table->neighbors.pairs / count);
     report_number(report, "bytes_per_particle", (double)table->neighbors.bytes / count);

@@ -21,7 +21,7 @@ struct bench {
 
 static sphg_scheme scheme_of(const struct bench *bench, sphg_method method)
 {
-    return (sphg_scheme){.dimension = 3,
+    return (sphg_scheme){.dimension = bench->table->particles.dimension,
                          .method = method,
                          .kernel = bench->table->options.kernel,
                          .support_radius = bench->table->support_radius};
@@ -100,12 +100,13 @@ static int64_t count_not_finite(const struct numbers *numbers)
     return count;
 }
 
-/* |J_i - J|_F / |J|_F of v = (-y, x, 2z). */
+/* |J_i - J|_F / |J|_F of v = (-y, x, 2z), in 2D (-y, x). */
 static double linear_field_error(const struct numbers *jacobians, int32_t i)
 {
-    static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
+    static const double of_volume[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2}, of_plane[4] = {0, -1, 1, 0};
+    const double *expected = jacobians->width == 9 ? of_volume : of_plane;
     double difference = 0, size = 0;
-    for (int32_t k = 0; k < 9; k++) {
+    for (int32_t k = 0; k < jacobians->width; k++) {
         const double d = numbers_get(jacobians, i, k) - expected[k];
         difference += d * d;
         size += expected[k] * expected[k];
@@ -119,7 +120,7 @@ static double largest_error(const struct bench *bench, sphg_method method)
 {
     double most = -1;
     for (int32_t i = 0; i < bench->jacobians.count; i++) {
-        if (method != SPHG_PLAIN && bench->ranks[i] < 3)
+        if (method != SPHG_PLAIN && bench->ranks[i] < bench->table->particles.dimension)
             continue;
         const double error = linear_field_error(&bench->jacobians, i);
         most = error <= most ? most : error;
@@ -146,7 +147,8 @@ static void measure_errors(struct bench *bench, struct column *column,
 static void warm_up(struct bench *bench)
 {
     const struct particles *particles = &bench->table->particles;
-    struct numbers linear_field = numbers_create(particles->velocities.type, particles->count, 3);
+    struct numbers linear_field =
+        numbers_create(particles->velocities.type, particles->count, particles->dimension);
     particles_linear_field(particles, &linear_field);
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
         struct column *column = &bench->table->columns[k];
@@ -214,15 +216,40 @@ static void repeat(struct bench *bench)
     progress_clear();
 }
 
-/* Volumes that neither lattice nor file gave. */
+static int order_of_numbers(const void *a, const void *b)
+{
+    const double first = *(const double *)a, second = *(const double *)b;
+    return (first > second) - (first < second);
+}
+
+static double median_ratio(const struct numbers *given, const struct numbers *expected)
+{
+    double *ratios = allocate_or_exit((size_t)given->count, sizeof *ratios);
+    for (int32_t i = 0; i < given->count; i++)
+        ratios[i] = numbers_get(given, i, 0) / numbers_get(expected, i, 0);
+    qsort(ratios, (size_t)given->count, sizeof *ratios, order_of_numbers);
+    const double median = ratios[given->count / 2];
+    free(ratios);
+    return median;
+}
+
+/* Volumes that neither lattice nor file gave; those of a file are compared with what would have
+ * been taken without them. */
 static void complete_volumes(struct bench *bench)
 {
     struct particles *particles = &bench->table->particles;
-    if (particles->volumes.data)
-        return;
     const sphg_scheme scheme = scheme_of(bench, SPHG_PLAIN);
-    particles->volumes = numbers_create(bench->jacobians.type, particles->count, 1);
-    library_volumes(bench->context, &scheme, bench->neighbors, &particles->volumes);
+    struct numbers volumes = numbers_create(bench->jacobians.type, particles->count, 1);
+    bench->table->volume_ratio = 1;
+    if (!particles->volumes.data || bench->table->options.source.input)
+        library_volumes(bench->context, &scheme, bench->neighbors, &volumes);
+    if (!particles->volumes.data) {
+        particles->volumes = volumes;
+        return;
+    }
+    if (bench->table->options.source.input)
+        bench->table->volume_ratio = median_ratio(&particles->volumes, &volumes);
+    numbers_destroy(&volumes);
 }
 
 static void first_search(struct bench *bench)
@@ -237,12 +264,13 @@ static void first_search(struct bench *bench)
 
 void table1_measure(struct table1 *table)
 {
-    const sphg_scheme widest = {.method = SPHG_CMLS, .support_radius = 1};
+    const int32_t dimension = table->particles.dimension;
+    const sphg_scheme widest = {.dimension = dimension, .method = SPHG_CMLS, .support_radius = 1};
     const sphg_type type = table->particles.velocities.type;
     const int32_t count = table->particles.count;
     struct bench bench = {.table = table, .context = library_open(table->options.threads)};
     bench.corrections = numbers_create(type, count, sphg_correction_width(&widest));
-    bench.jacobians = numbers_create(type, count, 9);
+    bench.jacobians = numbers_create(type, count, dimension * dimension);
     bench.ranks = allocate_or_exit((size_t)count, 1);
     library_check(bench.context, sphg_neighbors_create(bench.context, &bench.neighbors));
     first_search(&bench);

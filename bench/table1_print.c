@@ -78,7 +78,9 @@ static void print_errors(const struct table1 *table, const char *label, int fuse
     for (int k = 0; k < TABLE1_COLUMNS; k++) {
         char text[TEXT_SIZE] = "-";
         const struct column *column = &table->columns[k];
-        const int none = column->method == SPHG_PLAIN ? fused : column->stats.rank[3] == 0;
+        const int none = column->method == SPHG_PLAIN
+                             ? fused
+                             : column->stats.rank[table->particles.dimension] == 0;
         if (!none)
             snprintf(text, sizeof text, "%.2e",
                      fused ? column->fused_error : column->gradient_error);
@@ -141,14 +143,21 @@ static void print_lattice(const struct table1 *table)
            table->particles.volume_origin);
 }
 
+static const char *linear_field(const struct table1 *table)
+{
+    return table->particles.dimension == 3 ? "v = (-y, x, 2z)" : "v = (-y, x)";
+}
+
 static void print_input(const struct table1 *table)
 {
     char count[TEXT_SIZE];
-    printf("particles  %s of %s\n", text_grouped(table->particles.count, count),
-           table->options.source.input);
+    const struct particles *particles = &table->particles;
+    printf("particles  %s of %s%s%s\n", text_grouped(particles->count, count),
+           table->options.source.input, particles->flat[0] ? ", " : "", particles->flat);
+    printf("           columns %s\n", particles->columns);
     printf("           %s order, volume %s, timed field: %s\n",
            table->options.source.shuffled ? "shuffled" : "file's", table->particles.volume_origin,
-           table->particles.own_velocities ? "the file's velocities" : "v = (-y, x, 2z)");
+           particles->own_velocities ? "the file's velocities" : linear_field(table));
 }
 
 static void print_set_up(const struct table1 *table)
@@ -236,7 +245,7 @@ static void print_ranks(const struct table1 *table)
 {
     static const char *const labels[] = {"rank 0", "rank 1", "rank 2", "rank 3"};
     printf("\n");
-    for (int rank = 0; rank < 4; rank++)
+    for (int rank = 0; rank <= table->particles.dimension; rank++)
         print_counts(table, labels[rank], count_rank, rank);
     print_counts(table, "to the eigensolver", count_decomposed, 0);
 }
@@ -245,7 +254,7 @@ static int some_are_deficient(const struct table1 *table)
 {
     for (int k = 0; k < TABLE1_COLUMNS; k++)
         if (table->columns[k].method != SPHG_PLAIN &&
-            table->columns[k].stats.rank[3] != table->particles.count)
+            table->columns[k].stats.rank[table->particles.dimension] != table->particles.count)
             return 1;
     return 0;
 }
@@ -255,8 +264,9 @@ static void print_footer(const struct table1 *table, int deficient)
     int64_t not_finite = 0;
     for (int k = 0; k < TABLE1_COLUMNS; k++)
         not_finite += table->columns[k].not_finite;
-    printf("\nerror: max |J_i - J|_F / |J|_F on v = (-y, x, 2z) over all particles%s\n",
-           deficient ? " of rank 3 (SPH: over all)" : ", all of rank 3");
+    printf("\nerror: max |J_i - J|_F / |J|_F on %s over all particles%s rank %d%s\n",
+           linear_field(table), deficient ? " of" : ", all of", (int)table->particles.dimension,
+           deficient ? " (SPH: over all)" : "");
     if (table->options.source.input && table->options.source.precision == PRECISION_MIXED)
         printf("(mixed: v itself is rounded to f32 here, which shows as error)\n");
     if (not_finite > 0)
@@ -265,6 +275,27 @@ static void print_footer(const struct table1 *table, int deficient)
     else
         printf("all numbers of all Jacobians are finite\n");
     printf("paper: one million particles on 32 cores of a Threadripper PRO 5975WX\n");
+}
+
+/* Volumes are what a file gets wrong most easily, and the only thing that lambda takes absolutely.
+ */
+static void print_suspect(const struct table1 *table)
+{
+    const struct column *kgc = &table->columns[1];
+    const int64_t full = kgc->stats.rank[table->particles.dimension];
+    const double ratio = table->volume_ratio;
+    if (!table->options.source.input || full >= (int64_t)table->particles.count / 10)
+        return;
+    if (ratio < 0.25 || ratio > 4)
+        printf(
+            "\nHardly any particle has full rank. First suspect: the unit of the volumes (mass / "
+            "density);\nthe file's are %.3g times what the positions give (1 / sum W).\n",
+            ratio);
+    else
+        printf("\nHardly any particle has full rank. Suspects: --support, with %.3g neighbours a "
+               "particle, and the unit of\nthe volumes (mass / density), which agree with the "
+               "positions here (%.3g times 1 / sum W).\n",
+               (double)table->neighbors.pairs / table->particles.count, ratio);
 }
 
 void table1_print(const struct table1 *table)
@@ -280,6 +311,7 @@ void table1_print(const struct table1 *table)
     print_errors(table, "error of fused", 1);
     if (deficient || table->options.source.input)
         print_ranks(table);
+    print_suspect(table);
     printf("\n");
     print_paper(table, "paper, T_mat  [ms]", 0);
     print_paper(table, "paper, T_grad [ms]", 1);

@@ -27,9 +27,9 @@ static const char *data_path(void)
 
 /* Read once for all cases. Skips the case where the file is not there, fails where it is not
  * readable. */
-static const struct csv_table *read_table(void)
+static const struct csv *read_table(void)
 {
-    static struct csv_table table;
+    static struct csv table;
     const char *path = data_path();
     if (table.row_count)
         return &table;
@@ -39,21 +39,20 @@ static const struct csv_table *read_table(void)
         test_skip();
     }
     fclose(file);
-    static const char *const needed[] = {"x", "y", "z", "vx", "vy", "vz", "density", NULL};
-    char message[512];
-    TEST_REQUIRE(csv_read(path, needed, &table, message, sizeof message), "%s", message);
+    TEST_REQUIRE(csv_open(&table, path) && csv_read(&table), "%s", table.message);
+    for (int quantity = QUANTITY_X; quantity <= QUANTITY_DENSITY; quantity++)
+        TEST_REQUIRE(table.columns[quantity] >= 0, "%s lacks a column", path);
     return &table;
 }
 
 /* Columns of the file as an array of the type; mass / value for volumes. */
-static fixture_array columns(const struct csv_table *table, sphg_type type, int width,
-                             const char *const names[], int invert)
+static fixture_array columns(const struct csv *table, sphg_type type, int width,
+                             enum quantity first, int invert)
 {
     double *numbers = test_memory((size_t)(table->row_count * width) * sizeof *numbers);
     for (int k = 0; k < width; k++) {
-        const int32_t column = csv_column(table, names[k]);
         for (int i = 0; i < table->row_count; i++) {
-            const double value = csv_value(table, i, column);
+            const double value = table->values[i][(int)first + k];
             numbers[i * width + k] = invert ? particle_mass / value : value;
         }
     }
@@ -62,14 +61,11 @@ static fixture_array columns(const struct csv_table *table, sphg_type type, int 
 
 static splash open_splash(const test_case *test)
 {
-    static const char *const position_names[] = {"x", "y", "z"};
-    static const char *const velocity_names[] = {"vx", "vy", "vz"};
-    static const char *const density_name[] = {"density"};
-    const struct csv_table *table = read_table();
+    const struct csv *table = read_table();
     splash data = {.context = fixture_context(), .count = table->row_count};
-    data.positions = columns(table, test_position_type(test), 3, position_names, 0);
-    data.velocities = columns(table, test_field_type(test), 3, velocity_names, 0);
-    data.volumes = columns(table, test_field_type(test), 1, density_name, 1);
+    data.positions = columns(table, test_position_type(test), 3, QUANTITY_X, 0);
+    data.velocities = columns(table, test_field_type(test), 3, QUANTITY_VX, 0);
+    data.volumes = columns(table, test_field_type(test), 1, QUANTITY_DENSITY, 1);
     const sphg_scheme scheme = fixture_scheme(test, support_radius);
     const sphg_geometry geometry = {.sources = fixture_view(&data.positions),
                                     .source_count = data.count,
