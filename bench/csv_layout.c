@@ -120,6 +120,7 @@ static bool find_first_row(struct csv *csv, char of_names)
 
 static bool are_names(struct csv *csv, struct span line, char separator, int32_t *twice)
 {
+    *twice = -1;
     if (!cells_split(&csv->names, bare_names(line), separator))
         return false;
     csv->most_cells = csv->names.count;
@@ -148,12 +149,13 @@ static bool find_names(struct csv *csv, int64_t *candidate, char *candidate_sepa
         const size_t next = csv->text.next;
         const int64_t number = csv->text.line;
         for (const char *separator = cell_separators; *separator; separator++) {
-            int32_t twice = -1;
-            if (are_names(csv, line, *separator, &twice) && find_first_row(csv, *separator))
+            int32_t twice;
+            const bool names = are_names(csv, line, *separator, &twice);
+            if (names && find_first_row(csv, *separator))
                 return true;
             if (twice >= 0)
                 refuse_twice(csv, number, twice, reason, reason_size);
-            else if (csv->text.next != next && *candidate == 0) {
+            else if (names && *candidate == 0) {
                 *candidate = number;
                 *candidate_separator = *separator;
             }

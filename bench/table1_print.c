@@ -277,25 +277,22 @@ static void print_footer(const struct table1 *table, int deficient)
     printf("paper: one million particles on 32 cores of a Threadripper PRO 5975WX\n");
 }
 
-/* Volumes are what a file gets wrong most easily, and the only thing that lambda takes absolutely.
- */
+/* Volumes are what a file gets wrong most easily, and what lambda takes as it is. */
 static void print_suspect(const struct table1 *table)
 {
+    const int32_t dimension = table->particles.dimension;
+    const double count = table->particles.count, ratio = table->volume_ratio;
+    const double neighbors = (double)table->neighbors.pairs / count;
     const struct column *kgc = &table->columns[1];
-    const int64_t full = kgc->stats.rank[table->particles.dimension];
-    const double ratio = table->volume_ratio;
-    if (!table->options.source.input || full >= (int64_t)table->particles.count / 10)
+    if (!table->options.source.input || (double)kgc->stats.rank[dimension] >= count / 10)
         return;
-    if (ratio < 0.25 || ratio > 4)
-        printf(
-            "\nHardly any particle has full rank. First suspect: the unit of the volumes (mass / "
-            "density);\nthe file's are %.3g times what the positions give (1 / sum W).\n",
-            ratio);
+    printf("\nHardly any particle has full rank. First suspect: ");
+    if (neighbors < dimension)
+        printf("--support, which leaves %.2g neighbours a particle.\n", neighbors);
     else
-        printf("\nHardly any particle has full rank. Suspects: --support, with %.3g neighbours a "
-               "particle, and the unit of\nthe volumes (mass / density), which agree with the "
-               "positions here (%.3g times 1 / sum W).\n",
-               (double)table->neighbors.pairs / table->particles.count, ratio);
+        printf("the unit of the volumes (mass / density),\nwhich are %.2g times what the positions "
+               "give (1 / sum W).\n",
+               ratio);
 }
 
 void table1_print(const struct table1 *table)

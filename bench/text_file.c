@@ -57,8 +57,10 @@ static bool known_kind(const struct text_file *file, char *reason, size_t size)
 /* UTF-16 to one byte a character, in place; what ASCII lacks becomes a question mark. */
 static void decode_wide(struct text_file *file, int low)
 {
+    const unsigned char *bytes = (const unsigned char *)file->data;
+    const bool marked = bytes[low] == 0xff && bytes[1 - low] == 0xfe;
     size_t written = 0;
-    for (size_t k = 0; k + 1 < file->size; k += 2) {
+    for (size_t k = marked ? 2 : 0; k + 1 < file->size; k += 2) {
         const unsigned char character = (unsigned char)file->data[k + (size_t)low];
         const bool ascii = file->data[k + (size_t)(1 - low)] == 0 && character < 128;
         file->data[written++] = ascii ? (char)character : '?';
