@@ -37,6 +37,10 @@ static error_t parse_outer(int key, char *text, struct argp_state *state)
 
 void options_parse(const struct argp *argp, int argc, char **argv, void *input)
 {
+    static char help[] = "--help";
+    for (int k = 1; k < argc; k++)
+        if (strcmp(argv[k], "-h") == 0)
+            argv[k] = help;
     const struct argp_child children[] = {{argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
     const struct argp outer = {.parser = parse_outer, .children = children};
     if (argp_parse(&outer, argc, argv, ARGP_IN_ORDER, NULL, input))

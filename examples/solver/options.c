@@ -98,6 +98,10 @@ struct options options_read(const char *scene, const char *about, int argc, char
 {
     struct options options = {.scene = scene, .seed = 1, .method = KGC};
     const struct argp argp = {.options = described, .parser = take, .doc = about};
+    static char help[] = "--help";
+    for (int k = 1; k < argc; k++)
+        if (strcmp(argv[k], "-h") == 0)
+            argv[k] = help;
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &options);
     return options;

@@ -1,0 +1,77 @@
+#!/bin/sh
+# help.sh SOURCES BENCH EXAMPLES: --help and -h of every program and script answer on stdout with status 0, the
+# scripts without building anything; `examples/run` knows every scene, and the example of the README.
+sources=$1 bench=$2 examples=$3
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+status=0
+
+complain() {
+    echo "$*" >&2
+    status=1
+}
+
+# helps PATTERN COMMAND...: with --help and with -h.
+helps() {
+    pattern=$1
+    shift
+    for option in --help -h; do
+        "$@" $option >"$work/output" 2>"$work/errors" || complain "$* $option: status $?"
+        [ ! -s "$work/errors" ] || complain "$* $option: on stderr: $(cat "$work/errors")"
+        grep -qE -e "$pattern" "$work/output" || complain "$* $option: no line matches '$pattern'"
+    done
+}
+
+# The scripts in a tree where nothing can be built.
+tree=$work/tree
+mkdir -p "$tree/.ci" "$tree/bench" "$tree/examples" "$tree/tests"
+cp "$sources/bench/run" "$sources/bench/main.c" "$tree/bench"
+cp "$sources/examples/run" "$sources/examples/CMakeLists.txt" "$sources"/examples/*.c "$tree/examples"
+cp "$sources/tests/run" "$sources/tests/more.sh" "$tree/tests"
+cat >"$tree/.ci/setup.sh" <<'END'
+require_packages() { [ -e "$source_dir/may_build" ] || { echo "asks for packages" >&2; return 1; }; }
+build_preset() { [ -e "$source_dir/may_build" ] || { echo "builds" >&2; return 1; }; }
+END
+helps '^  bench/run COMMAND' "$tree/bench/run"
+helps '^  examples/run SCENE' "$tree/examples/run"
+helps '^  --quick ' "$tree/tests/run"
+helps '^  --quick ' "$tree/tests/run" --mutants 5
+
+# Commands: those of the program, with its words.
+helps '^ *table1 ' "$bench"
+"$bench" --help | sed -n 's/^  \([a-z]\)/\1/p' >"$work/program"
+"$tree/bench/run" --help | sed -n '/^Commands/,$s/^  \([a-z]\)/\1/p' >"$work/script"
+diff "$work/program" "$work/script" >&2 || complain 'bench/run --help does not list what sphgrad-bench --help does'
+while read -r command summary; do
+    helps '^Usage: ' "$bench" "$command"
+done <"$work/program"
+[ "$(wc -l <"$work/program")" -gt 6 ] || complain 'the program lists few commands'
+
+# Scenes: every program that was built, with a line about it, and every option.
+"$tree/examples/run" --help >"$work/script"
+scenes=0
+for program in "$examples"/*; do
+    [ -f "$program" ] && [ -x "$program" ] || continue
+    scene=$(basename "$program")
+    [ -f "$sources/examples/$scene.c" ] && [ "$scene" != gradient ] || continue
+    scenes=$((scenes + 1))
+    grep -qE "^  $scene +[A-Z].{20}" "$work/script" || complain "examples/run --help has no line on $scene"
+    helps '^  examples/run SCENE' "$tree/examples/run" "$scene"
+    helps '^Usage: ' "$program"
+done
+[ "$scenes" -gt 6 ] || complain "$scenes scenes"
+for option in $("$examples/cube" --help | grep -oE -e '--[a-z]+' | grep -vE 'help|usage|version' | sort -u); do
+    grep -q -e "$option" "$work/script" || complain "examples/run --help does not know $option"
+done
+
+# What is run: the README's example, a scene, and nothing else.
+touch "$tree/may_build"
+mkdir -p "$tree/build/examples"
+ln -s "$examples" "$tree/build/examples/examples"
+"$tree/examples/run" gradient | grep -q '^dvx/dy = -[01]\.' || complain 'examples/run gradient does not run'
+"$tree/examples/run" vorticity --method sph --alone | grep -q '"scene": "vorticity"' || complain 'no scene runs'
+for wrong in '' gradients 'normals grid' 'solver'; do
+    "$tree/examples/run" ${wrong:+"$wrong"} >/dev/null 2>&1
+    [ $? -eq 2 ] || complain "examples/run '$wrong' is not refused"
+done
+exit $status
