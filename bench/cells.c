@@ -54,7 +54,8 @@ static const char *skip_quoted(const char *at, const char *end)
     return close ? close + 1 : at;
 }
 
-/* The end of a unit of its own in a line of blanks, as in "x [m] y [m]"; or `at`. */
+/* The end of brackets with blanks around them, as in "x [m] y [m]" or "[01  x] [02  y]"; or `at`.
+ */
 static const char *skip_unit(const char *at, const char *end)
 {
     const char *open = skip_blanks(at, end);
@@ -69,7 +70,7 @@ static bool split_at_blanks(struct cells *cells, struct span line)
     const char *at = skip_blanks(line.start, line.end);
     while (at < line.end) {
         const char *start = at;
-        at = skip_quoted(at, line.end);
+        at = skip_unit(skip_quoted(at, line.end), line.end);
         while (at < line.end && !isspace((unsigned char)*at))
             at++;
         at = skip_unit(at, line.end);

@@ -78,7 +78,7 @@ static const char *skip_unit(const char *at, const char *end)
     return axis ? at : close;
 }
 
-/* Without the number before it that some give columns: "1:x", "[1]=x". */
+/* Without the number before it that some give columns: "1:x", "[1]=x", "[01  x]". */
 static struct span without_number(struct span name)
 {
     const char *at = name.start;
@@ -89,6 +89,8 @@ static struct span without_number(struct span name)
         at++;
     if (at == digits)
         return name;
+    if (bracket && name.end[-1] == ']' && at < name.end && isspace((unsigned char)*at))
+        return (struct span){at, name.end - 1};
     const char *closing = bracket ? "]=" : ":";
     const struct span rest = {at, name.end};
     if (!span_begins(rest, closing) || (size_t)(rest.end - rest.start) == strlen(closing))

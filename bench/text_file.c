@@ -99,6 +99,8 @@ static bool make_text(struct text_file *file, char *reason, size_t size)
     if (low >= 0)
         decode_wide(file, low);
     drop_byte_order_mark(file);
+    while (file->size > 0 && file->data[file->size - 1] == '\x1a') /* where text ends in DOS */
+        file->size--;
     if (known_kind(file, reason, size))
         return false;
     if (file->size > 0 && memchr(file->data, '\0', file->size))

@@ -116,6 +116,7 @@ names 'x1,x2,x3' 'X,Y,Z' 'x1, x2, x3'
 names 'posX,posY,posZ,velX,velY,velZ' 'X,Y,Z,0,0,1' 'posX, posY, posZ, velX, velY, velZ'
 names '#1:x 2:y 3:z 4:u 5:v 6:w' 'X Y Z 0 0 1' '1:x, 2:y, 3:z, 4:u, 5:v, 6:w'
 names '# [1]=x [2]=y [3]=z' 'X Y Z' '\[1\]=x, \[2\]=y, \[3\]=z'
+names '# [01  x]  [02  y]  [03  z]  [04 mass]' 'X Y Z 1' '\[01  x\], \[02  y\], \[03  z\]'
 names 'particle_position_x,particle_position_y,particle_position_z' 'X,Y,Z' 'particle_.*_y, particle_position_z'
 names 'Coordinates_0,Coordinates_1,Coordinates_2,u' 'X,Y,Z,4' 'Coordinates_0, Coordinates_1, Coordinates_2'
 names 'x-coordinate,y-coordinate,z-coordinate,x-velocity,y-velocity,z-velocity' 'X,Y,Z,0,0,1' \
