@@ -73,7 +73,8 @@ static bool split_at_blanks(struct cells *cells, struct span line)
         at = skip_unit(skip_quoted(at, line.end), line.end);
         while (at < line.end && !isspace((unsigned char)*at))
             at++;
-        at = skip_unit(at, line.end);
+        if (*start != '[' && *start != '(')
+            at = skip_unit(at, line.end);
         if (!add(cells, without_quotes((struct span){start, at})))
             return false;
         at = skip_blanks(at, line.end);
