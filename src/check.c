@@ -259,6 +259,15 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
     return SPHG_OK;
 }
 
+sphg_type sphgi_type_of_positions(const sphg_geometry *geometry)
+{
+    const sphg_view *some = geometry->sources.x ? &geometry->sources : &geometry->targets;
+    if (some->x)
+        return some->type;
+    const sphg_type named = geometry->sources.type ? geometry->sources.type : some->type;
+    return named ? named : geometry->precision ? geometry->precision : SPHG_F32;
+}
+
 sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
                                  const struct sphgi_scheme *scheme, bool searched)
 {
@@ -268,8 +277,7 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
         result = check_counts(checker, geometry);
     if (result)
         return result;
-    const sphg_view *some = geometry->sources.x ? &geometry->sources : &geometry->targets;
-    const sphg_type type = some->x ? some->type : SPHG_F32;
+    const sphg_type type = sphgi_type_of_positions(geometry);
     if (type != SPHG_F32 && type != SPHG_F64)
         REFUSE(SPHG_ERROR_TYPE, "%s: geometry.sources.type is %d, must be 1 (f32) or 2 (f64)", f,
                (int)type);
@@ -327,6 +335,8 @@ sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *li
     if (missing)
         return missing;
     const int csr = lists->offsets || lists->indices, rows = lists->rows || lists->lengths;
+    if (!target_count && !lists->offsets && !lists->row) /* rows of nobody */
+        return SPHG_OK;
     if (csr + rows + !!lists->row != 1)
         REFUSE(SPHG_ERROR_ARGUMENT,
                "%s: lists needs exactly one of offsets + indices, rows + lengths, row", f);

@@ -45,6 +45,8 @@ struct sphgi_expected {
 };
 sphg_result sphgi_check_view(struct sphgi_checker checker, const sphg_view *view,
                              const struct sphgi_expected *expected);
+/* Of what is there; where nothing is, as a view or the geometry names it. */
+sphg_type sphgi_type_of_positions(const sphg_geometry *geometry);
 sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
                                  const struct sphgi_scheme *scheme, bool searched);
 sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *lists,

@@ -53,8 +53,11 @@ static sphg_result evaluate_field(struct sphgi_checker checker, const sphg_schem
                                   const sphg_sources *sources, const sphg_subset *subset,
                                   const sphg_field *field)
 {
-    const bool wants = field->gradient.x || field->divergence.x || field->curl.x;
-    if (!wants || !field->at_sources->x) /* in a request absent is 0, or not wanted */
+    const sphg_neighbors *n = sources ? sources->neighbors : NULL;
+    const bool nobody = n && n->kind && !n->source_count,
+               no_target = n && n->kind && !n->target_count;
+    const bool wants = field->gradient.x || field->divergence.x || field->curl.x || no_target;
+    if (!wants || (!field->at_sources->x && !nobody)) /* in a request absent is 0, or not wanted */
         return refuse(checker, wants ? "the field is absent" : "the result is absent");
     const sphg_request request = {
         .sources = sources, .fields = field, .set_count = 1, .field_count = 1, .subset = subset};

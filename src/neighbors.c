@@ -105,8 +105,7 @@ static struct sphgi_geometry geometry_of(const sphg_geometry *given, int32_t dim
                                .target_count = given->target_count,
                                .dimension = dimension,
                                .part_of = !given->targets.x};
-    const sphg_view *some = given->sources.x ? &given->sources : &given->targets;
-    g.position_type = some->x ? some->type : SPHG_F32;
+    g.position_type = sphgi_type_of_positions(given);
     g.type = given->precision ? given->precision : g.position_type;
     g.row_size = SPHGI_ROW * sphgi_size_of_type(g.position_type);
     return g;

@@ -114,8 +114,10 @@ static sphg_result check_needed(struct sphgi_making *making)
     const bool anything = plan->computes || plan->differentiates || plan->wants_value;
     const bool at_sources = (anything && in_weight) || transposes || in_value || plan->mean_volume;
     for (int32_t s = 0; s < plan->set_count && at_sources; ++s)
-        if (!plan->sets[s].volume.count)
+        if (!plan->sets[s].volume.count && plan->sets[s].neighbors->source_count > 0)
             SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].volume is absent", f, (int)s);
+    if (!plan->target_count)
+        return SPHG_OK;
     const bool at_targets = plan->adjoint || (plan->transposes[1] && !in_weight) ||
                             (plan->transposes[1] && plan->classic);
     if (at_targets && !plan->target_volume.count)

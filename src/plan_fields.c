@@ -73,7 +73,8 @@ static sphg_result take_field_at_target(struct sphgi_making *making, int32_t k)
     const sphg_view absent = sphg_absent();
     const sphg_view *of_set = plan->own_set < 0 ? NULL : &given->at_sources[plan->own_set];
     const sphg_view *own = given->form == SPHG_DIRECT ? &absent : &given->at_targets;
-    if (sphgi_is_absent(own) && !of_set && given->form != SPHG_DIRECT && field->differentiates)
+    if (sphgi_is_absent(own) && !of_set && given->form != SPHG_DIRECT && field->differentiates &&
+        plan->target_count > 0)
         SPHGI_REFUSE(
             SPHG_ERROR_ARGUMENT,
             "%s: fields[%d].at_targets is absent, and the targets are part of no source set",
@@ -148,7 +149,8 @@ static sphg_result take_correction_of_set(struct sphgi_making *making, int32_t s
     const sphg_view *view = &making->request->sources[s].correction;
     struct sphgi_columns columns = {.count = 0};
     const bool needed =
-        set_transposes(making, s, SPHG_ADJOINT) || set_transposes(making, s, SPHG_SYMMETRIC);
+        plan->sets[s].neighbors->source_count > 0 &&
+        (set_transposes(making, s, SPHG_ADJOINT) || set_transposes(making, s, SPHG_SYMMETRIC));
     if (needed && sphgi_is_absent(view))
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: sources[%d].correction is absent; adjoint and symmetric forms read it",
@@ -166,7 +168,7 @@ static sphg_result take_density_of_set(struct sphgi_making *making, int32_t s)
     struct sphgi_plan *plan = making->plan;
     const sphg_view *view = &making->request->sources[s].density;
     struct sphgi_columns columns = {.count = 0};
-    if (sphgi_is_absent(view))
+    if (sphgi_is_absent(view) && plan->sets[s].neighbors->source_count > 0)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: sources[%d].density is absent; the symmetric form reads it",
                      making->checker.function, (int)s);

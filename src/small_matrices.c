@@ -205,7 +205,7 @@ static sphg_result begin_batch(struct sphgi_checker checker, const sphg_view *ma
                           (int)count);
     b->context = context;
     b->count = count;
-    b->type = matrices->x ? matrices->type : SPHG_F32;
+    b->type = matrices->x || matrices->type ? matrices->type : SPHG_F32;
     if (b->type != SPHG_F32 && b->type != SPHG_F64)
         return sphgi_fail(context, SPHG_ERROR_TYPE, "%s: %s.type is %d, must be 1 (f32) or 2 (f64)",
                           checker.function, name, (int)b->type);

@@ -246,7 +246,7 @@ typedef struct sphg_geometry {
     sphg_view sources;    /* x_j [L], source_count vectors */
     sphg_view targets;    /* x_i [L], target_count vectors. Absent: the targets are the sources'
                              first target_count particles, "part of" this source set */
-    int32_t source_count; /* ghosts included */
+    int32_t source_count; /* ghosts included; 0: sources.x may be NULL, as all views of the set */
     int32_t target_count;
     sphg_type precision; /* of all fields and results; 0: as the positions. F32 beside F64
                             positions: differences are taken before narrowing. Never wider */

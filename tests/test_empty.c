@@ -1,0 +1,193 @@
+/* Nothing is ordinary: an empty std::vector hands over NULL and 0, and no call minds. */
+#include "support/fixture.h"
+#include <string.h>
+
+typedef struct nobody {
+    sphg_context *context;
+    sphg_scheme scheme;
+    sphg_type type;
+    sphg_neighbors *neighbors;
+} nobody;
+
+static sphg_type type_of(const test_case *test)
+{
+    return test->precision == TEST_F64 ? SPHG_F64 : SPHG_F32;
+}
+
+/* A view of an empty array in the case's precision. */
+static sphg_view nothing(sphg_type type)
+{
+    sphg_view view = sphg_absent();
+    view.type = type;
+    return view;
+}
+
+static sphg_geometry empty_geometry(const test_case *test)
+{
+    sphg_geometry geometry = {.sources = nothing(type_of(test))};
+    if (test->precision == TEST_MIXED) {
+        geometry.sources.type = SPHG_F64;
+        geometry.precision = SPHG_F32;
+    }
+    return geometry;
+}
+
+static nobody nobody_of(const test_case *test)
+{
+    const sphg_geometry geometry = empty_geometry(test);
+    nobody own = {fixture_context(), fixture_scheme(test, 1), type_of(test), NULL};
+    own.neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    return own;
+}
+
+/* Fields of one particle that lies alone, a table and results for it. */
+typedef struct single {
+    fixture_array numbers, table, result;
+} single;
+
+static single single_of(const nobody *own)
+{
+    const double ones[16] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    const int width = sphg_correction_width(&own->scheme);
+    return (single){fixture_numbers(own->type, 1, 9, ones),
+                    fixture_numbers(own->type, 1, width ? width : 1, ones),
+                    fixture_output(own->type, 1, 9)};
+}
+
+static void every_form(const nobody *own, const sphg_sources *sources, int sets,
+                       const sphg_view *at_sources, sphg_view target, sphg_view gradient)
+{
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
+            sphg_field field = {.shape = (sphg_shape)shape,
+                                .form = (sphg_form)form,
+                                .at_sources = at_sources,
+                                .at_targets = target};
+            if (shape == SPHG_SCALAR)
+                field.gradient = gradient;
+            else
+                field.divergence = gradient;
+            const sphg_request request = {
+                .sources = sources, .set_count = sets, .fields = &field, .field_count = 1};
+            FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+        }
+}
+
+static void every_operator_takes_an_empty_set(const test_case *test)
+{
+    const nobody own = nobody_of(test);
+    const sphg_view none = sphg_absent();
+    const sphg_sources sources = {.neighbors = own.neighbors};
+    const single one = single_of(&own);
+    const sphg_view out = fixture_view(&one.result);
+    const sphg_view outs[] = {none, out};
+    for (int k = 0; k < 2; k++) {
+        every_form(&own, &sources, 1, &none, none, outs[k]);
+        FIXTURE_OK(own.context,
+                   sphg_gradient(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        FIXTURE_OK(own.context,
+                   sphg_jacobian(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        FIXTURE_OK(own.context,
+                   sphg_divergence(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        FIXTURE_OK(own.context, sphg_curl(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        FIXTURE_OK(own.context, sphg_force(own.context, &own.scheme, &sources, NULL, SPHG_SCALAR,
+                                           none, outs[k]));
+    }
+    if (test->method != SPHG_PLAIN)
+        FIXTURE_OK(own.context,
+                   sphg_correction(own.context, &own.scheme, &sources, NULL, none, none));
+    sphg_pairs pairs = {.count = 7};
+    FIXTURE_OK(own.context,
+               sphg_pair_gradients(own.context, &own.scheme, &sources, NULL, none, &pairs));
+    assert_int_equal(pairs.count, 0);
+    FIXTURE_OK(own.context, sphg_neighbors_get_order(own.context, own.neighbors, NULL));
+    assert_true(fixture_is_canary(&one.result, 0));
+}
+
+/* Its views are the precision that the geometry named: others are refused, as for any set. */
+static void an_empty_set_has_the_type_of_its_views(const test_case *test)
+{
+    const nobody own = nobody_of(test);
+    const single one = single_of(&own);
+    const sphg_view none = sphg_absent();
+    sphg_sources sources = {.neighbors = own.neighbors, .volume = fixture_view(&one.numbers)};
+    every_form(&own, &sources, 1, &none, none, fixture_view(&one.result));
+    sources.volume.type = own.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    const sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &none};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
+    assert_int_equal(sphg_evaluate(own.context, &own.scheme, &request), SPHG_ERROR_TYPE);
+    const sphg_geometry named = {.precision = own.type};
+    sources.neighbors = fixture_search(own.context, &own.scheme, &named);
+    sources.volume.type = own.type;
+    FIXTURE_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+}
+
+/* A wall of nobody beside one particle; then nobody beside a wall. */
+static void an_empty_set_beside_another_adds_nothing(const test_case *test)
+{
+    nobody own = nobody_of(test);
+    const single one = single_of(&own);
+    const double origin[3] = {0};
+    const sphg_type at = test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
+    const fixture_array place = fixture_numbers(at, 1, test->dimension, origin);
+    sphg_geometry alone = empty_geometry(test), beside = alone;
+    alone.sources = beside.targets = fixture_view(&place);
+    alone.source_count = alone.target_count = beside.target_count = 1;
+    const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
+    const sphg_view of_nobody[] = {ones, none};
+    const sphg_sources sources[] = {
+        {fixture_search(own.context, &own.scheme, &alone), ones, ones, fixture_view(&one.table)},
+        {.neighbors = fixture_search(own.context, &own.scheme, &beside)}};
+    every_form(&own, sources, 2, of_nobody, none, fixture_view(&one.result));
+    for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
+        assert_false(fixture_get(&one.result, 0, c) != fixture_get(&one.result, 0, c));
+}
+
+static void lists_of_nobody_are_lists(const test_case *test)
+{
+    nobody own = nobody_of(test);
+    const sphg_geometry geometry = empty_geometry(test);
+    const int64_t offset = 0;
+    const int32_t unused = 0;
+    const int32_t *row = &unused;
+    const sphg_lists lists[] = {{.offsets = NULL},
+                                {.offsets = &offset},
+                                {.indices = &unused},
+                                {.rows = &row},
+                                {.lengths = &unused}};
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+        own.neighbors = fixture_lists(own.context, &own.scheme, &geometry, &lists[k]);
+        const sphg_sources sources = {.neighbors = own.neighbors};
+        const sphg_view none = sphg_absent();
+        every_form(&own, &sources, 1, &none, none, none);
+        FIXTURE_OK(own.context, sphg_neighbors_get_order(own.context, own.neighbors, NULL));
+        sphg_neighbors_info info;
+        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, own.neighbors, &info));
+        assert_int_equal(info.pairs, 0);
+    }
+}
+
+static void batches_of_no_matrices_are_done(const test_case *test)
+{
+    const nobody own = nobody_of(test);
+    const sphg_view none = sphg_absent();
+    const sphg_inversion wanted = {.stats = NULL};
+    FIXTURE_OK(own.context, sphg_eigen(own.context, test->dimension, 0, none, none, none));
+    FIXTURE_OK(own.context, sphg_svd(own.context, 0, none, none, none, none));
+    FIXTURE_OK(own.context, sphg_invert_moments(own.context, &own.scheme, 0, none, none, &wanted));
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(every_operator_takes_an_empty_set, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(an_empty_set_has_the_type_of_its_views, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(an_empty_set_beside_another_adds_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(lists_of_nobody_are_lists, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(batches_of_no_matrices_are_done, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+};
+TEST_MAIN(entries)
