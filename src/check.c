@@ -240,6 +240,9 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
                                          const struct sphgi_scheme *scheme)
 {
     const char *f = checker.function;
+    /* A period of twice the reach that was rounded on its way is what it was meant to be. Such an
+     * axis has one cell, so that every pair is tested. */
+    const double rounding = geometry->sources.type == SPHG_F64 ? 0x1p-51 : 0x1p-22;
     if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, must be >= 0 and finite", f,
                geometry->skin);
@@ -251,9 +254,9 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
         if (!(period >= 0) || !isfinite(period))
             REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.period[%d] is %g, must be >= 0 and finite", f,
                    (int)a, period);
-        if (period > 0 && period < least)
+        if (period > 0 && period < least * (1 - rounding))
             REFUSE(SPHG_ERROR_ARGUMENT,
-                   "%s: geometry.period[%d] is %.9g, must be at least 2 (H + skin) = %.9g", f,
+                   "%s: geometry.period[%d] is %.17g, must be at least 2 (H + skin) = %.17g", f,
                    (int)a, period, least);
     }
     return SPHG_OK;

@@ -29,9 +29,10 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
                      "%s: sources[%d].neighbors have %d targets, sources[0] has %d", f, (int)s,
                      (int)n->target_count, (int)plan->target_count);
     if (plan->scheme.radius > n->radius)
-        SPHGI_REFUSE(SPHG_ERROR_SIZE,
-                     "%s: scheme.support_radius is %.9g, sources[%d].neighbors were built for %.9g",
-                     f, plan->scheme.radius, (int)s, n->radius);
+        SPHGI_REFUSE(
+            SPHG_ERROR_SIZE,
+            "%s: scheme.support_radius is %.17g, sources[%d].neighbors were built for %.17g", f,
+            plan->scheme.radius, (int)s, n->radius);
     if (n->part_of && plan->own_set < 0)
         plan->own_set = s;
     plan->sets[s].neighbors = n;

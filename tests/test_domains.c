@@ -4,6 +4,8 @@
 #include "support/pairs.h"
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 static scene empty_scene(const test_case *test, int count)
@@ -174,7 +176,8 @@ static void periods_shorter_than_twice_the_reach_are_refused(const test_case *te
     scheme.support_radius = 1;
     for (int k = 0; k < 4; k++) {
         sphg_neighbors *neighbors = pairs_neighbors(context);
-        const double shorter[] = {nextafter(2, 0), 1, -5, NAN};
+        const double unit = test->precision == TEST_F32 ? 0x1p-24 : 0x1p-53;
+        const double shorter[] = {2 * (1 - 16 * unit), 1, -5, NAN};
         sphg_geometry geometry = scene_geometry(&particles);
         geometry.period[test->dimension - 1] = shorter[k];
         assert_int_equal(sphg_neighbors_search(context, neighbors, &scheme, &geometry),
@@ -186,6 +189,38 @@ static void periods_shorter_than_twice_the_reach_are_refused(const test_case *te
         geometry.skin = 0;
         assert_int_equal(sphg_neighbors_search(context, neighbors, &scheme, &geometry), SPHG_OK);
     }
+}
+
+/* Three tenths are not half of six tenths: a period of 2 H up to rounding is meant and searched;
+ * one that is shorter is refused with digits that say so. */
+static void periods_of_twice_the_reach_may_be_rounded(const test_case *test)
+{
+    sphg_context *context = fixture_context();
+    sphg_neighbors *neighbors = pairs_neighbors(context);
+    random_state random = random_seeded(73);
+    const bool narrow = test->precision == TEST_F32;
+    const double H = narrow ? (double)nextafterf(0.1f * 3, 1) : 0.1 * 3;
+    const double period = narrow ? (double)0.6f : 0.6;
+    assert_true(period < 2 * H);
+    scene particles = empty_scene(test, 110);
+    for (int axis = 0; axis < test->dimension; axis++)
+        particles.period[axis] = period;
+    scatter_in_box(&particles, H, 1, &random);
+    assert_true(rows_require_search_exact(context, neighbors, &particles, H, "a rounded box") >
+                110);
+
+    sphg_scheme scheme = {0};
+    scheme.dimension = test->dimension;
+    scheme.support_radius = H;
+    sphg_geometry geometry = scene_geometry(&particles);
+    geometry.period[0] = 2 * H * (1 - (narrow ? 0x1p-20 : 0x1p-49));
+    assert_int_equal(sphg_neighbors_search(context, neighbors, &scheme, &geometry),
+                     SPHG_ERROR_ARGUMENT);
+    const char *message = sphg_last_message(context);
+    double said[2] = {0};
+    assert_int_equal(sscanf(strstr(message, "] is ") + 5, "%lf", &said[0]), 1);
+    assert_int_equal(sscanf(strstr(message, " = ") + 3, "%lf", &said[1]), 1);
+    assert_true(said[0] < said[1]);
 }
 
 /* ---- Extent ------------------------------------------------------------------------------- */
@@ -333,6 +368,7 @@ static const test_entry entries[] = {
     EACH(periodic_lattice_has_no_boundary),
     EACH(periodic_targets_need_not_be_sources),
     EACH(periods_shorter_than_twice_the_reach_are_refused),
+    EACH(periods_of_twice_the_reach_may_be_rounded),
     EACH(two_particles_may_be_as_far_apart_as_numbers_reach),
     EACH(diagonal_line_takes_linear_memory),
     EACH(scattered_magnitudes_take_linear_memory),

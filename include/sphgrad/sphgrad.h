@@ -254,8 +254,9 @@ typedef struct sphg_geometry {
                             two uses. Without a skin */
     double skin;         /* [L], search only: find pairs up to H + skin and keep them until a
                             particle has moved skin / 2; results are exact throughout */
-    double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin), positions anywhere: of
-                            fl(fl(x_i - x_j) + k period) the smallest counts */
+    double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin) up to rounding; positions
+                            anywhere: of fl(fl(x_i - x_j) + k period) the smallest
+                            counts */
 } sphg_geometry;
 
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
