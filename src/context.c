@@ -1,4 +1,5 @@
 #include "context.h"
+#include "check.h"
 #include "cpu.h"
 #include "parallel.h"
 #include <stdarg.h>
@@ -111,19 +112,48 @@ sphg_result sphg_context_create(int32_t version, const sphg_config *config, sphg
     return SPHG_OK;
 }
 
+enum { SCRATCH_BUFFERS = 12 };
+
+static void list_scratch(sphg_context *context, struct sphgi_buffer **buffers)
+{
+    struct sphgi_buffer *all[SCRATCH_BUFFERS] = {
+        &context->workers,       &context->packed,        &context->sums,
+        &context->coefficients,  &context->selection,     &context->sort,
+        &context->plan,          &context->input,         &context->order_grid[0],
+        &context->order_grid[1], &context->order_grid[2], &context->order_grid[3]};
+    memcpy(buffers, all, sizeof all);
+}
+
 void sphg_context_destroy(sphg_context *context)
 {
     if (!context)
         return;
     const struct sphgi_allocator allocator = context->allocator;
-    struct sphgi_buffer *buffers[] = {&context->workers,      &context->packed,    &context->sums,
-                                      &context->coefficients, &context->selection, &context->sort,
-                                      &context->plan,         &context->input};
-    for (size_t k = 0; k < sizeof buffers / sizeof *buffers; ++k)
+    struct sphgi_buffer *buffers[SCRATCH_BUFFERS];
+    list_scratch(context, buffers);
+    for (size_t k = 0; k < SCRATCH_BUFFERS; ++k)
         sphgi_free(&allocator, buffers[k]);
-    for (size_t k = 0; k < 4; ++k)
-        sphgi_free(&allocator, &context->order_grid[k]);
     sphgi_release(&allocator, context, sizeof *context);
+}
+
+sphg_result sphg_context_get_info(sphg_context *context, sphg_context_info *info)
+{
+    const struct sphgi_checker checker = {context, "sphg_context_get_info"};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = sphgi_check_pointer(checker, info, "info");
+    if (!result) {
+        struct sphgi_buffer *buffers[SCRATCH_BUFFERS];
+        list_scratch(context, buffers);
+        *info = (sphg_context_info){.threads = sphgi_threads_left(context),
+                                    .isa = context->isa,
+                                    .openmp = sphgi_has_openmp(),
+                                    .bytes = (int64_t)sizeof *context};
+        for (size_t k = 0; k < SCRATCH_BUFFERS; ++k)
+            info->bytes += (int64_t)buffers[k]->size;
+    }
+    return sphgi_leave(context, result);
 }
 
 const char *sphg_last_message(const sphg_context *context)

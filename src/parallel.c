@@ -1,9 +1,50 @@
+#define _POSIX_C_SOURCE 200809L /* getpid */
 #include "parallel.h"
 #ifdef SPHG_USE_OPENMP
 #include <omp.h>
 #endif
+#if defined(SPHG_USE_OPENMP) && !defined(_WIN32)
+#define HAS_FORK 1
+#include <unistd.h>
+#else
+#define HAS_FORK 0
+#endif
 
 enum { TASKS_PER_THREAD = 8, MOST_THREADS = 1024 };
+
+/* fork() copies OpenMP's belief in its threads, but none of them: the next region of the child
+ * would wait for ever. So the library remembers the process in which it began its first region, the
+ * one number that it keeps outside of contexts: a new context of the child has to know, too. A
+ * number to compare, since a handler of fork() could not be taken back when the library is
+ * unloaded. */
+#if HAS_FORK
+static atomic_long first_region;
+
+static bool lost_threads(void)
+{
+    const long process = atomic_load_explicit(&first_region, memory_order_relaxed);
+    return process && process != (long)getpid();
+}
+
+static bool may_begin_region(void)
+{
+    const long self = (long)getpid();
+    long process = 0;
+    return atomic_compare_exchange_strong_explicit(&first_region, &process, self,
+                                                   memory_order_relaxed, memory_order_relaxed) ||
+           process == self;
+}
+#else
+static bool lost_threads(void)
+{
+    return false;
+}
+
+static bool may_begin_region(void)
+{
+    return true;
+}
+#endif
 
 int32_t sphgi_thread_count(const sphg_config *config)
 {
@@ -15,7 +56,23 @@ int32_t sphgi_thread_count(const sphg_config *config)
     if (!config->parallel_for)
         threads = 1;
 #endif
+    if (!config->parallel_for && lost_threads())
+        threads = 1;
     return sphgi_min32(sphgi_max32(threads, 1), MOST_THREADS);
+}
+
+int32_t sphgi_threads_left(const sphg_context *context)
+{
+    return !context->config.parallel_for && lost_threads() ? 1 : context->threads;
+}
+
+int32_t sphgi_has_openmp(void)
+{
+#ifdef SPHG_USE_OPENMP
+    return 1;
+#else
+    return 0;
+#endif
 }
 
 #ifdef SPHG_USE_OPENMP
@@ -72,7 +129,8 @@ void sphgi_parallel_for(sphg_context *context, sphg_task *task, void *data, int3
     struct guarded guarded = {task, data};
     if (count <= 0)
         return;
-    if (context->config.parallel_for || (context->threads > 1 && count > grain))
+    if (context->config.parallel_for ||
+        (context->threads > 1 && count > grain && may_begin_region()))
         run_by_executor(context, &guarded, count, grain);
     else
         task(data, 0, count, 0);

@@ -351,7 +351,10 @@ static void reports_refuse_bad_handles(const test_case *test)
 {
     subject *own = subject_create(test);
     sphg_neighbors_info info = {0};
+    sphg_context_info context_info = {0};
     int32_t order[SUBJECT_COUNT];
+    assert_int_equal(sphg_context_get_info(own->context, NULL), SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_context_get_info(NULL, &context_info), SPHG_ERROR_ARGUMENT);
     REFUSES(get_info, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
     REFUSES(get_order, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
     REFUSES(get_order, SPHG_ERROR_STATE, "", own->neighbors = own->blank);

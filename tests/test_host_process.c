@@ -1,5 +1,5 @@
 /* The library within its host's process: it prints nothing, leaves locale and signals alone, works
- * on many threads at once and, with one thread, after a fork. */
+ * on many threads at once and after a fork. */
 #include "support/hostile_rows.h"
 #include "support/victim_calls.h"
 #include <locale.h>
@@ -77,7 +77,7 @@ static void calls_leave_the_process_alone(const test_case *test)
     assert_string_equal(setlocale(LC_ALL, NULL), locale);
 }
 
-/* ---- Threads and forks -------------------------------------------------------------------- */
+/* ---- Threads ------------------------------------------------------------------------------ */
 
 enum { HELPERS = 12, ROUNDS = 5 };
 
@@ -132,49 +132,161 @@ static void contexts_work_side_by_side(const test_case *test)
         TEST_REQUIRE(helpers[k].same, "thread %d has other bits", k);
 }
 
-static uint64_t serial_digest(victim *own)
+/* ---- Forks -------------------------------------------------------------------------------- */
+
+enum { FORK_COUNT = 20000 }; /* so many that calls take more than one thread */
+
+typedef struct fork_world {
+    const test_case *test;
+    sphg_scheme scheme;
+    sphg_geometry geometry;
+    fixture_array positions, corrections;
+    hooks *host;
+    sphg_context *old;
+} fork_world;
+
+/* The correction matrices by a context, search included, as a number; 0 where a call failed.
+ * Nothing here ends a case: a child would go on with the parent's. */
+static uint64_t digest_by(const fork_world *own, sphg_context *context)
 {
-    const sphg_config serial = hooks_config(own->host, 1);
-    sphg_context *context = NULL, *living = own->valid->context;
-    if (sphg_context_create(SPHG_VERSION, &serial, &context) != SPHG_OK)
+    sphg_neighbors *neighbors = NULL;
+    const double one = 1;
+    const float one_f32 = 1;
+    const int width = own->corrections.width;
+    memset(own->corrections.data, 0, (size_t)FORK_COUNT * (size_t)width * 8);
+    int failed = sphg_neighbors_create(context, &neighbors) ||
+                 sphg_neighbors_search(context, neighbors, &own->scheme, &own->geometry);
+    const sphg_sources sources = {.neighbors = neighbors,
+                                  .volume = own->corrections.type == SPHG_F64
+                                                ? sphg_view_f64(&one, 0)
+                                                : sphg_view_f32(&one_f32, 0)};
+    failed = failed || sphg_correction(context, &own->scheme, &sources, NULL,
+                                       fixture_view(&own->corrections), sphg_absent());
+    sphg_neighbors_destroy(neighbors);
+    uint64_t digest = UINT64_C(14695981039346656037);
+    const unsigned char *bytes = own->corrections.data;
+    for (size_t k = 0; k < (size_t)FORK_COUNT * (size_t)width * 8; k++)
+        digest = (digest ^ bytes[k]) * UINT64_C(1099511628211);
+    return failed ? 0 : digest | 1;
+}
+
+/* A new context: as many threads, or the host's executor. */
+static uint64_t digest_by_new(const fork_world *own, int threads, hooks_executor *executor)
+{
+    sphg_config config = hooks_config(own->host, threads);
+    config.parallel_for = executor;
+    sphg_context *context = NULL;
+    if (sphg_context_create(SPHG_VERSION, &config, &context))
         return 0;
-    own->valid->context = context;
-    const uint64_t digest = digest_of_calls(own);
-    own->valid->context = living;
+    const uint64_t digest = digest_by(own, context);
     sphg_context_destroy(context);
     return digest;
 }
 
-/* So many that the search takes more than one thread. */
-static void work_in_parallel(const test_case *test)
+static int says_one_thread(sphg_context *context)
 {
-    random_state random = random_seeded(311);
-    cloud points = cloud_random(test->dimension, 20000, test->dimension == 2 ? 140 : 27, &random);
-    const sphg_scheme scheme = fixture_scheme(test, 1);
-    fixture_neighbors(fixture_context_of(2), test, &scheme, &points);
+    sphg_context_info info;
+    return sphg_context_get_info(context, &info) == SPHG_OK && info.threads == 1;
 }
 
-/* The parent has a team of OpenMP threads, which the child has not. */
-static void serial_contexts_work_after_a_fork(const test_case *test)
+/* What goes wrong in a child of the process that computed `expected`: 0, or the number of the step.
+ */
+static int fault_in_child(const fork_world *own, uint64_t expected)
 {
-    victim *own = victim_create(test, 0);
-    const uint64_t expected = serial_digest(own);
-    work_in_parallel(test);
+    sphg_context_info info;
+    if (digest_by(own, own->old) != expected)
+        return 1;
+    if (!says_one_thread(own->old))
+        return 2;
+    if (digest_by_new(own, 2, NULL) != expected || digest_by_new(own, 0, NULL) != expected)
+        return 3;
+    if (digest_by_new(own, 1, NULL) != expected)
+        return 4;
+    const int64_t regions = own->host->regions;
+    if (digest_by_new(own, own->host->workers, hooks_pthreads) != expected ||
+        own->host->regions == regions)
+        return 5;
+    if (sphg_context_get_info(own->old, &info) || info.isa == SPHG_ISA_BEST)
+        return 6;
+    sphg_context_destroy(own->old);
+    return 0;
+}
+
+/* In a child, and in a child of the child: hanging is ended by a signal. */
+static int ended_in_child(const fork_world *own, uint64_t expected, int generations)
+{
     fflush(stdout);
     const pid_t child = fork();
     if (child == 0) {
         alarm(60);
-        _exit(serial_digest(own) == expected ? 0 : 1);
+        int fault = generations > 1 ? ended_in_child(own, expected, generations - 1) : 0;
+        if (!fault)
+            fault = fault_in_child(own, expected);
+        _exit(fault);
     }
     int status = -1;
-    assert_int_equal(waitpid(child, &status, 0), child);
-    TEST_REQUIRE(WIFEXITED(status) && WEXITSTATUS(status) == 0, "the child ended with %d", status);
+    if (child < 0 || waitpid(child, &status, 0) != child)
+        return 100;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 100 + WTERMSIG(status);
+}
+
+static fork_world fork_world_of(const test_case *test)
+{
+    random_state random = random_seeded(311);
+    cloud points =
+        cloud_random(test->dimension, FORK_COUNT, test->dimension == 2 ? 140 : 27, &random);
+    fork_world own = {.test = test, .scheme = fixture_scheme(test, 1), .host = fixture_hooks()};
+    own.positions = fixture_positions(test, &points);
+    own.geometry = fixture_geometry(test, &points, &own.positions);
+    own.corrections = fixture_output(SPHG_F64, FORK_COUNT,
+                                     sphg_correction_width(&own.scheme)); /* room for both */
+    own.corrections.type = test_field_type(test);
+    own.old = fixture_context_of(2);
+    return own;
+}
+
+/* The parent has a team of OpenMP threads, which the child has not. */
+static void contexts_old_and_new_work_after_a_fork(const test_case *test)
+{
+    const fork_world own = fork_world_of(test);
+    const uint64_t expected = digest_by(&own, own.old);
+    assert_true(expected);
+    assert_int_equal(ended_in_child(&own, expected, 2), 0);
+    assert_true(digest_by(&own, own.old) == expected); /* the parent goes on */
+}
+
+/* ---- What a context is ------------------------------------------------------------------- */
+
+static void contexts_say_what_they_are(const test_case *test)
+{
+    (void)test;
+    const sphg_isa sets[] = {SPHG_ISA_BASE, SPHG_ISA_X86_V3, SPHG_ISA_X86_V4, SPHG_ISA_NEON};
+    hooks *host = fixture_hooks();
+    sphg_context_info best, info;
+    FIXTURE_OK(NULL, sphg_context_get_info(fixture_context_with(NULL), &best));
+    assert_int_equal(best.openmp, TEST_OPENMP);
+    assert_true(best.isa != SPHG_ISA_BEST && best.threads >= 1 && best.bytes > 0);
+    for (int k = 0; k < 4; k++) {
+        sphg_context *const context = fixture_context_on(sets[k]);
+        if (!context)
+            continue;
+        FIXTURE_OK(context, sphg_context_get_info(context, &info));
+        assert_int_equal(info.isa, sets[k]);
+        assert_true(sets[k] <= best.isa);
+    }
+    FIXTURE_OK(NULL, sphg_context_get_info(fixture_context_of(3), &info));
+    assert_int_equal(info.threads, TEST_OPENMP ? 3 : 1);
+    sphg_config config = hooks_config(host, 5);
+    config.parallel_for = hooks_reversed;
+    FIXTURE_OK(NULL, sphg_context_get_info(fixture_context_with(&config), &info));
+    assert_int_equal(info.threads, 5);
 }
 
 static const test_entry entries[] = {
     TEST_ENTRY(calls_leave_the_process_alone, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
     TEST_ENTRY(contexts_work_side_by_side, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0, 0),
-    TEST_ENTRY(serial_contexts_work_after_a_fork, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS, 0,
-               0),
+    TEST_ENTRY(contexts_say_what_they_are, TEST_SINGLE_AND_DOUBLE, TEST_3D, 0, 0),
+    TEST_ENTRY(contexts_old_and_new_work_after_a_fork, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               0, 0),
 };
 TEST_MAIN(entries)

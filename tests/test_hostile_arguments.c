@@ -42,11 +42,11 @@ static void every_parameter_has_a_row(const test_case *test)
 static const struct {
     const char *structure, *prefix;
 } prefixes[] = {
-    {"sphg_view", NULL},         {"sphg_neighbors_info", NULL}, {"sphg_stats", NULL},
-    {"sphg_config", "config"},   {"sphg_scheme", "scheme"},     {"sphg_geometry", "geometry"},
-    {"sphg_lists", "lists"},     {"sphg_sources", "sources"},   {"sphg_subset", "subset"},
-    {"sphg_field", "fields"},    {"sphg_request", "request"},   {"sphg_pairs", "pairs"},
-    {"sphg_inversion", "wanted"}};
+    {"sphg_view", NULL},          {"sphg_neighbors_info", NULL}, {"sphg_stats", NULL},
+    {"sphg_config", "config"},    {"sphg_scheme", "scheme"},     {"sphg_geometry", "geometry"},
+    {"sphg_lists", "lists"},      {"sphg_sources", "sources"},   {"sphg_subset", "subset"},
+    {"sphg_field", "fields"},     {"sphg_request", "request"},   {"sphg_pairs", "pairs"},
+    {"sphg_inversion", "wanted"}, {"sphg_context_info", NULL}};
 
 static void require_row(const char *structure, const char *name)
 {

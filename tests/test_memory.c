@@ -425,6 +425,28 @@ static void neighbors_know_what_they_hold(const test_case *test)
     }
 }
 
+/* The same of a context, whose scratch grew with the work. */
+static void contexts_hold_what_they_say(const test_case *test)
+{
+    world *own = world_create(test);
+    for (call which = SEARCH; which <= USE_LISTS; which++) {
+        prepare(own, which);
+        FIXTURE_OK(own->context, perform(own, which));
+        work(own);
+        sphg_context_info info;
+        FIXTURE_OK(own->context, sphg_context_get_info(own->context, &info));
+        sphg_neighbors_destroy(own->neighbors);
+        own->neighbors = NULL;
+        const int64_t before = own->host->live_bytes;
+        sphg_context_destroy(own->context);
+        own->context = NULL;
+        const int64_t held = before - own->host->live_bytes;
+        TEST_REQUIRE(info.bytes == held, "%s: says %lld bytes, held %lld", call_names[which],
+                     (long long)info.bytes, (long long)held);
+        require_clean(own, call_names[which]);
+    }
+}
+
 #define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)
 
 static const test_entry entries[] = {
@@ -432,6 +454,7 @@ static const test_entry entries[] = {
     EACH(failed_build_must_be_repeated),
     EACH(spreading_clouds_allocate_nothing),
     EACH(neighbors_know_what_they_hold),
+    EACH(contexts_hold_what_they_say),
     TEST_ENTRY(warm_calls_allocate_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
 };

@@ -24,7 +24,10 @@
  *           particles are by then.
  * Threads   one call at a time per context, any number of contexts at once; what a call takes
  *           as const may be shared by concurrent calls. Same input, same bits: for any number
- *           of threads, any executor, any split into subsets.
+ *           of threads, any executor, any split into subsets. Children of fork() may use contexts
+ *           old and new: on the calling thread alone, or parallel_for, once OpenMP's threads have
+ *           worked in the parent. Who ran OpenMP there by other means sets threads = 1 in the
+ *           child.
  * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
  *           normal numbers; f64 far beyond. Corrections in a table must be representable, too, and
  *           squares, which have the unit 1 / L^2. Finite input gives NaN or Inf only where A_j - A_i,
@@ -174,6 +177,16 @@ typedef struct sphg_config {
 SPHG_API sphg_result sphg_context_create(int32_t version, const sphg_config *config,
                                          sphg_context **context);
 SPHG_API void sphg_context_destroy(sphg_context *context); /* NULL is ignored */
+
+typedef struct sphg_context_info {
+    int32_t threads; /* that a call takes at most; 1 in a child of fork() without OpenMP's */
+    sphg_isa isa;    /* in use, never BEST; NEON where the base has it */
+    int32_t openmp;  /* 1: compiled in; 0: parallel_for or the calling thread */
+    int64_t bytes;   /* held by the context beside its neighbours */
+} sphg_context_info;
+
+/* Errors: ARGUMENT, BUSY. Cost: O(1). */
+SPHG_API sphg_result sphg_context_get_info(sphg_context *context, sphg_context_info *info);
 
 /* What the last failed call on this context objected to: function, argument, value. Never NULL;
  * valid until the next call. */

@@ -194,6 +194,10 @@ static const argument of_context_create[] = {
 static const probe probes_sphg_context_create[] = {
     PROBE(NULL, call_create_context, of_context_create)};
 
+static const argument of_get_context_info[] = {CONTEXT, ROW("info", POINTER, context_info)};
+static const probe probes_sphg_context_get_info[] = {
+    PROBE(NULL, call_get_context_info, of_get_context_info)};
+
 static const argument of_neighbors_create[] = {CONTEXT, ROW("neighbors", POINTER, neighbors_out)};
 static const probe probes_sphg_neighbors_create[] = {
     PROBE(NULL, call_create_neighbors, of_neighbors_create)};

@@ -22,6 +22,7 @@ typedef struct victim {
     sphg_context **context_out;
     sphg_neighbors *neighbors, **neighbors_out;
     sphg_neighbors_info *info;
+    sphg_context_info *context_info;
     int32_t *order;
     const sphg_scheme *scheme_given;
     const sphg_geometry *geometry_given;

@@ -1,4 +1,5 @@
 #include "victim_calls.h"
+#include <string.h>
 
 /* ---- Calls -------------------------------------------------------------------------------- */
 
@@ -31,6 +32,14 @@ sphg_result call_use_lists(victim *own)
 {
     return sphg_neighbors_use_lists(own->context, own->neighbors, own->scheme_given,
                                     own->geometry_given, own->lists_given);
+}
+
+sphg_result call_get_context_info(victim *own)
+{
+    const sphg_result result = sphg_context_get_info(own->context, own->context_info);
+    if (result == SPHG_OK) /* it depends on what the context did before */
+        memset(own->context_info, 0, sizeof *own->context_info);
+    return result;
 }
 
 sphg_result call_get_info(victim *own)

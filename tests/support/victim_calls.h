@@ -8,6 +8,7 @@ sphg_result call_create_context(victim *own);
 sphg_result call_create_neighbors(victim *own);
 sphg_result call_search(victim *own);
 sphg_result call_use_lists(victim *own);
+sphg_result call_get_context_info(victim *own);
 sphg_result call_get_info(victim *own);
 sphg_result call_get_order(victim *own);
 sphg_result call_evaluate(victim *own);
