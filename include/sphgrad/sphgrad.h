@@ -44,7 +44,7 @@
 #define SPHG_VERSION_PATCH 0
 #define SPHG_VERSION       (SPHG_VERSION_MAJOR * 10000 + SPHG_VERSION_MINOR * 100 + SPHG_VERSION_PATCH)
 
-#ifndef SPHG_API /* predefine to embed the library in another shared object */
+#ifndef SPHG_API /* the build of a static library hides its functions: SPHG_EXPORT_STATIC */
 #if defined(_WIN32) && defined(SPHG_SHARED_BUILD)
 #define SPHG_API __declspec(dllexport)
 #elif defined(_WIN32) && defined(SPHG_SHARED)

@@ -17,4 +17,5 @@ holder=$folder/plugin.so
 [ "$kind" = static ] || holder=$libdir/libsphgrad.so
 set --
 [ "$resident" = OFF ] || set -- resident "$holder"
+[ "$kind" = shared ] || set -- "$@" hides sphg_context_create
 LD_LIBRARY_PATH=$libdir "$folder/host" "$folder/plugin.so" 20 "$@"
