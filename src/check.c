@@ -242,7 +242,8 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
     const char *f = checker.function;
     /* A period of twice the reach that was rounded on its way is what it was meant to be. Such an
      * axis has one cell, so that every pair is tested. */
-    const double rounding = geometry->sources.type == SPHG_F64 ? 0x1p-51 : 0x1p-22;
+    const bool f64 = sphgi_type_of_positions(geometry) == SPHG_F64;
+    const double rounding = f64 ? 0x1p-51 : 0x1p-22;
     if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, must be >= 0 and finite", f,
                geometry->skin);
@@ -267,8 +268,9 @@ sphg_type sphgi_type_of_positions(const sphg_geometry *geometry)
     const sphg_view *some = geometry->sources.x ? &geometry->sources : &geometry->targets;
     if (some->x)
         return some->type;
-    const sphg_type named = geometry->sources.type ? geometry->sources.type : some->type;
-    return named ? named : geometry->precision ? geometry->precision : SPHG_F32;
+    if (geometry->sources.type == SPHG_F64 || some->type == SPHG_F64)
+        return SPHG_F64;
+    return geometry->precision ? geometry->precision : SPHG_F32; /* an absent view is f32, too */
 }
 
 sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,

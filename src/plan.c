@@ -118,7 +118,7 @@ static sphg_result check_needed(struct sphgi_making *making)
         if (!plan->sets[s].volume.count && plan->sets[s].neighbors->source_count > 0)
             SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].volume is absent", f, (int)s);
     if (!plan->target_count)
-        return SPHG_OK;
+        return SPHG_OK; /* nobody's volume and density are read */
     const bool at_targets = plan->adjoint || (plan->transposes[1] && !in_weight) ||
                             (plan->transposes[1] && plan->classic);
     if (at_targets && !plan->target_volume.count)

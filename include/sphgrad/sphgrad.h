@@ -30,8 +30,9 @@
  *           child.
  * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
  *           normal numbers; f64 far beyond. Corrections in a table must be representable, too, and
- *           squares, which have the unit 1 / L^2. Finite input gives NaN or Inf only where A_j - A_i,
- *           a sum, or a ratio of volumes or densities leaves the type (f32: about 1e38).
+ *           squares, which have the unit 1 / L^2. Finite input gives NaN or Inf only where
+ *           A_j - A_i, a sum, or a ratio of volumes or densities leaves the type (f32: about
+ *           1e38).
  * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
  *           error, never NaN; each target's `rank` tells how much could be corrected. */
 #ifndef SPHGRAD_SPHGRAD_H
@@ -268,8 +269,7 @@ typedef struct sphg_geometry {
     double skin;         /* [L], search only: find pairs up to H + skin and keep them until a
                             particle has moved skin / 2; results are exact throughout */
     double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin) up to rounding; positions
-                            anywhere: of fl(fl(x_i - x_j) + k period) the smallest
-                            counts */
+                            anywhere: of fl(fl(x_i - x_j) + k period) the smallest counts */
 } sphg_geometry;
 
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
