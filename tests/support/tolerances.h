@@ -15,7 +15,7 @@
     X(oracle_ratio_touched, 16, 4.1, "gate where the threshold acts; plain code reaches 10.1")     \
     X(kernel_constant, 4, 1.23, "sigma and mu2: a rounded fraction, a rounded 1/pi and a product") \
     X(kernel_integral, 16, 2.79, "weighted mean of kernel values, each a few roundings off")       \
-    X(kernel_value, 10, 7.05, "over |f| + q |f'|: q is rounded first, then ten operations")        \
+    X(kernel_value, 10, 7.7, "over |f| + q |f'|: q is rounded first, then ten operations")        \
     X(kernel_slope, 16, 8.77,                                                                      \
       "two values of W at most W(0), and a quadrature of their difference")                        \
     X(solver_single, 10, 2.18, "eigen, svd in f32: double inside, so rounding of the outputs")     \
