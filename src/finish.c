@@ -29,8 +29,8 @@ static void finish_plain(struct sphgi_worker *w, const struct sphgi_field_plan *
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const int32_t d = plan->dimension;
-    const double volume = field->mirrored ? sphgi_power(plan->scheme.radius, d) : 1;
-    const char *each = field->mirrored ? w->volume : NULL;
+    const double volume = field->antisymmetric ? sphgi_power(plan->scheme.radius, d) : 1;
+    const char *each = field->antisymmetric ? w->volume : NULL;
     if (field->sums_gradient)
         w->passes->scale(w->width, field->components * d, sphgi_lane(w, w->reduced, field->sum),
                          w->inverse_h * volume, each, w->jacobian);

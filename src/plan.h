@@ -22,7 +22,7 @@ struct sphgi_field_plan {
     sphg_form form;
     bool accumulate, differentiates; /* gradient, divergence, curl or square is wanted */
     bool forward;                    /* summed over G_ij; else over G_ji, too */
-    bool mirrored;                   /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
+    bool antisymmetric;              /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
     bool contracts;                  /* the divergence is summed as such */
     bool sums_gradient;              /* what gradient and curl are made of is summed */
     int32_t components;

@@ -36,8 +36,8 @@ static void decide_sums(struct sphgi_plan *plan)
 static void decide_field(struct sphgi_field_plan *field, sphg_method method)
 {
     const bool plain = method == SPHG_PLAIN;
-    field->mirrored = plain && field->form == SPHG_ADJOINT;
-    field->forward = field->form <= SPHG_DIRECT || field->mirrored;
+    field->antisymmetric = plain && field->form == SPHG_ADJOINT;
+    field->forward = field->form <= SPHG_DIRECT || field->antisymmetric;
     field->contracts = field->divergence.count && (plain || !field->forward);
     field->sums_gradient = field->gradient.count || field->curl.count ||
                            (field->divergence.count && !field->contracts);

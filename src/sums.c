@@ -34,7 +34,7 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
     }
 }
 
-/* The target's own value is subtracted in the difference form, minus it in a mirrored one; in the
+/* The target's own value is subtracted in the difference form, minus it in an antisymmetric one; in the
  * direct form 0 is. */
 static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
@@ -97,7 +97,7 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
         for (int32_t c = 0; c < field->components; ++c)
             w->passes->fill(w->width, 0, to + (size_t)c * SPHGI_WIDTH * row / SPHGI_ROW);
     }
-    if (field->mirrored)
+    if (field->antisymmetric)
         w->passes->scale(w->width, field->components, to, -1, NULL, to);
 }
 
