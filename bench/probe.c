@@ -193,7 +193,7 @@ double probe_matrix_deviation(const struct probe *probe, sphg_context *context)
 {
     sphg_neighbors *neighbors = search(probe, context);
     const float volume = probe->positions[0][3] * (float)(pi / 48); /* sigma is 8 / pi */
-    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_view_f32(&volume, 0)};
+    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f32(&volume)};
     float(*corrections)[6] = allocate_or_exit((size_t)probe->count, sizeof *corrections);
     uint8_t *ranks = allocate_or_exit((size_t)probe->count, 1);
     double most = 0;

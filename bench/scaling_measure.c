@@ -68,7 +68,7 @@ static void run(struct scene *scene, enum scaling_work work)
                                     .source_count = scene->positions.count,
                                     .target_count = scene->positions.count};
     sphg_sources sources = {.neighbors = scene->neighbors,
-                            .volume = sphg_view_f32(scene->volume.data, 0)};
+                            .volume = sphg_same_f32(scene->volume.data)};
     const sphg_view corrections = numbers_view(&scene->corrections);
     sphg_result result = SPHG_OK;
     if (work == SCALING_GRADIENT)
@@ -87,7 +87,7 @@ static void run(struct scene *scene, enum scaling_work work)
 static void compute_ranks(struct scene *scene, uint8_t *ranks)
 {
     const sphg_sources sources = {.neighbors = scene->neighbors,
-                                  .volume = sphg_view_f32(scene->volume.data, 0)};
+                                  .volume = sphg_same_f32(scene->volume.data)};
     library_check(scene->context,
                   sphg_correction(scene->context, &scene->scheme, &sources, NULL,
                                   numbers_view(&scene->corrections), sphg_view_u8(ranks, 1)));

@@ -135,16 +135,16 @@ static void fields_in_one_call(struct skip_stage *stage, struct outputs *outputs
 static void jacobian_of_masked(struct skip_stage *stage, struct outputs *outputs, int pattern)
 {
     const sphg_sources sources = sources_of(stage, stage->solid.kept);
-    const sphg_subset subset = {.end = stage->solid.positions.count,
-                                .mask = stage->patterns[pattern].mask};
+    const sphg_subset subset =
+        sphg_masked(stage->patterns[pattern].mask, stage->solid.positions.count);
     jacobian_of(stage, &stage->solid, &sources, &subset, outputs, 0);
 }
 
 static void jacobian_of_listed(struct skip_stage *stage, struct outputs *outputs, int pattern)
 {
     const sphg_sources sources = sources_of(stage, stage->solid.kept);
-    const sphg_subset subset = {.end = stage->patterns[pattern].count,
-                                .indices = stage->patterns[pattern].indices};
+    const sphg_subset subset =
+        sphg_listed(stage->patterns[pattern].indices, stage->patterns[pattern].count);
     jacobian_of(stage, &stage->solid, &sources, &subset, outputs, 0);
 }
 

@@ -9,14 +9,13 @@ int main(void)
         x[i][2] = (float)(i / 100), v[i][0] = -x[i][1];
     const sphg_scheme scheme = {.support_radius = 2}; /* 0 elsewhere: 3D, KGC, cubic spline */
     const sphg_view positions = sphg_view_f32(x[0], 12), velocities = sphg_view_f32(v[0], 12);
-    const sphg_geometry block = {.sources = positions, .source_count = 1000, .target_count = 1000};
+    const sphg_geometry block = sphg_all(positions, 1000);
     sphg_context *context = NULL;
     sphg_neighbors *neighbors = NULL;
     int failed = sphg_context_create(SPHG_VERSION, NULL, &context) ||
                  sphg_neighbors_create(context, &neighbors) ||
                  sphg_neighbors_search(context, neighbors, &scheme, &block);
-    const sphg_view volume = sphg_view_f32(&(float){1}, 0); /* stride 0: the same for all */
-    const sphg_sources sources = {.neighbors = neighbors, .volume = volume};
+    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f32(&(float){1})};
     const sphg_view gradients = sphg_view_f32(J[0][0], 36);
     failed = failed || sphg_jacobian(context, &scheme, &sources, NULL, velocities, gradients);
     printf("dvx/dy = %.7f %s\n", (double)J[0][0][1], sphg_last_message(context));

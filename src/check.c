@@ -273,6 +273,17 @@ sphg_type sphgi_type_of_positions(const sphg_geometry *geometry)
     return geometry->precision ? geometry->precision : SPHG_F32; /* an absent view is f32, too */
 }
 
+/* A stride of 0 would put all particles in one place. */
+static sphg_result check_positions(struct sphgi_checker checker, const sphg_view *view,
+                                   const struct sphgi_expected *expected)
+{
+    const sphg_result result = sphgi_check_view(checker, view, expected);
+    if (!result && !sphgi_is_absent(view) && !view->stride && expected->count > 1)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is 0, but there are %d positions",
+               checker.function, expected->name, (int)expected->count);
+    return result;
+}
+
 sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
                                  const struct sphgi_scheme *scheme, bool searched)
 {
@@ -292,12 +303,12 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
                                       .dimension = scheme->dimension,
                                       .count = geometry->source_count,
                                       .required = geometry->source_count > 0};
-    result = sphgi_check_view(checker, &geometry->sources, &expected);
+    result = check_positions(checker, &geometry->sources, &expected);
     expected.name = "geometry.targets";
     expected.count = geometry->target_count;
     expected.required = false;
     if (!result)
-        result = sphgi_check_view(checker, &geometry->targets, &expected);
+        result = check_positions(checker, &geometry->targets, &expected);
     if (result)
         return result;
     if (geometry->precision && geometry->precision != SPHG_F32 && geometry->precision != SPHG_F64)
@@ -367,6 +378,9 @@ sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *
         (!subset->indices && subset->end > target_count))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset is [%d, %d) of %d targets", f, (int)subset->begin,
                (int)subset->end, (int)target_count);
+    if ((subset->indices || subset->mask) && !subset->end && target_count > 0)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset.%s is set, but subset.end is 0; sphg_%s sets both",
+               f, subset->indices ? "indices" : "mask", subset->indices ? "listed" : "masked");
     for (int32_t k = subset->begin; subset->indices && k < subset->end; ++k)
         if (subset->indices[k] < 0 || subset->indices[k] >= target_count)
             REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset.indices[%d] is %d of %d targets", f, (int)k,

@@ -199,6 +199,7 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     n->source_count = g->source_count;
     n->target_count = g->target_count;
     n->found.pairs = 0;
+    atomic_store(&n->places, 0);
     memset(&n->lists, 0, sizeof n->lists);
 }
 

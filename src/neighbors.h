@@ -2,6 +2,7 @@
 #ifndef SPHGI_NEIGHBORS_H
 #define SPHGI_NEIGHBORS_H
 #include "grid.h"
+#include <stdatomic.h>
 #include <string.h>
 
 /* Found pairs, target by target in grid order. A target's ids are padded to a multiple of SPHGI_PAD
@@ -41,6 +42,7 @@ struct sphg_neighbors {
 
     struct sphgi_grid sources, targets; /* targets: unused if same */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
+    atomic_uint_least64_t places;       /* one number for where the targets stand, 0: not known */
     struct sphgi_buffer shared;         /* tables of the grids, then lists */
     struct sphgi_found found;
     struct sphgi_buffer sources_then, targets_then; /* rows at the last search, with a skin */

@@ -1,4 +1,5 @@
 #include "making.h"
+#include "places.h"
 #include "view.h"
 #include <string.h>
 
@@ -36,6 +37,21 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
     if (n->part_of && plan->own_set < 0)
         plan->own_set = s;
     plan->sets[s].neighbors = n;
+    return SPHG_OK;
+}
+
+/* Sums of all sets are added target by target: each must mean the same ones. In other types, or
+ * with other periods, the same place may be another number. */
+static sphg_result check_same_targets(struct sphgi_making *making, int32_t s)
+{
+    const sphg_neighbors *a = making->plan->sets[0].neighbors, *b = making->plan->sets[s].neighbors;
+    if (a->position_type != b->position_type || memcmp(a->period, b->period, sizeof a->period) != 0)
+        return SPHG_OK;
+    const int32_t target = sphgi_first_elsewhere(making->checker.context, a, b);
+    if (target >= 0)
+        SPHGI_REFUSE(SPHG_ERROR_SIZE,
+                     "%s: target %d of sources[%d].neighbors stands elsewhere than in sources[0]",
+                     making->checker.function, (int)target, (int)s);
     return SPHG_OK;
 }
 
@@ -169,6 +185,8 @@ static sphg_result check_counts(struct sphgi_making *making)
     if (request->field_count < 0 || request->field_count > 4096)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: field_count is %d, must be 0 to 4096", f,
                      (int)request->field_count);
+    if (request->fields && !request->field_count)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields is set, but field_count is 0", f);
     const sphg_result missing = sphgi_check_pointer(making->checker, request->sources, "sources");
     if (missing || !request->field_count)
         return missing;
@@ -181,6 +199,9 @@ static sphg_result take_everything(struct sphgi_making *making)
     sphg_result result = SPHG_OK;
     for (int32_t s = 0; s < plan->set_count && !result; ++s)
         result = check_set(making, s);
+    for (int32_t s = 1; s < plan->set_count && !result && !making->checker.context->config.trusted;
+         ++s)
+        result = check_same_targets(making, s);
     if (!result)
         result = sphgi_check_range(making->checker, &plan->scheme, plan->type);
     for (int32_t s = 0; s < plan->set_count && !result; ++s)

@@ -9,6 +9,7 @@
 struct sphgi_stream {
     struct sphgi_columns columns;
     int32_t first, count;
+    bool mirrored; /* of a field: A_j = A_i, the rows are zeros */
 };
 
 struct sphgi_set_plan {
@@ -56,6 +57,7 @@ struct sphgi_plan {
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
+    bool mirrors;                              /* any field, at any set */
     bool mean_volume;                          /* MLS without volumes at the targets */
     int32_t correction_stream, density_stream; /* -1: not needed */
     int32_t sums;

@@ -64,7 +64,23 @@ static sphg_result take_results(struct sphgi_making *making, int32_t k)
     return result;
 }
 
-/* A_i: as a target in difference, adjoint and symmetric; as a source (self term) in direct. */
+/* Does set s carry the values of the targets? */
+static bool is_mirrored(const struct sphgi_making *making, int32_t s, int32_t k)
+{
+    const sphg_field *field = &making->request->fields[k];
+    return field->mirror && sphgi_is_absent(&field->at_sources[s]);
+}
+
+static bool has_mirrors(const struct sphgi_making *making, int32_t k)
+{
+    for (int32_t s = 0; s < making->plan->set_count; ++s)
+        if (is_mirrored(making, s, k) && making->plan->sets[s].neighbors->source_count > 0)
+            return true;
+    return false;
+}
+
+/* A_i: as a target in difference, adjoint and symmetric; as a source (self term), and by what is
+ * mirrored, in direct. */
 static sphg_result take_field_at_target(struct sphgi_making *making, int32_t k)
 {
     struct sphgi_plan *plan = making->plan;
@@ -72,9 +88,17 @@ static sphg_result take_field_at_target(struct sphgi_making *making, int32_t k)
     struct sphgi_field_plan *field = &plan->fields[k];
     const sphg_view absent = sphg_absent();
     const sphg_view *of_set = plan->own_set < 0 ? NULL : &given->at_sources[plan->own_set];
-    const sphg_view *own = given->form == SPHG_DIRECT ? &absent : &given->at_targets;
-    if (sphgi_is_absent(own) && !of_set && given->form != SPHG_DIRECT && field->differentiates &&
-        plan->target_count > 0)
+    const bool direct = given->form == SPHG_DIRECT, mirrors = has_mirrors(making, k);
+    const bool of_set_only = direct && !(mirrors && (!of_set || sphgi_is_absent(of_set)));
+    const sphg_view *own = of_set_only ? &absent : &given->at_targets;
+    const bool read = direct ? mirrors : field->differentiates;
+    plan->mirrors |= mirrors;
+    if (sphgi_is_absent(own) && mirrors && of_set && sphgi_is_absent(of_set))
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: fields[%d].mirror is set, but neither at_targets nor at_sources[%d] is "
+                     "there to be mirrored",
+                     making->checker.function, (int)k, (int)plan->own_set);
+    if (sphgi_is_absent(own) && !of_set && read && plan->target_count > 0)
         SPHGI_REFUSE(
             SPHG_ERROR_ARGUMENT,
             "%s: fields[%d].at_targets is absent, and the targets are part of no source set",
@@ -115,18 +139,28 @@ static void add_streams(struct sphgi_making *making, int32_t s, int32_t first,
     struct sphgi_stream *stream =
         making->streams + (ptrdiff_t)s * making->plan->stream_count + first;
     for (int32_t c = 0; c < components; c += width, ++stream)
-        *stream = (struct sphgi_stream){*columns, c, sphgi_min32(width, components - c)};
+        *stream = (struct sphgi_stream){*columns, c, sphgi_min32(width, components - c), false};
 }
 
 static sphg_result take_field_at_sources(struct sphgi_making *making, int32_t s, int32_t k)
 {
-    const struct sphgi_field_plan *field = &making->plan->fields[k];
+    const struct sphgi_plan *plan = making->plan;
+    const struct sphgi_field_plan *field = &plan->fields[k];
+    const sphg_view *view = &making->request->fields[k].at_sources[s];
+    const int32_t count = plan->sets[s].neighbors->source_count;
     struct sphgi_columns columns = {.count = 0};
+    const bool mirrored = is_mirrored(making, s, k);
+    if (sphgi_is_absent(view) && !mirrored && count > 0 && field->form == SPHG_DIFFERENCE &&
+        field->differentiates)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: fields[%d].at_sources[%d] is absent: set mirror for A_j = A_i, or give "
+                     "one value for all",
+                     making->checker.function, (int)k, (int)s);
     const sphg_result result =
-        sphgi_take_input(making, &making->request->fields[k].at_sources[s],
-                         sphgi_name_view(making, "fields[%d].at_sources[%d]", k, s), field->shape,
-                         0, making->plan->sets[s].neighbors->source_count, &columns);
+        sphgi_take_input(making, view, sphgi_name_view(making, "fields[%d].at_sources[%d]", k, s),
+                         field->shape, 0, count, &columns);
     add_streams(making, s, field->stream, &columns, field->components, SPHGI_ROW);
+    making->streams[(ptrdiff_t)s * plan->stream_count + field->stream].mirrored = mirrored;
     return result;
 }
 
@@ -136,7 +170,7 @@ static bool set_transposes(const struct sphgi_making *making, int32_t s, sphg_fo
     for (int32_t k = 0; k < making->plan->field_count; ++k) {
         const sphg_field *field = &making->request->fields[k];
         if (field->form == form && making->plan->fields[k].differentiates &&
-            !sphgi_is_absent(&field->at_sources[s]))
+            (field->mirror || !sphgi_is_absent(&field->at_sources[s])))
             return true;
     }
     return false;

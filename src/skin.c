@@ -84,6 +84,7 @@ bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sph
     refresh_rows(context, &n->sources, g->source_rows, g->row_size);
     if (!n->same)
         refresh_rows(context, &n->targets, g->target_rows, g->row_size);
+    atomic_store(&n->places, 0);
     n->rebuilt = false;
     n->skin_left = left;
     return true;

@@ -34,16 +34,29 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
     }
 }
 
-/* The target's own value is subtracted in the difference form, minus it in an antisymmetric one; in the
- * direct form 0 is. */
+static bool is_mirrored(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    return w->sweep->set->streams[field->stream].mirrored;
+}
+
+/* What the sums subtract from A_j: A_i in the difference form, -A_i in an antisymmetric one, else
+ * 0. Rows of what is mirrored are zeros: A_j = A_i comes in by subtracting A_i less. */
+static const char *subtracted(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const bool difference = field->form == SPHG_DIFFERENCE;
+    if (is_mirrored(w, field))
+        return difference ? w->zeros : sphgi_lane(w, w->opposite, field->at_target);
+    return difference || field->antisymmetric ? sphgi_lane(w, w->at_target, field->at_target)
+                                              : w->zeros;
+}
+
 static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
-    const char *own = sphgi_lane(w, w->at_target, field->at_target);
-    sum_rows(w, field, vectors_of(w), field->form == SPHG_DIRECT ? w->zeros : own);
+    sum_rows(w, field, vectors_of(w), subtracted(w, field));
     if (field->square.count)
         w->passes->sum_squares(&w->piece, w->sweep->plan->dimension, vectors_of(w),
                                sphgi_square_sums(w->sweep->plan), w->rows[field->stream],
-                               sphgi_partial(w, field->square_sum));
+                               subtracted(w, field), sphgi_partial(w, field->square_sum));
 }
 
 /* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
@@ -72,7 +85,7 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && !field->forward &&
             symmetric == (field->form == SPHG_SYMMETRIC))
-            sum_rows(w, field, SPHGI_TRANSPOSED, w->zeros);
+            sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
     w->passes->sum_vectors(&w->piece, plan->dimension, vectors_of(w), symmetric ? density : NULL,
                            sphgi_partial(w, plan->vector_sum[symmetric]));
@@ -99,6 +112,9 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
     }
     if (field->antisymmetric)
         w->passes->scale(w->width, field->components, to, -1, NULL, to);
+    if (is_mirrored(w, field))
+        w->passes->scale(w->width, field->components, to, field->antisymmetric ? 2 : -1, NULL,
+                         sphgi_lane(w, w->opposite, field->at_target));
 }
 
 void sphgi_load_targets(struct sphgi_worker *w)
@@ -122,6 +138,7 @@ void sphgi_load_targets(struct sphgi_worker *w)
 static void sum_fields(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
+    const size_t lane = SPHGI_WIDTH * sphgi_size_of_type(plan->type);
     sphgi_load_targets(w);
     if (plan->classic && plan->corrects)
         w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted,
@@ -133,6 +150,7 @@ static void sum_fields(struct sphgi_worker *w)
         for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
             w->passes->sum_value(&w->piece, w->rows[field->stream + s],
                                  sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
+                                 subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
                                  sphgi_partial(w, field->value_sum + s * SPHGI_ROW));
     }
     for (int symmetric = 0; symmetric < 2; ++symmetric)

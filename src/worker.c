@@ -41,6 +41,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(partial, (size_t)plan->sums * lanes * lanes, size);
     CARVE(reduced, (size_t)plan->sums * SPHGI_WIDTH, size);
     CARVE(at_target, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
+    CARVE(opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
     CARVE(raw, 16 * SPHGI_WIDTH, size);
     CARVE(coefficients, 16 * SPHGI_WIDTH, size);
     CARVE(lambda_min, SPHGI_WIDTH, size);

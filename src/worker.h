@@ -80,7 +80,8 @@ struct sphgi_worker {
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
     char *staged_positions, *staged_rows, *arrays, *masked_ids, *clean_ids, *local_items;
-    char *partial, *reduced, *at_target, *raw, *coefficients, *lambda_min, *volume, *density;
+    char *partial, *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume,
+        *density;
     char *self, *zeros, *jacobian, *contracted, *extra, *staged_items;
     char *finder_memory;
 };

@@ -204,6 +204,10 @@ static void refuse_bad_geometry(subject *own, subject_call *call)
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.stride += 1);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
             own->geometry.sources.x = shifted(own->geometry.sources.x, 1));
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "sources.stride is 0", own->geometry.sources.stride = 0);
+    REFUSES(call, SPHG_ERROR_ARGUMENT, "targets.stride is 0",
+            own->geometry.targets = own->positions;
+            own->geometry.targets.stride = 0);
     REFUSES(call, SPHG_ERROR_TYPE, "targets", own->geometry.targets = own->positions;
             own->geometry.targets.type = other);
     REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = SPHG_U8);

@@ -263,7 +263,7 @@ static void require_share(const stage *on, const stage_field *field, const stage
             indices[count++] = i;
     }
     const sphg_subset by_mask = {0, n, NULL, mask}, by_range = {begin, end, NULL, NULL};
-    const sphg_subset by_list = {0, count, indices, NULL};
+    const sphg_subset by_list = sphg_listed(indices, count);
     require_subset(on, field, full, &by_mask, mask);
     require_subset(on, field, full, &by_range, range);
     require_subset(on, field, full, &by_list, mask);
@@ -273,7 +273,8 @@ static void require_share(const stage *on, const stage_field *field, const stage
         if (!mask[next])
             listed[entries++] = next;
     }
-    const sphg_subset by_both = {0, entries, listed, mask};
+    sphg_subset by_both = sphg_listed(listed, entries);
+    by_both.mask = entries ? mask : NULL;
     require_subset(on, field, full, &by_both, mask);
 }
 

@@ -82,6 +82,8 @@ static void evaluate_refuses_bad_fields(const test_case *test)
 {
     subject *own = subject_create(test);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields", own->request.fields = NULL);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields is set, but field_count is 0",
+            own->request.field_count = 0);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = -1);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = 4097);
     const int shapes[] = {0, 5, -1, INT_MAX}, forms[] = {-1, 4, INT_MIN, INT_MAX};
@@ -102,6 +104,50 @@ static void evaluate_refuses_bad_fields(const test_case *test)
             own->field.gradient.x = moved(own->vectors_out, 2));
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "at_targets",
             own->sources[0].neighbors = own->lone); /* nobody to look them up from */
+}
+
+/* What is absent stands for 0, which is no value to take a difference to; and a mirror needs what
+ * it shows. */
+static void evaluate_refuses_differences_to_what_is_absent(const test_case *test)
+{
+    subject *own = subject_create(test);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_sources[0] is absent",
+            own->at_sources[0] = sphg_absent());
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_sources[0] is absent",
+            own->at_sources[0] = sphg_absent();
+            own->field.at_targets = own->scalars);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_sources[1] is absent",
+            own->sources[1] = own->sources[0];
+            own->request.set_count = 2; own->at_sources[1] = sphg_absent());
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
+        REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "mirror", own->at_sources[0] = sphg_absent();
+                own->field.form = (sphg_form)form; own->field.mirror = 1);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_targets is absent",
+            own->at_sources[0] = sphg_absent();
+            own->sources[0].neighbors = own->lone; own->field.form = SPHG_DIRECT;
+            own->field.mirror = 1);
+}
+
+/* A mask or a list whose length was forgotten. */
+static void evaluate_refuses_subsets_without_an_end(const test_case *test)
+{
+    subject *own = subject_create(test);
+    static const uint8_t mask[SUBJECT_COUNT] = {1};
+    static const int32_t some[] = {3};
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset.mask is set, but subset.end is 0",
+            own->subset = (sphg_subset){.mask = mask});
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset.indices is set, but subset.end is 0",
+            own->subset = (sphg_subset){.indices = some});
+    const sphg_subset empty[] = {sphg_listed(some, 0),
+                                 sphg_range(0, 0),
+                                 sphg_masked(NULL, 0),
+                                 {.begin = 1, .end = 1, .indices = some},
+                                 {.begin = 7, .end = 7, .mask = mask}};
+    for (size_t k = 0; k < sizeof empty / sizeof *empty; k++) {
+        subject_reset(own);
+        own->subset = empty[k];
+        FIXTURE_OK(own->context, evaluate(own));
+    }
 }
 
 static void evaluate_refuses_corrections_that_plain_has_not(const test_case *test)
@@ -562,6 +608,8 @@ static const test_entry entries[] = {
     EACH(evaluate_refuses_bad_schemes),
     EACH(evaluate_refuses_bad_sources),
     EACH(evaluate_refuses_bad_fields),
+    EACH(evaluate_refuses_differences_to_what_is_absent),
+    EACH(evaluate_refuses_subsets_without_an_end),
     EACH(evaluate_refuses_corrections_that_plain_has_not),
     EACH(evaluate_refuses_operators_that_a_shape_has_not),
     EACH(two_sided_forms_need_tables_and_densities),

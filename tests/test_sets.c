@@ -103,33 +103,29 @@ static fixture_array table_of(const two_sets *sets, int t)
     return table;
 }
 
+/* lacks: a bit per set that has no field and mirrors the targets' instead. */
 static stage_result evaluate_fluid(const two_sets *sets, const stage_field *field,
-                                   const fixture_array *tables)
+                                   const fixture_array *tables, unsigned lacks)
 {
     const stage *on = &sets->whole;
     sphg_type type = test_field_type(on->test);
-    int d = on->points.dimension, n = sets->fluid;
-    int width = fixture_width(field->shape, d);
-    stage_result found = {fixture_output(type, n, d * width), fixture_output(type, n, 0),
-                          fixture_output(type, n, 0),
-                          fixture_output(type, n, field->form == SPHG_DIRECT ? width : 0),
-                          fixture_output(type, n, field->form == SPHG_DIRECT && width == 1)};
+    int width = fixture_width(field->shape, on->points.dimension);
+    stage_result found = stage_outputs(on, field, sets->fluid);
     sphg_sources sources[2];
     sphg_view at_sources[2];
     sources_of(sets, 0, sources);
     for (int s = 0; s < 2; s++) {
         fixture_array numbers = fixture_numbers(type, sets->part[s].count, width,
                                                 part_of(sets, field->numbers, s, width));
-        at_sources[s] = fixture_view(&numbers);
+        at_sources[s] = lacks >> s & 1 ? sphg_absent() : fixture_view(&numbers);
         if (tables)
             sources[s].correction = stage_table_view(on, &tables[s]);
     }
     sphg_field asked = {.shape = field->shape, .form = field->form, .at_sources = at_sources};
-    asked.gradient = fixture_view(&found.gradient);
-    if (field->form == SPHG_DIRECT)
-        asked.value = fixture_view(&found.value);
-    if (found.square.width)
-        asked.square = fixture_view(&found.square);
+    const fixture_array own = fixture_numbers(type, sets->fluid, width, field->numbers);
+    asked.mirror = lacks != 0;
+    asked.at_targets = lacks & 1 ? fixture_view(&own) : sphg_absent();
+    stage_ask_for(&found, &asked);
     sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
     request.field_count = 1;
     FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
@@ -144,12 +140,92 @@ static void two_source_sets_equal_their_union(const test_case *test)
     for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
         stage_field field = {SPHG_SCALAR, (sphg_form)form,
                              stage_random_field(&sets.whole, SPHG_SCALAR, 21)};
-        stage_result found = evaluate_fluid(&sets, &field, form >= SPHG_SYMMETRIC ? tables : NULL);
+        stage_result found =
+            evaluate_fluid(&sets, &field, form >= SPHG_SYMMETRIC ? tables : NULL, 0);
         for (int i = 0; i < sets.fluid; i += 7)
             stage_compare(&sets.whole, &field, &found, i);
     }
 }
 
+/* What target i sees of a field that some sets mirror: its own value there. */
+static double *seen_by(const two_sets *sets, const stage_field *field, unsigned lacks, int i)
+{
+    const int width = fixture_width(field->shape, sets->whole.points.dimension);
+    const size_t item = (size_t)width * sizeof(double);
+    double *numbers = test_memory((size_t)sets->whole.points.count * item);
+    for (int j = 0; j < sets->whole.points.count; j++)
+        memcpy(numbers + j * width,
+               field->numbers + (lacks >> (j >= sets->fluid) & 1 ? i : j) * width, item);
+    return numbers;
+}
+
+static void a_mirrored_field_has_the_value_of_the_target(const test_case *test)
+{
+    const two_sets sets = split_block(test);
+    const fixture_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
+            for (unsigned lacks = 1; lacks < 4; lacks++) {
+                const stage_field field = {(sphg_shape)shape, (sphg_form)form,
+                                           stage_random_field(&sets.whole, (sphg_shape)shape, 24)};
+                const stage_result found =
+                    evaluate_fluid(&sets, &field, form >= SPHG_SYMMETRIC ? tables : NULL, lacks);
+                for (int i = 0; i < sets.fluid; i += 11) {
+                    stage_field seen = field;
+                    seen.numbers = seen_by(&sets, &field, lacks, i);
+                    stage_compare(&sets.whole, &seen, &found, i);
+                }
+            }
+}
+
+/* Lists of the host from the search's own pairs. */
+static sphg_neighbors *brought_between(const two_sets *sets, int targets, int sources)
+{
+    const stage *on = &sets->whole;
+    const sphg_geometry geometry = geometry_between(sets, targets, sources);
+    const rows found = rows_listed(on->context, sets->from[targets][sources], &on->scheme, NULL);
+    const sphg_lists lists = {.offsets = found.offsets, .indices = found.indices};
+    return fixture_lists(on->context, &on->scheme, &geometry, &lists);
+}
+
+/* Without a set that the targets are part of, and through lists of the host. Classic gradients of
+ * what is constant are nothing but rounding. */
+static void probes_may_look_into_mirrors(const test_case *test)
+{
+    const two_sets sets = split_block(test);
+    const stage *on = &sets.whole;
+    const fixture_array own = fixture_numbers(test_field_type(test), sets.fluid, 1,
+                                              stage_random_field(on, SPHG_SCALAR, 25));
+    const sphg_view absent = sphg_absent();
+    fixture_array found[3];
+    for (int way = 0; way < 3; way++) {
+        sphg_sources sources[2];
+        sources_of(&sets, 0, sources);
+        if (way == 2)
+            sources[1].neighbors = brought_between(&sets, 0, 1);
+        found[way] = fixture_output(own.type, sets.fluid, test->dimension);
+        const sphg_view one_by_one = fixture_view(&own);
+        const sphg_field asked = {.shape = SPHG_SCALAR,
+                                  .form = way ? SPHG_DIRECT : SPHG_DIFFERENCE,
+                                  .at_sources = &absent,
+                                  .at_targets = one_by_one,
+                                  .gradient = fixture_view(&found[way]),
+                                  .mirror = 1};
+        const sphg_request request = {.sources = sources + 1,
+                                      .fields = &asked,
+                                      .set_count = 1,
+                                      .field_count = 1,
+                                      .target_volume = sources[0].volume};
+        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    }
+    for (int i = 0; i < sets.fluid; i++)
+        for (int c = 0; c < test->dimension; c++)
+            TEST_REQUIRE(fixture_get(&found[0], i, c) == 0, "a difference to itself, target %d", i);
+    TEST_REQUIRE(fixture_get(&found[1], 0, test->dimension - 1) != 0, "no wall is seen");
+    fixture_require_close(&found[1], &found[2], "through lists");
+}
+
+/* In the direct form; a difference to it would be -A_i, which nobody means. */
 static void an_absent_field_is_zero(const test_case *test)
 {
     two_sets sets = split_block(test);
@@ -165,7 +241,7 @@ static void an_absent_field_is_zero(const test_case *test)
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
         found[way] = fixture_output(type, n, test->dimension);
-        sphg_field asked = {.shape = SPHG_SCALAR, .at_sources = at_sources};
+        sphg_field asked = {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = at_sources};
         asked.gradient = fixture_view(&found[way]);
         sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
         request.field_count = 1;
@@ -173,16 +249,6 @@ static void an_absent_field_is_zero(const test_case *test)
                    sphg_evaluate(sets.whole.context, &sets.whole.scheme, &request));
     }
     assert_true(fixture_same_bits(&found[0], &found[1]));
-}
-
-/* Lists of the host from the search's own pairs. */
-static sphg_neighbors *brought_between(const two_sets *sets, int targets, int sources)
-{
-    const stage *on = &sets->whole;
-    const sphg_geometry geometry = geometry_between(sets, targets, sources);
-    const rows found = rows_listed(on->context, sets->from[targets][sources], &on->scheme, NULL);
-    const sphg_lists lists = {.offsets = found.offsets, .indices = found.indices};
-    return fixture_lists(on->context, &on->scheme, &geometry, &lists);
 }
 
 /* Through lists of the host, with a field that one of the sets has not. */
@@ -200,8 +266,10 @@ static void lists_of_the_host_may_lack_a_field(const test_case *test)
         for (int s = 0; s < 2 && way; s++)
             sources[s].neighbors = brought_between(&sets, 0, s);
         found[way] = fixture_output(here.type, sets.fluid, test->dimension);
-        const sphg_field asked = {
-            .shape = SPHG_SCALAR, .at_sources = at_sources, .gradient = fixture_view(&found[way])};
+        const sphg_field asked = {.shape = SPHG_SCALAR,
+                                  .form = SPHG_DIRECT,
+                                  .at_sources = at_sources,
+                                  .gradient = fixture_view(&found[way])};
         const sphg_request request = {
             .sources = sources, .fields = &asked, .set_count = 2, .field_count = 1};
         FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
@@ -516,6 +584,10 @@ static void a_crowd_of_sources_is_summed_alike_for_any_subset(const test_case *t
 static const test_entry entries[] = {
     TEST_ENTRY(two_source_sets_equal_their_union, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(a_mirrored_field_has_the_value_of_the_target, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(probes_may_look_into_mirrors, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
     TEST_ENTRY(an_absent_field_is_zero, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS,
                0),
     TEST_ENTRY(lists_of_the_host_may_lack_a_field, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

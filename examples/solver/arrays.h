@@ -26,7 +26,7 @@ static inline sphg_view tensors(tensor *first) /* rows apart, so that 2D fits, t
 }
 static inline sphg_view everywhere(const double *value) /* one item for all particles */
 {
-    return sphg_view_f64(value, 0);
+    return sphg_same_f64(value);
 }
 
 static inline double dot(const double *a, const double *b)

@@ -51,8 +51,7 @@ sphg_neighbors *sph_neighbors(const struct sph *sph)
 
 void sph_search(const struct sph *sph, sphg_neighbors *neighbors, int32_t count, vector *x)
 {
-    const sphg_geometry geometry = {
-        .sources = vectors(x), .source_count = count, .target_count = count};
+    const sphg_geometry geometry = sphg_all(vectors(x), count);
     const double start = stopwatch_now();
     sph_check(sph, sphg_neighbors_search(sph->context, neighbors, &sph->plain, &geometry));
     sph->spent[SEARCH] += stopwatch_now() - start;

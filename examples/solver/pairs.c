@@ -32,7 +32,7 @@ static void grow(struct pairs *pairs, int64_t count)
 void pairs_update(const struct sph *sph, const sphg_sources *sources, int32_t first, int32_t end,
                   struct pairs *pairs)
 {
-    const sphg_subset subset = {.begin = first, .end = end};
+    const sphg_subset subset = sphg_range(first, end);
     for (;;) {
         sphg_pairs filled = {.offsets = pairs->offsets,
                              .indices = pairs->indices,

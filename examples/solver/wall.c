@@ -76,11 +76,9 @@ void contact_free(struct contact *contact)
 static void find_pairs(const struct sph *sph, struct contact *contact,
                        const struct particles *fluid)
 {
-    const sphg_geometry geometry = {.sources = vectors(contact->wall->x),
-                                    .source_count = contact->wall->count,
-                                    .targets = vectors(fluid->x),
-                                    .target_count = fluid->count,
-                                    .skin = contact->skin};
+    sphg_geometry geometry = sphg_targets_apart(vectors(fluid->x), fluid->count,
+                                                vectors(contact->wall->x), contact->wall->count);
+    geometry.skin = contact->skin;
     const double start = stopwatch_now();
     sph_check(sph, sphg_neighbors_search(sph->context, contact->neighbors, &sph->plain, &geometry));
     sph->spent[SEARCH] += stopwatch_now() - start;
@@ -112,7 +110,7 @@ static double sum(const struct sph *sph, const sphg_scheme *scheme, struct conta
     const double one = 1, start = stopwatch_now();
     const sphg_view ones = everywhere(&one), v = vectors(contact->wall->v);
     const sphg_view table = sphg_view_f64(contact->correction, 6 * sizeof *contact->correction);
-    const sphg_subset near = {.end = contact->near_count, .indices = contact->near};
+    const sphg_subset near = sphg_listed(contact->near, contact->near_count);
     sphg_field fields[2] = {direct_field(SPHG_SCALAR, &ones), direct_field(SPHG_VECTOR, &v)};
     sphg_request request = {.sources = sources,
                             .set_count = 1,

@@ -70,7 +70,7 @@ extern "C" {
     X(ERROR_ARGUMENT, 1, "null pointer, negative count, or a value out of range")                  \
     X(ERROR_VERSION, 2, "compiled against a header this library cannot serve")                     \
     X(ERROR_TYPE, 3, "a view does not have the precision of the neighbours")                       \
-    X(ERROR_SIZE, 4, "counts, dimensions or radii of neighbours and request disagree")             \
+    X(ERROR_SIZE, 4, "counts, dimensions, radii or targets of neighbours and request disagree")            \
     X(ERROR_STATE, 5, "the neighbours were never built, or their last build failed")               \
     X(ERROR_UNSUPPORTED, 6, "not on this machine, or no such operator for this shape")             \
     X(ERROR_CAPACITY, 7, "an output array is too small; the size needed was reported")             \
@@ -101,7 +101,8 @@ typedef enum sphg_shape {
 /* Strided view. Item k starts at (char *)x + k * stride; its numbers follow one another. Only if
  * y (and z) are set, the second (third) component of a vector, or row of a tensor, starts there:
  * separate arrays, or 2 x 2 results in 3 x 3 storage. z is not used in 2D.
- * stride 0, inputs only: one item for all (uniform volume, constant field). x NULL: absent. */
+ * stride 0, inputs but positions only: one item for all (uniform volume, constant field). x NULL:
+ * absent. */
 typedef struct sphg_view {
     const void *x, *y, *z; /* an output is written through them all the same */
     ptrdiff_t stride;      /* [byte], multiple of the number's size; may be negative */
@@ -135,6 +136,16 @@ static inline sphg_view sphg_xyz_f64(const double *x, const double *y, const dou
     sphg_view view = {x, y, z, stride, SPHG_F64};
     return view;
 }
+static inline sphg_view sphg_same_f32(const float *first) /* one item for all */
+{
+    sphg_view view = {first, NULL, NULL, 0, SPHG_F32};
+    return view;
+}
+static inline sphg_view sphg_same_f64(const double *first)
+{
+    sphg_view view = {first, NULL, NULL, 0, SPHG_F64};
+    return view;
+}
 static inline sphg_view sphg_absent(void)
 {
     sphg_view view = {NULL, NULL, NULL, 0, SPHG_F32};
@@ -160,8 +171,8 @@ typedef struct sphg_config {
     int32_t threads; /* 0: as many as OpenMP has; 1: the calling thread alone, no OpenMP region;
                         with parallel_for: the number of its workers */
     sphg_isa isa;    /* BEST, or for tests; BASE: same bits on every x86-64 machine */
-    int32_t trusted; /* 1: do not look for bad numbers in positions, volumes and lists; arguments
-                        are always checked */
+    int32_t trusted; /* 1: do not look for bad numbers in positions, volumes and lists, nor compare
+                        the targets of source sets; arguments are always checked */
     void *(*allocate)(size_t size, size_t alignment, void *user); /* both or neither */
     void (*release)(void *memory, size_t size, void *user);
     void (*log)(sphg_result result, const char *message, void *user); /* hears each failure */
@@ -272,6 +283,23 @@ typedef struct sphg_geometry {
                             anywhere: of fl(fl(x_i - x_j) + k period) the smallest counts */
 } sphg_geometry;
 
+/* The usual ways; set precision, list_free, skin and period afterwards. */
+static inline sphg_geometry sphg_targets_apart(sphg_view targets, int32_t target_count,
+                                               sphg_view sources, int32_t source_count)
+{
+    sphg_geometry geometry = {sources,      targets, source_count, target_count,
+                              (sphg_type)0, 0,       0,            {0, 0, 0}};
+    return geometry;
+}
+static inline sphg_geometry sphg_all(sphg_view positions, int32_t count) /* over all */
+{
+    return sphg_targets_apart(sphg_absent(), count, positions, count);
+}
+static inline sphg_geometry sphg_own_and_ghosts(sphg_view positions, int32_t own, int32_t ghosts)
+{ /* the first `own` are targets; sources are these and the ghosts behind them */
+    return sphg_targets_apart(sphg_absent(), own, positions, own + ghosts);
+}
+
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
  * duplicates; i itself is skipped. Set one of the three groups. */
 typedef struct sphg_lists {
@@ -333,7 +361,7 @@ typedef struct sphg_sources {
     const sphg_neighbors *neighbors;
     sphg_view volume;     /* V_j [L^d] >= 0; not read by CMLS in DIFFERENCE and DIRECT */
     sphg_view density;    /* rho_j; read in SYMMETRIC only */
-    sphg_view correction; /* C_j; read in ADJOINT and SYMMETRIC, unless this set's A_j are absent */
+    sphg_view correction; /* C_j; read in ADJOINT and SYMMETRIC, unless this set's A_j are 0 */
 } sphg_sources;
 
 /* Some of the targets. Arrays stay indexed by target; what is not selected is not touched. */
@@ -341,7 +369,23 @@ typedef struct sphg_subset {
     int32_t begin, end;     /* targets [begin, end), or the items [begin, end) of indices */
     const int32_t *indices; /* NULL, or target indices without duplicates */
     const uint8_t *mask;    /* NULL, or target_count bytes: 0 leaves a target out */
-} sphg_subset;
+} sphg_subset;              /* indices or mask with end = 0: refused, unless there are no targets */
+
+static inline sphg_subset sphg_range(int32_t begin, int32_t end)
+{
+    sphg_subset subset = {begin, end, NULL, NULL};
+    return subset;
+}
+static inline sphg_subset sphg_masked(const uint8_t *mask, int32_t target_count)
+{
+    sphg_subset subset = {0, target_count, NULL, mask};
+    return subset;
+}
+static inline sphg_subset sphg_listed(const int32_t *indices, int32_t count) /* 0: nobody */
+{
+    sphg_subset subset = {0, count, count ? indices : NULL, NULL};
+    return subset;
+}
 
 /* The summand over j. `A G` is A G (gradient), A . G (divergence) or G x A (curl). */
 typedef enum sphg_form {
@@ -361,8 +405,10 @@ typedef struct sphg_field {
     sphg_shape shape; /* of A */
     sphg_form form;
     int32_t accumulate;          /* 1: add to what the outputs hold */
-    const sphg_view *at_sources; /* A_j [a], a view per source set; absent view: A_j = 0 */
-    sphg_view at_targets;        /* A_i [a]; absent: from the set the targets are part of */
+    const sphg_view *at_sources; /* A_j [a], a view per source set. Absent view: A_j = A_i with
+                                    `mirror`, else 0, and refused in DIFFERENCE */
+    sphg_view at_targets;        /* A_i [a]; absent: from the set the targets are part of. DIRECT:
+                                    read by `mirror` only, where that set has none */
     sphg_view value;             /* DIRECT only: sum A_j Phi_j(x_i) [a], shape as A, self included.
                                     Classic: exact on linear fields; others: sum A_j V_j W */
     sphg_view gradient;          /* [a/L] scalar -> vector, vector -> tensor */
@@ -370,6 +416,8 @@ typedef struct sphg_field {
     sphg_view curl;              /* [a/L] vector -> vector, in 2D -> scalar */
     sphg_view square;            /* [a/L^2] DIRECT scalar only: sum A_j |G_ij|^2, for diagonals of
                                     pressure systems; classic: self included */
+    int32_t mirror;              /* 1: sources of sets whose view is absent carry the value of the
+                                    target that looks at them, as walls do pressure: A_j = A_i */
 } sphg_field;
 
 /* Sums over the targets of one call whose corrections were computed. */
@@ -382,10 +430,11 @@ typedef struct sphg_stats {
 } sphg_stats;
 
 typedef struct sphg_request {
-    const sphg_sources *sources; /* their sums add up, moments included */
+    const sphg_sources *sources; /* their sums add up, moments included. All have the same targets
+                                    in the same places and order: compared unless `trusted` */
     const sphg_field *fields;
-    int32_t set_count; /* sources, >= 1 */
-    int32_t field_count;
+    int32_t set_count;   /* sources, 1 to 4096 */
+    int32_t field_count; /* 0 to 4096; 0: fields is NULL */
     const sphg_subset *subset; /* NULL: all targets */
 
     /* The targets' side. Absent: from the source set that the targets are part of. */

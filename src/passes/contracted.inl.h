@@ -128,17 +128,19 @@ static void add_product(int32_t width, int32_t dimension, sphg_shape shape, cons
 /* ---- Squares -------------------------------------------------------------------------------- */
 
 SPHGI_TEMPLATE void squares_as(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
-                               const real *rows, void *partial, bool three, bool trace, bool wide)
+                               const real *rows, const real *own, void *partial, bool three,
+                               bool trace, bool wide)
 {
     const int d = three ? 3 : 2, sums = trace ? 1 : d * (d + 1) / 2;
     for (int32_t p = 0; p < piece->parts; ++p) {
         struct listed list = first_listed(piece, p, wide);
+        const vec off = splat(own[piece->lane[p]]);
         vec sum[6];
         for (int c = 0; c < sums; ++c)
             sum[c] = begin_sum(piece, p, partial, c);
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
              k += LANES, list = after(list, LANES)) {
-            const vec a = gather_rows(rows, list).x;
+            const vec a = gather_rows(rows, list).x - off;
             vec g[3];
             vectors_at(piece, k, vectors, three, g);
             for (int b = 0; b < d; ++b)
@@ -151,32 +153,35 @@ SPHGI_TEMPLATE void squares_as(const struct sphgi_piece *piece, enum sphgi_vecto
 }
 
 SPHGI_TEMPLATE void squares_ids(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
-                                const void *rows, void *partial, bool three, bool trace)
+                                const void *rows, const void *own, void *partial, bool three,
+                                bool trace)
 {
     if (piece->wide)
-        squares_as(piece, vectors, rows, partial, three, trace, true);
+        squares_as(piece, vectors, rows, own, partial, three, trace, true);
     else
-        squares_as(piece, vectors, rows, partial, three, trace, false);
+        squares_as(piece, vectors, rows, own, partial, three, trace, false);
 }
 
 SPHGI_TEMPLATE void squares_in(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
-                               int32_t sums, const void *rows, void *partial, bool three)
+                               int32_t sums, const void *rows, const void *own, void *partial,
+                               bool three)
 {
     if (sums > 1)
-        squares_ids(piece, SPHGI_FACTORS, rows, partial, three, false);
+        squares_ids(piece, SPHGI_FACTORS, rows, own, partial, three, false);
     else if (vectors == SPHGI_FACTORS)
-        squares_ids(piece, SPHGI_FACTORS, rows, partial, three, true);
+        squares_ids(piece, SPHGI_FACTORS, rows, own, partial, three, true);
     else
-        squares_ids(piece, SPHGI_GRADIENTS, rows, partial, three, true);
+        squares_ids(piece, SPHGI_GRADIENTS, rows, own, partial, three, true);
 }
 
 static void sum_squares(const struct sphgi_piece *piece, int32_t dimension,
-                        enum sphgi_vectors vectors, int32_t sums, const void *rows, void *partial)
+                        enum sphgi_vectors vectors, int32_t sums, const void *rows, const void *own,
+                        void *partial)
 {
     if (dimension == 3)
-        squares_in(piece, vectors, sums, rows, partial, true);
+        squares_in(piece, vectors, sums, rows, own, partial, true);
     else
-        squares_in(piece, vectors, sums, rows, partial, false);
+        squares_in(piece, vectors, sums, rows, own, partial, false);
 }
 
 /* sum_ab C_ab (C S)_ab */

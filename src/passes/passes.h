@@ -226,11 +226,12 @@ struct sphgi_passes {
     void (*sum_divergence)(const struct sphgi_piece *piece, int32_t dimension, sphg_shape shape,
                            enum sphgi_vectors vectors, const void *const *rows,
                            const void *at_target, void *partial);
-    /* sum A_j g g^T: one sum for its trace, d (d + 1) / 2 for its triangle */
+    /* sum (A_j - at_target) g g^T: one sum for its trace, d (d + 1) / 2 for its triangle */
     void (*sum_squares)(const struct sphgi_piece *piece, int32_t dimension,
-                        enum sphgi_vectors vectors, int32_t sums, const void *rows, void *partial);
+                        enum sphgi_vectors vectors, int32_t sums, const void *rows,
+                        const void *at_target, void *partial);
     void (*sum_value)(const struct sphgi_piece *piece, const void *rows, int32_t count,
-                      void *partial);
+                      const void *at_target, void *partial);
     void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension,
                         enum sphgi_vectors vectors, const void *rows, void *partial);
     void (*sum_volume)(const struct sphgi_piece *piece, void *partial);

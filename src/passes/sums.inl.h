@@ -152,23 +152,25 @@ static void sum_field(const struct sphgi_piece *piece, int32_t dimension,
         field_in(piece, vectors, rows, count, at_target, partial, false);
 }
 
-/* sum A_j PHI_j */
+/* sum (A_j - at_target) PHI_j */
 SPHGI_TEMPLATE void value_as(const struct sphgi_piece *piece, const real *rows, int32_t count,
-                             void *partial, bool wide)
+                             const real *at_target, void *partial, bool wide)
 {
     for (int32_t p = 0; p < piece->parts; ++p) {
         struct listed list = first_listed(piece, p, wide);
-        vec sum[4];
-        for (int32_t c = 0; c < 4; ++c)
+        vec sum[4], a[4];
+        for (int32_t c = 0; c < 4; ++c) {
             sum[c] = c < count ? begin_sum(piece, p, partial, c) : splat(R(0));
+            a[c] = c < count ? splat(at_target[c * SPHGI_WIDTH + piece->lane[p]]) : splat(R(0));
+        }
         for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
              k += LANES, list = after(list, LANES)) {
             const struct four row = gather_rows(rows, list);
             const vec phi = from(piece, SPHGI_PHI, k);
-            sum[0] += row.x * phi;
-            sum[1] += row.y * phi;
-            sum[2] += row.z * phi;
-            sum[3] += row.w * phi;
+            sum[0] += (row.x - a[0]) * phi;
+            sum[1] += (row.y - a[1]) * phi;
+            sum[2] += (row.z - a[2]) * phi;
+            sum[3] += (row.w - a[3]) * phi;
         }
         for (int32_t c = 0; c < count; ++c)
             *partial_of(partial, c, piece->lane[p]) = sum[c];
@@ -176,12 +178,12 @@ SPHGI_TEMPLATE void value_as(const struct sphgi_piece *piece, const real *rows, 
 }
 
 static void sum_value(const struct sphgi_piece *piece, const void *rows, int32_t count,
-                      void *partial)
+                      const void *at_target, void *partial)
 {
     if (piece->wide)
-        value_as(piece, rows, count, partial, true);
+        value_as(piece, rows, count, at_target, partial, true);
     else
-        value_as(piece, rows, count, partial, false);
+        value_as(piece, rows, count, at_target, partial, false);
 }
 
 /* sum g, or sum rho_j g with the density in the first number of the rows */

@@ -116,6 +116,10 @@ static int spoil_shape(victim *own, int number, trial *made)
     {                                                                                              \
         path, HOSTILE_##kind, AT(member), 0, 0, 0, NULL, NULL                                      \
     }
+#define POSITIVE(path, member)                                                                     \
+    {                                                                                              \
+        path, HOSTILE_COUNT, AT(member), HOSTILE_POSITIVE, 0, 0, NULL, NULL                        \
+    }
 #define VIEW(path, member, more)                                                                   \
     {                                                                                              \
         path, HOSTILE_VIEW, AT(member), more, 0, 0, NULL, NULL                                     \
@@ -233,18 +237,12 @@ static const probe probes_sphg_neighbors_get_order[] = {PROBE(NULL, call_get_ord
 
 #define REQUEST                                                                                    \
     ROW("request", POINTER, request_given), ROW("request.sources", POINTER, request.sources),      \
-        ROW("request.fields", POINTER, request.fields), {"request.set_count",                      \
-                                                         HOSTILE_COUNT,                            \
-                                                         AT(request.set_count),                    \
-                                                         HOSTILE_POSITIVE,                         \
-                                                         0,                                        \
-                                                         0,                                        \
-                                                         NULL,                                     \
-                                                         NULL},                                    \
-        ROW("request.field_count", COUNT, request.field_count), FREE("request.subset"),            \
+        ROW("request.fields", POINTER, request.fields),                                            \
+        POSITIVE("request.set_count", request.set_count),                                          \
+        POSITIVE("request.field_count", request.field_count), FREE("request.subset"),              \
         ENUM("fields.shape", field.shape, SPHG_SCALAR, SPHG_TENSOR),                               \
         ENUM("fields.form", field.form, SPHG_DIFFERENCE, SPHG_ADJOINT), FREE("fields.accumulate"), \
-        SPECIAL("fields.at_sources", spoil_lookup),                                                \
+        FREE("fields.mirror"), SPECIAL("fields.at_sources", spoil_lookup),                         \
         ROW("fields.at_sources", NUMBERS, at_sources[0]), FREE("request.stats")
 
 static const argument of_evaluate[] = {
@@ -256,7 +254,7 @@ static const argument of_evaluate[] = {
     VIEW("sources.volume", sources[0].volume, REQUIRED),
     ROW("sources.volume", VOLUMES, sources[0].volume),
     SUBSET,
-    VIEW("fields.at_sources", at_sources[0], 0),
+    VIEW("fields.at_sources", at_sources[0], REQUIRED),
     VIEW("fields.at_targets", field.at_targets, 0),
     VIEW("fields.gradient", field.gradient, OUTPUT | VECTOR),
     VIEW("request.correction", request.correction, OUTPUT),

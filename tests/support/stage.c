@@ -102,9 +102,9 @@ static sphg_view wanted(const fixture_array *array)
     return array->width ? fixture_view(array) : sphg_absent();
 }
 
-static stage_result empty_result(const stage *on, const stage_field *field)
+stage_result stage_outputs(const stage *on, const stage_field *field, int targets)
 {
-    int n = on->points.count, d = on->points.dimension;
+    int n = targets, d = on->points.dimension;
     sphg_type type = test_field_type(on->test);
     int value_width = field->form == SPHG_DIRECT ? fixture_width(field->shape, d) : 0;
     int square_width = field->form == SPHG_DIRECT && field->shape == SPHG_SCALAR;
@@ -116,6 +116,15 @@ static stage_result empty_result(const stage *on, const stage_field *field)
     return result;
 }
 
+void stage_ask_for(const stage_result *outputs, sphg_field *asked)
+{
+    asked->gradient = wanted(&outputs->gradient);
+    asked->divergence = wanted(&outputs->divergence);
+    asked->curl = wanted(&outputs->curl);
+    asked->value = wanted(&outputs->value);
+    asked->square = wanted(&outputs->square);
+}
+
 /* asks: a bit per result */
 static stage_result evaluate(const stage *on, const stage_field *field, const fixture_array *table,
                              const sphg_subset *subset, unsigned asks)
@@ -124,20 +133,16 @@ static stage_result evaluate(const stage *on, const stage_field *field, const fi
     fixture_array numbers =
         fixture_numbers(test_field_type(on->test), on->points.count, width, field->numbers);
     sphg_view at_sources = fixture_view(&numbers);
-    stage_result result = empty_result(on, field);
+    stage_result result = stage_outputs(on, field, on->points.count);
     sphg_sources sources = stage_sources(on);
     sources.correction = stage_table_view(on, table);
     sphg_field asked = {.shape = field->shape, .form = field->form, .at_sources = &at_sources};
-    const struct {
-        sphg_view *view;
-        const fixture_array *array;
-    } results[] = {{&asked.gradient, &result.gradient},
-                   {&asked.divergence, &result.divergence},
-                   {&asked.curl, &result.curl},
-                   {&asked.value, &result.value},
-                   {&asked.square, &result.square}};
+    stage_ask_for(&result, &asked);
+    sphg_view *const views[] = {&asked.gradient, &asked.divergence, &asked.curl, &asked.value,
+                                &asked.square};
     for (int k = 0; k < 5; k++)
-        *results[k].view = asks >> k & 1 ? wanted(results[k].array) : sphg_absent();
+        if (!(asks >> k & 1))
+            *views[k] = sphg_absent();
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
     request.subset = subset;

@@ -43,6 +43,11 @@ typedef struct stage_result {
     fixture_array gradient, divergence, curl, value, square;
 } stage_result;
 
+/* Outputs of every operator the shape and form have, for so many targets; and their place in a
+ * request. */
+stage_result stage_outputs(const stage *on, const stage_field *field, int targets);
+void stage_ask_for(const stage_result *outputs, sphg_field *asked);
+
 /* table: NULL: corrections are computed in the same sweep. Two-sided forms need it. */
 stage_result stage_apply(const stage *on, const stage_field *field, const fixture_array *table);
 stage_result stage_apply_to(const stage *on, const stage_field *field, const fixture_array *table,
