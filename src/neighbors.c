@@ -1,5 +1,6 @@
 #include "neighbors.h"
 #include "check.h"
+#include "entries.h"
 #include "kernel.h"
 #include "lists.h"
 #include "parallel.h"
@@ -12,6 +13,17 @@ enum { GRAIN = 4096 }; /* particles */
 
 /* ---- Life ----------------------------------------------------------------------------------- */
 
+sphg_neighbors *sphgi_neighbors_make(sphg_context *context)
+{
+    sphg_neighbors *made = sphgi_allocate(&context->allocator, sizeof *made);
+    if (made) {
+        memset(made, 0, sizeof *made);
+        made->found.most_pairs = -1;
+        made->allocator = context->allocator;
+    }
+    return made;
+}
+
 sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighbors)
 {
     const struct sphgi_checker checker = {context, "sphg_neighbors_create"};
@@ -22,13 +34,8 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
         return result;
     result = sphgi_check_pointer(checker, neighbors, "neighbors");
     if (!result) {
-        sphg_neighbors *made = sphgi_allocate(&context->allocator, sizeof *made);
-        if (made) {
-            memset(made, 0, sizeof *made);
-            made->found.most_pairs = -1;
-            made->allocator = context->allocator;
-            *neighbors = made;
-        } else
+        *neighbors = sphgi_neighbors_make(context);
+        if (!*neighbors)
             result = sphgi_fail_memory(context, checker.function);
     }
     return sphgi_leave(context, result);
@@ -239,8 +246,8 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
     return result;
 }
 
-static sphg_result search(struct sphgi_checker checker, sphg_neighbors *n,
-                          const struct sphgi_scheme *scheme, const sphg_geometry *given)
+sphg_result sphgi_neighbors_search(struct sphgi_checker checker, sphg_neighbors *n,
+                                   const struct sphgi_scheme *scheme, const sphg_geometry *given)
 {
     struct sphgi_geometry g = geometry_of(given, scheme->dimension);
     sphg_result result = read_geometry(checker, given, &g);
@@ -274,7 +281,7 @@ sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbo
         return result;
     result = check_build(checker, neighbors, scheme, geometry, true, &checked);
     if (!result)
-        result = search(checker, neighbors, &checked, geometry);
+        result = sphgi_neighbors_search(checker, neighbors, &checked, geometry);
     return sphgi_leave(context, result);
 }
 

@@ -105,4 +105,25 @@ static inline const char *sphgi_target_row(const sphg_neighbors *neighbors, int3
     return (const char *)sphgi_target_grid(neighbors)->rows.data + (size_t)place * size;
 }
 
+/* Of the host's lists: the target's, and how long it says it is. */
+static inline int64_t sphgi_host_row(const sphg_lists *lists, int32_t target, int32_t worker,
+                                     const int32_t **ids)
+{
+    if (lists->offsets) {
+        *ids = lists->indices + lists->offsets[target];
+        return lists->offsets[target + 1] - lists->offsets[target];
+    }
+    if (lists->rows) {
+        *ids = lists->rows[target];
+        return lists->lengths[target];
+    }
+    *ids = NULL;
+    return lists->row(target, worker, ids, lists->user);
+}
+
+static inline bool sphgi_is_host_row(const int32_t *ids, int64_t count)
+{
+    return count >= 0 && count <= INT32_MAX && (count == 0 || ids);
+}
+
 #endif

@@ -1,5 +1,6 @@
 /* Pairs one by one: export as CSR, and G_ij. */
 #include "check.h"
+#include "entries.h"
 #include "kernel.h"
 #include "parallel.h"
 #include "plan.h"
@@ -255,6 +256,38 @@ sphg_result sphg_pair_gradients(sphg_context *context, const sphg_scheme *scheme
     if (!result)
         result = export_pairs(&e);
     return sphgi_leave(context, result);
+}
+
+/* ---- For other entries ---------------------------------------------------------------------- */
+
+static sphg_result keep_pairs(struct exporting *e, struct sphgi_rows *rows)
+{
+    const struct sphgi_allocator *allocator = &e->checker.context->allocator;
+    sphg_result result = count_pairs(e);
+    if (result)
+        return result;
+    const size_t offsets = (size_t)e->rows + 1, pairs = (size_t)e->offsets[e->rows];
+    if (!sphgi_reserve(allocator, &rows->offsets, offsets, sizeof *e->offsets) ||
+        !sphgi_reserve(allocator, &rows->indices, pairs + 1, sizeof(int32_t)))
+        return sphgi_fail_memory(e->checker.context, e->checker.function);
+    e->pairs->indices = rows->indices.data;
+    result = fill_pairs(e);
+    memcpy(rows->offsets.data, e->offsets, offsets * sizeof *e->offsets);
+    return result;
+}
+
+sphg_result sphgi_list_pairs(struct sphgi_checker checker, const struct sphgi_scheme *scheme,
+                             const sphg_neighbors *neighbors, struct sphgi_rows *rows)
+{
+    const sphg_scheme plain = {
+        .dimension = scheme->dimension, .method = SPHG_PLAIN, .support_radius = scheme->radius};
+    const sphg_sources sources = {.neighbors = neighbors};
+    const sphg_request request = {.sources = &sources, .set_count = 1};
+    struct sphgi_plan plan;
+    sphg_pairs pairs = {.offsets = NULL};
+    struct exporting e = {.checker = checker, .plan = &plan, .pairs = &pairs};
+    const sphg_result result = sphgi_plan_make(checker, &plain, &request, SPHGI_FOR_PAIRS, &plan);
+    return result ? result : keep_pairs(&e, rows);
 }
 
 /* ---- One pair ------------------------------------------------------------------------------- */

@@ -298,21 +298,6 @@ void sphgi_block_task(void *data, int32_t begin, int32_t end, int32_t number)
 
 /* ---- The host's lists ----------------------------------------------------------------------- */
 
-static int64_t host_row(const sphg_lists *lists, int32_t target, int32_t worker,
-                        const int32_t **ids)
-{
-    if (lists->offsets) {
-        *ids = lists->indices + lists->offsets[target];
-        return lists->offsets[target + 1] - lists->offsets[target];
-    }
-    if (lists->rows) {
-        *ids = lists->rows[target];
-        return lists->lengths[target];
-    }
-    *ids = NULL;
-    return lists->row(target, worker, ids, lists->user);
-}
-
 void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
@@ -328,8 +313,8 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         if (target < 0)
             continue;
         const int32_t *ids;
-        const int64_t count = host_row(&n->lists, target, number, &ids);
-        if (count < 0 || count > INT32_MAX || (count > 0 && !ids)) {
+        const int64_t count = sphgi_host_row(&n->lists, target, number, &ids);
+        if (!sphgi_is_host_row(ids, count)) {
             if (w.tally->bad_target < 0 || target < w.tally->bad_target) {
                 w.tally->bad_target = target;
                 w.tally->bad_index = SPHGI_BAD_LENGTH;

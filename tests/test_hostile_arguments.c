@@ -46,7 +46,7 @@ static const struct {
     {"sphg_config", "config"},    {"sphg_scheme", "scheme"},     {"sphg_geometry", "geometry"},
     {"sphg_lists", "lists"},      {"sphg_sources", "sources"},   {"sphg_subset", "subset"},
     {"sphg_field", "fields"},     {"sphg_request", "request"},   {"sphg_pairs", "pairs"},
-    {"sphg_inversion", "wanted"}, {"sphg_context_info", NULL}};
+    {"sphg_inversion", "wanted"}, {"sphg_context_info", NULL},   {"sphg_list_fault", NULL}};
 
 static void require_row(const char *structure, const char *name)
 {

@@ -9,11 +9,6 @@ enum { BYTES = VICTIM_SLOTS * VICTIM_SLOT_BYTES };
 
 /* ---- Calls that the table of functions lacks ---------------------------------------------- */
 
-static void prepare_order_of_lists(victim *own)
-{
-    own->neighbors = own->listed;
-}
-
 static void prepare_list_free(victim *own)
 {
     own->geometry.list_free = 1;
@@ -61,7 +56,7 @@ static void prepare_gradients_of_pairs_alone(victim *own)
 }
 
 static const probe extra[] = {
-    {prepare_order_of_lists, call_get_order, NULL, 0},
+    {prepare_listed, call_get_order, NULL, 0},
     {prepare_list_free, call_search, NULL, 0},
     {prepare_skin, call_search, NULL, 0},
     {prepare_periodic, call_search, NULL, 0},
@@ -96,7 +91,7 @@ static cold cold_call(victim *own, const probe *tested)
     require_ok(sphg_neighbors_create(made.context, &made.neighbors));
     own->context = made.context;
     own->neighbors = made.neighbors;
-    if (tested->call == call_get_order)
+    if (tested->call == call_get_order || tested->call == call_check)
         own->neighbors = own->built;
     if (tested->prepare)
         tested->prepare(own);

@@ -76,6 +76,7 @@ extern "C" {
     X(ERROR_CAPACITY, 7, "an output array is too small; the size needed was reported")             \
     X(ERROR_NOT_FINITE, 8, "a position is NaN or infinite")                                        \
     X(ERROR_BUSY, 9, "the context is in use by another call")                                      \
+    X(ERROR_LISTS, 10, "neighbour lists lack pairs or name them twice")                            \
     X(ERROR_MEMORY, -1, "the allocator returned NULL")                                             \
     X(ERROR_INDEX, -2, "a neighbour index is out of range")                                        \
     X(ERROR_VOLUME, -3, "a volume is negative or not finite")
@@ -347,6 +348,31 @@ SPHG_API sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighb
  */
 SPHG_API sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors *neighbors,
                                              sphg_neighbors_info *info);
+
+typedef enum sphg_fault {
+    SPHG_FAULT_NONE = 0,
+    SPHG_FAULT_LENGTH = 1,    /* negative, or without indices */
+    SPHG_FAULT_INDEX = 2,     /* no source */
+    SPHG_FAULT_DOUBLED = 3,   /* the list names a neighbour twice */
+    SPHG_FAULT_ONE_SIDED = 4, /* it lacks a neighbour whose own list has the target */
+    SPHG_FAULT_MISSING = 5    /* it lacks a neighbour, as the other end does */
+} sphg_fault;
+
+/* What is wrong with the lowest target whose list is, and how many others are. */
+typedef struct sphg_list_fault {
+    sphg_fault kind;
+    int32_t target, source; /* -1: none */
+    int32_t faulty;         /* targets with a fault, this one included */
+    double distance;        /* [L] r of the pair; 0 for lengths and indices */
+} sphg_list_fault;
+
+/* For hosts under development: are all pairs with r < H there, once and from both ends? Searches
+ * the positions of the last build again, with the scheme's H, and compares, lists of the library
+ * too. More than that is no fault. fault may be NULL; the message has the same.
+ * Errors: ARGUMENT, SIZE, STATE, LISTS, BUSY; MEMORY, INDEX. Cost: a search, pairs exported, and a
+ * search among them per index. */
+SPHG_API sphg_result sphg_neighbors_check(sphg_context *context, const sphg_scheme *scheme,
+                                          const sphg_neighbors *neighbors, sphg_list_fault *fault);
 
 /* order[k]: the k-th source on the library's path through space, source_count items. Sort your
  * particles by it now and then: operators are fastest on data in this order.

@@ -5,7 +5,7 @@ cd "$1" || exit 1
 
 layer_of() {
     case $1 in
-        evaluate.c | pairs.c | neighbors.c | small_matrices.c) echo 4 ;;
+        evaluate.c | pairs.c | neighbors.c | list_check.c | entries.h | small_matrices.c) echo 4 ;;
         plan.* | plan_fields.c | plan_views.c | plan_sums.* | units.* | making.h | selection.* | tally.* | worker.* | clean.* | group.c | corrections.* | finish.* | sums.* | stage.* | traverse.* | sweep.* | svd.*) echo 3 ;;
         neighbors.h | places.* | skin.* | find.* | lists.* | grid.* | lattice.c | sort.c | surroundings.c) echo 3 ;;
         context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.* | float_environment.*) echo 2 ;;

@@ -88,11 +88,23 @@ static sphg_result operate(world *own, fuzz_bytes *from, const sphg_neighbors *o
     return sphg_evaluate(own->context, &own->scheme, &request);
 }
 
+/* Kept lists are right. Those of the host are shared by all objects, so that any fault may be. */
+static sphg_result check(world *own, const sphg_neighbors *object)
+{
+    sphg_list_fault fault = {.kind = SPHG_FAULT_NONE};
+    const sphg_result result = sphg_neighbors_check(own->context, &own->scheme, object, &fault);
+    const int named = result == SPHG_ERROR_LISTS || result == SPHG_ERROR_INDEX;
+    FUZZ_REQUIRE((fault.kind != SPHG_FAULT_NONE) == named, "fault %d: %s", (int)fault.kind,
+                 sphg_last_message(own->context));
+    return result == SPHG_ERROR_LISTS ? SPHG_OK : result;
+}
+
 static sphg_result question(world *own, fuzz_bytes *from, const sphg_neighbors *object)
 {
     sphg_neighbors_info info;
+    sphg_context_info context_info;
     const sphg_view tensors = sphg_view_f32(own->out, 36);
-    switch (fuzz_byte(from) % 4) {
+    switch (fuzz_byte(from) % 6) {
     case 0:
         return sphg_neighbors_get_info(own->context, object, &info);
     case 1:
@@ -100,9 +112,13 @@ static sphg_result question(world *own, fuzz_bytes *from, const sphg_neighbors *
     case 2:
         return sphg_eigen(own->context, 3, MOST, tensors, sphg_view_f32(own->more, 12),
                           sphg_absent());
-    default:
+    case 3:
         return sphg_svd(own->context, MOST, tensors, sphg_absent(), sphg_view_f32(own->more, 12),
                         sphg_absent());
+    case 4:
+        return sphg_context_get_info(own->context, &context_info);
+    default:
+        return check(own, object);
     }
 }
 

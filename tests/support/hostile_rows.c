@@ -235,6 +235,11 @@ static const argument of_get_order[] = {CONTEXT, ROW("neighbors", BUILT, neighbo
                                         ROW("order", POINTER, order)};
 static const probe probes_sphg_neighbors_get_order[] = {PROBE(NULL, call_get_order, of_get_order)};
 
+static const argument of_check[] = {CONTEXT, SCHEME, ROW("neighbors", BUILT, neighbors),
+                                    FREE("fault")};
+static const probe probes_sphg_neighbors_check[] = {PROBE(NULL, call_check, of_check),
+                                                    PROBE(prepare_listed, call_check, of_check)};
+
 #define REQUEST                                                                                    \
     ROW("request", POINTER, request_given), ROW("request.sources", POINTER, request.sources),      \
         ROW("request.fields", POINTER, request.fields),                                            \

@@ -23,6 +23,7 @@ typedef struct victim {
     sphg_neighbors *neighbors, **neighbors_out;
     sphg_neighbors_info *info;
     sphg_context_info *context_info;
+    sphg_list_fault *list_fault;
     int32_t *order;
     const sphg_scheme *scheme_given;
     const sphg_geometry *geometry_given;

@@ -52,6 +52,11 @@ sphg_result call_get_order(victim *own)
     return sphg_neighbors_get_order(own->context, own->neighbors, own->order);
 }
 
+sphg_result call_check(victim *own)
+{
+    return sphg_neighbors_check(own->context, own->scheme_given, own->neighbors, own->list_fault);
+}
+
 sphg_result call_evaluate(victim *own)
 {
     return sphg_evaluate(own->context, own->scheme_given, own->request_given);
@@ -117,6 +122,11 @@ sphg_result call_svd(victim *own)
 }
 
 /* ---- Variants of the valid call ----------------------------------------------------------- */
+
+void prepare_listed(victim *own)
+{
+    own->neighbors = own->listed;
+}
 
 void prepare_with_targets(victim *own)
 {

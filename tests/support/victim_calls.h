@@ -11,6 +11,7 @@ sphg_result call_use_lists(victim *own);
 sphg_result call_get_context_info(victim *own);
 sphg_result call_get_info(victim *own);
 sphg_result call_get_order(victim *own);
+sphg_result call_check(victim *own);
 sphg_result call_evaluate(victim *own);
 sphg_result call_correction(victim *own);
 sphg_result call_gradient(victim *own);
@@ -23,6 +24,8 @@ sphg_result call_invert_moments(victim *own);
 sphg_result call_eigen(victim *own);
 sphg_result call_svd(victim *own);
 
+/* By lists of the host. */
+void prepare_listed(victim *own);
 /* Targets apart from the sources. */
 void prepare_with_targets(victim *own);
 /* SYMMETRIC, with tables, volumes and densities on both sides. */
