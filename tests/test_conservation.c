@@ -1,6 +1,6 @@
 /* What the two-sided forms conserve and what they do not (docs/theory.md, forms). Sums are taken
  * in double over forces that the library stored, relative to the sum of their sizes. */
-#include "support/stage.h"
+#include "support/lacking.h"
 
 /* A sum that should vanish, beside the sum of the sizes of its terms. */
 typedef struct balance {
@@ -279,6 +279,43 @@ static void adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient(const t
     TEST_WITHIN(adjointness, fabs(work) / size / on.scene.unit, "flux");
 }
 
+/* ---- Lists that lack pairs -------------------------------------------------------------------
+ */
+
+static void lists_cut_at_both_ends_conserve(const test_case *test)
+{
+    const stage whole = full_rank_stage(test);
+    const stage on = stage_lacking(&whole, STAGE_CUT_AT_BOTH_ENDS);
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+        require_linear(&on, SPHG_SCALAR, (sphg_form)form, "scalar");
+        require_linear(&on, SPHG_TENSOR, (sphg_form)form, "tensor");
+    }
+    require_angular(&on, SPHG_SCALAR, SPHG_ADJOINT, "scalar");
+    TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_TENSOR) / on.scene.unit, on.name);
+    if (test->method == SPHG_PLAIN)
+        return;
+    require_full_rank(&on);
+    require_angular(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric tensor");
+}
+
+/* Half lists, and lists that are cut at one end. */
+static void one_sided_lists_conserve_nothing(const test_case *test)
+{
+    const stage whole = full_rank_stage(test);
+    for (int lack = STAGE_HALF; lack <= STAGE_CUT; lack++) {
+        const stage on = stage_lacking(&whole, (stage_lack)lack);
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+            const double *force = forces_of(&on, SPHG_SCALAR, (sphg_form)form);
+            const double linear = linear_imbalance(&on, force);
+            const double angular = angular_imbalance(&on, force);
+            TEST_REQUIRE(linear > .01 && angular > .001, "off by %g, %g only: %s", linear, angular,
+                         on.name);
+        }
+        const double work = work_imbalance(&on, SPHG_TENSOR);
+        TEST_REQUIRE(work > .001, "work off by %g only: %s", work, on.name);
+    }
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(adjoint_conserves_linear_momentum, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
@@ -304,5 +341,9 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(lists_cut_at_both_ends_conserve, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(one_sided_lists_conserve_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
 };
 TEST_MAIN(entries)

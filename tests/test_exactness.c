@@ -1,7 +1,7 @@
 /* First-order exactness: linear fields have their exact gradient at every particle of full rank,
  * wherever it lies. Positions are multiples of 2^-10 and fields have small integer slopes, so
  * that fields are exact in f32 too and all error is the library's own. */
-#include "support/stage.h"
+#include "support/lacking.h"
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -160,6 +160,37 @@ static void linear_fields_are_exact(const test_case *test)
     }
 }
 
+/* Corrections come from the lists that are summed: what is missing costs rank, not exactness. */
+static void linear_fields_are_exact_on_lists_that_lack_pairs(const test_case *test)
+{
+    const stage whole = make_stage(test, &exact_scenes[jittered]);
+    for (int lack = 0; lack < STAGE_LACKS; lack++) {
+        const stage on = stage_lacking(&whole, (stage_lack)lack);
+        const quality good = judge(&on);
+        TEST_REQUIRE(good.full >= .7 * on.points.count, "only %d: %s", good.full, on.name);
+        check_linear(&on, &good, SPHG_DIFFERENCE);
+        if (test_is_classic(test))
+            check_linear(&on, &good, SPHG_DIRECT);
+    }
+}
+
+static void corrections_of_other_lists_are_far_from_exact(const test_case *test)
+{
+    const stage whole = make_stage(test, &exact_scenes[jittered]);
+    const double *j = jacobians[test->dimension - 2];
+    const fixture_array table = stage_table(&whole);
+    const stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                               linear_vectors(&whole.points, start, j)};
+    for (int lack = 0; lack < STAGE_LACKS; lack++) {
+        const stage on = stage_lacking(&whole, (stage_lack)lack);
+        const stage_result found = stage_apply(&on, &field, &table);
+        double worst = 0;
+        for (int i = 0; i < on.points.count; i++)
+            worst = fmax(worst, fabs(fixture_get(&found.gradient, i, 0) - j[0]));
+        TEST_REQUIRE(worst > .2, "off by %g only: %s", worst, on.name);
+    }
+}
+
 static void linear_scalars_and_tensors_are_exact(const test_case *test)
 {
     int d = test->dimension;
@@ -266,6 +297,10 @@ static void plain_sph_is_far_from_exact(const test_case *test)
 static const test_entry entries[] = {
     TEST_ENTRY(linear_fields_are_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_CORRECTED,
                TEST_ALL_KERNELS),
+    TEST_ENTRY(linear_fields_are_exact_on_lists_that_lack_pairs, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
+    TEST_ENTRY(corrections_of_other_lists_are_far_from_exact, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(linear_scalars_and_tensors_are_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
     TEST_ENTRY(rotation_gives_no_strain_and_twice_the_angular_velocity, TEST_ALL_PRECISIONS,

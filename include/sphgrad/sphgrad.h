@@ -302,7 +302,11 @@ static inline sphg_geometry sphg_own_and_ghosts(sphg_view positions, int32_t own
 }
 
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
- * duplicates; i itself is skipped. Set one of the three groups. */
+ * duplicates; i itself is skipped. Set one of the three groups.
+ * Lists that lack pairs are summed as they are (sphg_neighbors_check finds them). DIFFERENCE and
+ * classic DIRECT, with C of the same lists, stay exact on linear fields where rank = d. ADJOINT and
+ * SYMMETRIC keep what they conserve only if pairs lack at both ends: half lists, and lists cut at
+ * a maximum, lose momentum. Rank is lost with neighbours; PLAIN and other DIRECT sums are smaller. */
 typedef struct sphg_lists {
     const int64_t *offsets;     /* CSR: target_count + 1 items, from 0, never falling ... */
     const int32_t *indices;     /* ... and offsets[target_count] source indices */
@@ -369,8 +373,8 @@ typedef struct sphg_list_fault {
 /* For hosts under development: are all pairs with r < H there, once and from both ends? Searches
  * the positions of the last build again, with the scheme's H, and compares, lists of the library
  * too. More than that is no fault. fault may be NULL; the message has the same.
- * Errors: ARGUMENT, SIZE, STATE, LISTS, BUSY; MEMORY, INDEX. Cost: a search, pairs exported, and a
- * search among them per index. */
+ * Errors: ARGUMENT, SIZE, STATE, BUSY; LISTS (fault written); MEMORY, INDEX (fault written, too).
+ * Cost: a search, an export of pairs, a look-up per index. */
 SPHG_API sphg_result sphg_neighbors_check(sphg_context *context, const sphg_scheme *scheme,
                                           const sphg_neighbors *neighbors, sphg_list_fault *fault);
 
