@@ -374,7 +374,7 @@ typedef struct sphg_list_fault {
  * the positions of the last build again, with the scheme's H, and compares, lists of the library
  * too. More than that is no fault. fault may be NULL; the message has the same.
  * Errors: ARGUMENT, SIZE, STATE, BUSY; LISTS (fault written); MEMORY, INDEX (fault written, too).
- * Cost: a search, an export of pairs, a look-up per index. */
+ * Cost: some dozens of searches; memory as the pairs exported. */
 SPHG_API sphg_result sphg_neighbors_check(sphg_context *context, const sphg_scheme *scheme,
                                           const sphg_neighbors *neighbors, sphg_list_fault *fault);
 
