@@ -303,10 +303,11 @@ static inline sphg_geometry sphg_own_and_ghosts(sphg_view positions, int32_t own
 
 /* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
  * duplicates; i itself is skipped. Set one of the three groups.
- * Lists that lack pairs are summed as they are (sphg_neighbors_check finds them). DIFFERENCE and
- * classic DIRECT, with C of the same lists, stay exact on linear fields where rank = d. ADJOINT and
- * SYMMETRIC keep what they conserve only if pairs lack at both ends: half lists, and lists cut at
- * a maximum, lose momentum. Rank is lost with neighbours; PLAIN and other DIRECT sums are smaller. */
+ * Lists that lack pairs are summed as they are: sphg_neighbors_check finds them. DIFFERENCE and
+ * classic DIRECT, with C of the same lists, stay exact on linear fields where rank = d, which fewer
+ * targets reach. ADJOINT and SYMMETRIC keep what they conserve only if pairs lack at both ends:
+ * half lists, and lists cut at a maximum, lose momentum. PLAIN and other DIRECT sums are short of
+ * what is missing. */
 typedef struct sphg_lists {
     const int64_t *offsets;     /* CSR: target_count + 1 items, from 0, never falling ... */
     const int32_t *indices;     /* ... and offsets[target_count] source indices */
