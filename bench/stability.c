@@ -7,16 +7,26 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { OPTION_OUTPUT = 256, OPTION_QUICK, OPTION_SWEEP, OPTION_KERNEL, OPTION_COMPARE };
+enum {
+    OPTION_OUTPUT = 256,
+    OPTION_QUICK,
+    OPTION_SWEEP,
+    OPTION_KERNEL,
+    OPTION_COMPARE,
+    OPTION_SEED
+};
 
 static const struct argp_option option_list[] = {
     {"output", OPTION_OUTPUT, "FOLDER", 0, "where CSV, scripts and pictures go (stability)", 0},
     {"quick", OPTION_QUICK, NULL, 0, "a few places of each sweep, in seconds", 0},
     {"sweep", OPTION_SWEEP, "NAME", 0,
-     "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging", 0},
+     "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging; or "
+     "crowds, which only shows how errors grow",
+     0},
     {"kernel", OPTION_KERNEL, "NAME", 0, "one of the seven smoothing functions (cubic)", 0},
     {"compare", OPTION_COMPARE, "N", 0,
      "targets of a case that stand beside the reference (32, quick 2)", 0},
+    {"seed", OPTION_SEED, "N", 0, "other random numbers (0)", 0},
     {0}};
 
 static error_t parse_option(int key, char *text, struct argp_state *state)
@@ -40,6 +50,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         return 0;
     case OPTION_COMPARE:
         stability->compared = option_integer("compare", text, 1, 1 << 20);
+        return 0;
+    case OPTION_SEED:
+        stability->seed = option_integer("seed", text, 0, 9999);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;

@@ -16,7 +16,8 @@ enum stability_sweep {
     SWEEP_VOLUMES,    /* largest over smallest volume */
     SWEEP_JITTER,     /* share of the spacing by which each coordinate moves */
     SWEEP_MERGING,    /* distance of two layers / H */
-    SWEEPS
+    SWEEP_CROWDS,     /* equal particles in each of five places; runs alone, when asked for */
+    SWEEPS = SWEEP_CROWDS
 };
 
 enum { STABILITY_METHODS = 6, STABILITY_POLICIES = 4, STABILITY_PRECISIONS = 3 };
@@ -58,13 +59,14 @@ struct stability {
     const char *output;
     bool quick;
     int first, last; /* sweeps */
+    int32_t seed;    /* of all random numbers */
     sphg_kernel kernel;
     int32_t compared; /* targets of a case that stand beside the reference */
     int case_count;
     struct stability_case *cases; /* those of a sweep stand together */
 };
 
-extern const char *const sweep_names[SWEEPS + 1]; /* NULL-terminated */
+extern const char *const sweep_names[SWEEPS + 2]; /* NULL-terminated */
 extern const char *const policy_names[STABILITY_POLICIES];
 
 void stability_create_cases(struct stability *stability);

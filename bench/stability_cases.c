@@ -7,8 +7,8 @@
 
 enum { CASES_MOST = 8192, PLACES_MOST = 32 };
 
-const char *const sweep_names[SWEEPS + 1] = {"slab",       "threshold", "offset", "scale",
-                                             "neighbours", "volumes",   "jitter", "merging"};
+const char *const sweep_names[SWEEPS + 2] = {
+    "slab", "threshold", "offset", "scale", "neighbours", "volumes", "jitter", "merging", "crowds"};
 const char *const policy_names[STABILITY_POLICIES] = {
     [SPHG_BLEND] = "blend",
     [SPHG_REPLACE] = "replace",
@@ -86,6 +86,8 @@ static struct places places_of(const struct settings *settings, const struct sta
         return powers(1, 10, 13);
     case SWEEP_JITTER:
         return equal_steps(0, 0.1, 11);
+    case SWEEP_CROWDS:
+        return (struct places){8, {1, 3, 10, 30, 100, 300, 1000, 4000}};
     default:
         return equal_steps(1.1, -0.05, 23);
     }

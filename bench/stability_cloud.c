@@ -87,10 +87,12 @@ static void add_in_ball(struct stability_cloud *cloud, const double middle[3], d
         middle[2] + radius * offset[2]);
 }
 
-/* Targets so far apart that each sees nothing but its own `neighbours`, anywhere in its reach. */
-static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neighbours)
+/* Targets so far apart that each sees nothing but its own `neighbours`, anywhere in its reach, or
+ * as many in each of `places`; 0: each for itself. */
+static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neighbours,
+                      int32_t places)
 {
-    make_room(cloud, balls * (neighbours + 1));
+    make_room(cloud, balls * (neighbours * (places > 0 ? places : 1) + 1));
     for (int32_t pass = 0; pass < 2; pass++)
         for (int32_t ball = 0; ball < balls; ball++) {
             const double apart = 4 * cloud->support;
@@ -98,8 +100,11 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
                                       apart * (ball / 16)};
             if (pass == 0)
                 add(cloud, middle[0], middle[1], middle[2]);
-            for (int32_t k = 0; pass == 1 && k < neighbours; k++)
+            for (int32_t k = 0; pass == 1 && k < (places > 0 ? places : neighbours); k++)
                 add_in_ball(cloud, middle, 0.9999 * cloud->support);
+            for (int32_t k = 0; pass == 1 && k < places * (neighbours - 1); k++)
+                memcpy(cloud->x[cloud->count], cloud->x[cloud->count - places], sizeof *cloud->x),
+                    cloud->count++;
         }
     cloud->target_count = balls;
 }
@@ -126,6 +131,8 @@ static void fill_volumes(struct stability_cloud *cloud, enum stability_sweep swe
         cloud->volume[i] = 1;
         if (sweep == SWEEP_NEIGHBOURS)
             cloud->volume[i] = ball / (at + 1);
+        if (sweep == SWEEP_CROWDS)
+            cloud->volume[i] = ball / (5 * at + 1);
         if (sweep == SWEEP_VOLUMES)
             cloud->volume[i] = pow(at, draw(cloud, -0.5, 0.5));
     }
@@ -145,7 +152,10 @@ static void add_particles(struct stability_cloud *cloud, const struct settings *
         add_slab(cloud, 4 * side, side, jitter, 1, 1e-4, 8 * cloud->support);
         break;
     case SWEEP_NEIGHBOURS:
-        add_balls(cloud, side * 4, (int32_t)at);
+        add_balls(cloud, side * 4, (int32_t)at, 0);
+        return;
+    case SWEEP_CROWDS:
+        add_balls(cloud, side * 4, (int32_t)at, 5);
         return;
     case SWEEP_MERGING:
         add_layers(cloud, side, jitter, at * cloud->support);
@@ -156,12 +166,20 @@ static void add_particles(struct stability_cloud *cloud, const struct settings *
     cloud->target_count = cloud->count;
 }
 
-struct stability_cloud stability_cloud_create(const struct settings *settings,
+/* Places in the sequence of random numbers: 2^32 for each sweep of each round. */
+static int64_t first_random(int32_t seed, int32_t round, enum stability_sweep sweep)
+{
+    enum { ROUNDS_MOST = 10000 };
+    return (((int64_t)seed * ROUNDS_MOST + round) * SWEEPS + sweep) << 32;
+}
+
+struct stability_cloud stability_cloud_create(const struct stability *stability,
                                               enum stability_sweep sweep, double at, int32_t round)
 {
+    const struct settings *settings = &stability->settings;
     static const double direction[3] = {0.75, 0.5, -0.4330127018922193}; /* a unit vector */
     struct stability_cloud cloud = {.support = (double)(float)settings->support,
-                                    .random = ((int64_t)round * SWEEPS + sweep) << 32};
+                                    .random = first_random(stability->seed, round, sweep)};
     add_particles(&cloud, settings, sweep, at);
     if (sweep != SWEEP_JITTER) /* a lattice without jitter has its shells at the same distance */
         turn(&cloud);

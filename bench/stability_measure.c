@@ -21,7 +21,7 @@ struct bench {
 static struct trial run_at(const struct bench *bench, double at, int exponent)
 {
     struct stability_cloud cloud =
-        stability_cloud_create(&bench->stability->settings, bench->one->sweep, at, bench->round);
+        stability_cloud_create(bench->stability, bench->one->sweep, at, bench->round);
     struct trial trial = trial_create(bench->context, bench->one, &cloud, exponent);
     trial_run(&trial, bench->one);
     stability_cloud_destroy(&cloud);

@@ -60,6 +60,44 @@ static void print_summary(const char *sweep, const char *method, const struct su
            (long long)sum->not_finite);
 }
 
+/* The same case in another precision. */
+static const struct stability_case *beside(const struct stability *stability,
+                                           const struct stability_case *one,
+                                           enum precision precision)
+{
+    for (int k = 0; k < stability->case_count; k++) {
+        const struct stability_case *other = &stability->cases[k];
+        if (other->precision == precision && other->method == one->method &&
+            other->policy == one->policy && other->at == one->at)
+            return other;
+    }
+    return one;
+}
+
+/* What one sweep alone comes to, place by place. */
+static void print_places(const struct stability *stability)
+{
+    printf("\nplaces     f32, but for the last columns; rank: particles of full rank, decomposed: "
+           "shares in percent;\n           linear: mean error of a linear field, noise: largest "
+           "|J| H of a random field; exact: the\n           largest error of a linear field at "
+           "full rank, bound: the largest error of a random field\n           over its bound, "
+           "both in f32 and f64\n");
+    printf("\n  %-12s%9s  %-7s%-10s%10s%8s%12s%9s%9s%17s%18s\n", "sweep", "at", "method", "policy",
+           "targets", "rank", "decomposed", "linear", "noise", "exact", "bound");
+    for (int k = 0; k < stability->case_count; k++) {
+        const struct stability_case *one = &stability->cases[k];
+        const struct stability_case *wide = beside(stability, one, PRECISION_F64);
+        if (one->precision != PRECISION_F32)
+            continue;
+        printf("  %-12s%9.3g  %-7s%-10s%10lld%8.2f%12.2f%9.2g%9.2g %7.1g %7.1g %8.2g %8.2g\n",
+               sweep_names[one->sweep], one->at, method_names[one->method],
+               policy_names[one->policy], (long long)one->targets,
+               100 * (double)one->full / (double)one->targets, 100 * stability_fallback(one),
+               stability_linear(one), one->noise, one->linear_full, wide->linear_full,
+               stability_ratio(one), stability_ratio(wide));
+    }
+}
+
 void stability_print(const struct stability *stability)
 {
     const struct settings *settings = &stability->settings;
@@ -67,10 +105,10 @@ void stability_print(const struct stability *stability)
     const int32_t side = settings_side(settings->particles, 3);
     printf("particles  %s in the largest block, jitter %g spacings, H = %g spacings, %s, "
            "eps 1e-2, but\n           for what a sweep changes; %d round%s of random "
-           "numbers\n",
+           "numbers, seed %d\n",
            text_grouped((int64_t)side * side * side, count), settings->jitter, settings->support,
            kernel_names[stability->kernel], settings->repetitions,
-           settings->repetitions > 1 ? "s" : "");
+           settings->repetitions > 1 ? "s" : "", (int)stability->seed);
     text_print_machine(settings->threads);
     printf("ratios     largest error of the gradient of a random field over its bound, beside "
            "brute force in\n           quadruple precision; limits: 10 at full rank, 16 where "
@@ -80,13 +118,15 @@ void stability_print(const struct stability *stability)
     printf("\n  %-12s%-7s%6s%12s%10s%8s%8s%8s%14s%14s%7s%7s%12s\n", "sweep", "method", "cases",
            "targets", "compared", "f32", "f64", "mixed", "rank", "decomposed", "wrong", "bits",
            "not finite");
-    for (int sweep = 0; sweep < SWEEPS; sweep++)
+    for (int sweep = stability->first; sweep <= stability->last; sweep++)
         for (int method = 0; method < STABILITY_METHODS; method++) {
             const struct summary sum =
                 summarise(stability, (enum stability_sweep)sweep, (sphg_method)method);
             if (sum.cases > 0)
                 print_summary(sweep_names[sweep], method_names[method], &sum);
         }
+    if (stability->first == stability->last)
+        print_places(stability);
 }
 
 void stability_write_csv(const struct stability *stability)
@@ -155,6 +195,7 @@ void stability_write_json(const struct stability *stability, const char *path,
     report_number(report, "support_spacings", stability->settings.support);
     report_number(report, "jitter", stability->settings.jitter);
     report_number(report, "rounds", stability->settings.repetitions);
+    report_number(report, "seed", stability->seed);
     for (int k = 0; k < stability->case_count; k++)
         write_case(report, &stability->cases[k]);
     report_write(report, path);

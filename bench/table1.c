@@ -128,7 +128,7 @@ static void check_combination(const struct command_line *line)
     if (!with_input && options->source.mass > 0)
         options_refuse("--mass: only with --input");
     if (!with_input && options->support > 50)
-        options_refuse("--support: %g spacings are more than 50", options->support);
+        options_refuse("--support: %.17g spacings are more than 50", options->support);
 }
 
 static void read_options(struct table1_options *options, int argc, char **argv)

@@ -1,4 +1,5 @@
 #include "check.h"
+#include "digits.h"
 #include "kernel.h"
 #include "view.h"
 #include <float.h>
@@ -55,12 +56,12 @@ sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.policy is %d, not a policy", f,
                (int)scheme->policy);
     if (!(scheme->support_radius > 0) || !isfinite(scheme->support_radius))
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.support_radius is %g, must be positive and finite",
-               f, scheme->support_radius);
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.support_radius is %s, must be positive and finite",
+               f, sphgi_digits(scheme->support_radius).text);
     if (!(scheme->threshold >= 0 && scheme->threshold < 1))
         REFUSE(SPHG_ERROR_ARGUMENT,
-               "%s: scheme.threshold is %g, must lie between 0 and 1 (0: default)", f,
-               scheme->threshold);
+               "%s: scheme.threshold is %s, must be at least 0 (the default) and below 1", f,
+               sphgi_digits(scheme->threshold).text);
     *checked = (struct sphgi_scheme){
         .dimension = scheme->dimension ? scheme->dimension : 3,
         .method = scheme->method,
@@ -83,8 +84,8 @@ sphg_result sphgi_check_range(struct sphgi_checker checker, const struct sphgi_s
     const double h = scheme->radius;
     if (!is_normal_in(h * h, type) || !is_normal_in(sphgi_power(1 / h, scheme->dimension), type))
         REFUSE(SPHG_ERROR_ARGUMENT,
-               "%s: scheme.support_radius is %g, its powers leave the range of the precision",
-               checker.function, h);
+               "%s: scheme.support_radius is %s, its powers leave the range of the precision",
+               checker.function, sphgi_digits(h).text);
     return SPHG_OK;
 }
 
@@ -245,20 +246,20 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
     const bool f64 = sphgi_type_of_positions(geometry) == SPHG_F64;
     const double rounding = f64 ? 0x1p-51 : 0x1p-22;
     if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, must be >= 0 and finite", f,
-               geometry->skin);
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, must be >= 0 and finite", f,
+               sphgi_digits(geometry->skin).text);
     if (geometry->skin > 0 && geometry->list_free)
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, but list_free keeps no pairs", f,
-               geometry->skin);
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, but list_free keeps no pairs", f,
+               sphgi_digits(geometry->skin).text);
     for (int32_t a = 0; a < scheme->dimension; ++a) {
         const double period = geometry->period[a], least = 2 * (scheme->radius + geometry->skin);
         if (!(period >= 0) || !isfinite(period))
-            REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.period[%d] is %g, must be >= 0 and finite", f,
-                   (int)a, period);
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.period[%d] is %s, must be >= 0 and finite", f,
+                   (int)a, sphgi_digits(period).text);
         if (period > 0 && period < least * (1 - rounding))
             REFUSE(SPHG_ERROR_ARGUMENT,
-                   "%s: geometry.period[%d] is %.17g, must be at least 2 (H + skin) = %.17g", f,
-                   (int)a, period, least);
+                   "%s: geometry.period[%d] is %s, must be at least 2 (H + skin) = %s", f, (int)a,
+                   sphgi_digits(period).text, sphgi_digits(least).text);
     }
     return SPHG_OK;
 }
@@ -317,8 +318,8 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
     if (geometry->precision == SPHG_F64 && type == SPHG_F32)
         REFUSE(SPHG_ERROR_TYPE, "%s: geometry.precision is f64, but the positions are f32", f);
     if (!searched && geometry->skin != 0)
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %g, it is for searches only", f,
-               geometry->skin);
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, it is for searches only", f,
+               sphgi_digits(geometry->skin).text);
     if (!searched && geometry->list_free)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.list_free is %d, it is for searches only", f,
                (int)geometry->list_free);

@@ -1,4 +1,5 @@
 #include "making.h"
+#include "digits.h"
 #include "places.h"
 #include "view.h"
 #include <string.h>
@@ -30,10 +31,9 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
                      "%s: sources[%d].neighbors have %d targets, sources[0] has %d", f, (int)s,
                      (int)n->target_count, (int)plan->target_count);
     if (plan->scheme.radius > n->radius)
-        SPHGI_REFUSE(
-            SPHG_ERROR_SIZE,
-            "%s: scheme.support_radius is %.17g, sources[%d].neighbors were built for %.17g", f,
-            plan->scheme.radius, (int)s, n->radius);
+        SPHGI_REFUSE(SPHG_ERROR_SIZE,
+                     "%s: scheme.support_radius is %s, sources[%d].neighbors were built for %s", f,
+                     sphgi_digits(plan->scheme.radius).text, (int)s, sphgi_digits(n->radius).text);
     if (n->part_of && plan->own_set < 0)
         plan->own_set = s;
     plan->sets[s].neighbors = n;

@@ -1,5 +1,6 @@
 /* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
 #include "check.h"
+#include "digits.h"
 #include "kernel.h"
 #include "parallel.h"
 #include "svd.h"
@@ -272,8 +273,8 @@ static sphg_result report_volume(struct sphgi_checker checker, const struct batc
             break;
     }
     return sphgi_fail(checker.context, SPHG_ERROR_VOLUME,
-                      "%s: volume[%d] is %g, must be >= 0 and finite", checker.function, (int)k,
-                      value);
+                      "%s: volume[%d] is %s, must be >= 0 and finite", checker.function, (int)k,
+                      sphgi_digits(value).text);
 }
 
 static sphg_result run_inversion(struct sphgi_checker checker, struct batch *b, sphg_stats *stats)

@@ -1,4 +1,5 @@
 #include "sweep.h"
+#include "digits.h"
 #include "parallel.h"
 #include "stage.h"
 #include "traverse.h"
@@ -174,13 +175,13 @@ static sphg_result report_volume(struct sphgi_checker checker, const struct sphg
             first_bad_volume(&set->volume, plan->type, set->neighbors->source_count, &value);
         if (k >= 0)
             return sphgi_fail(checker.context, SPHG_ERROR_VOLUME,
-                              "%s: sources[%d].volume[%d] is %g, %s", checker.function, (int)s,
-                              (int)k, value, rule);
+                              "%s: sources[%d].volume[%d] is %s, %s", checker.function, (int)s,
+                              (int)k, sphgi_digits(value).text, rule);
     }
     const int32_t k =
         first_bad_volume(&plan->target_volume, plan->type, plan->target_count, &value);
-    return sphgi_fail(checker.context, SPHG_ERROR_VOLUME, "%s: target_volume[%d] is %g, %s",
-                      checker.function, (int)k, value, rule);
+    return sphgi_fail(checker.context, SPHG_ERROR_VOLUME, "%s: target_volume[%d] is %s, %s",
+                      checker.function, (int)k, sphgi_digits(value).text, rule);
 }
 
 static sphg_result report_index(struct sphgi_checker checker, const struct sphgi_tally *tally)

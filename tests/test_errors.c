@@ -2,6 +2,7 @@
  * code and a message that names the argument, write nothing, and work on the next call. */
 #include "support/subject.h"
 #include <limits.h>
+#include <locale.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -453,6 +454,66 @@ static void eigen_and_svd_refuse_bad_arguments(const test_case *test)
         SPHG_ERROR_ARGUMENT);
 }
 
+/* ---- Numbers in messages ------------------------------------------------------------------ */
+
+/* The number behind `words` in a message, which has a decimal point in every locale. */
+static double number_behind(const char *message, const char *words)
+{
+    const char *at = strstr(message, words);
+    TEST_REQUIRE(at, "no '%s': %s", words, message);
+    const char *locale = test_text("%s", setlocale(LC_NUMERIC, NULL));
+    setlocale(LC_NUMERIC, "C");
+    const double value = strtod(at + strlen(words), NULL);
+    setlocale(LC_NUMERIC, locale);
+    return value;
+}
+
+static void require_number(subject *own, const char *words, double value)
+{
+    const char *message = sphg_last_message(own->context);
+    TEST_REQUIRE(number_behind(message, words) == value, "not %.17g: %s", value, message);
+}
+
+#define SHOWS(call, name, value)                                                                   \
+    do {                                                                                           \
+        REFUSES(call, SUBJECT_REFUSED, "", own->name = value);                                     \
+        own->name = value;                                                                         \
+        assert_int_not_equal(call(own), SPHG_OK);                                                  \
+        require_number(own, #name " is ", value);                                                  \
+        subject_reset(own);                                                                        \
+    } while (0)
+
+/* A value beyond its limit by a rounding is not printed as the limit, in the host's locale either
+ * (checks/messages_in_a_locale.sh names one with decimal commas). */
+static void messages_print_numbers_that_read_back(const test_case *test)
+{
+    const char *locale = getenv("SPHG_TEST_LOCALE");
+    if (locale) {
+        assert_non_null(setlocale(LC_NUMERIC, locale));
+        assert_string_not_equal(localeconv()->decimal_point, ".");
+    }
+    subject *own = subject_create(test);
+    const double above_one[] = {1, nextafter(1, 2), 1.0000000001, 1.1, 1e300};
+    const double below_zero[] = {-5e-324, -1e-9, -0.1, -1.0 / 3, -123456789};
+    for (int k = 0; k < 5; k++) {
+        SHOWS(search, scheme.threshold, above_one[k]);
+        SHOWS(search, scheme.threshold, below_zero[k]);
+        SHOWS(search, scheme.support_radius, below_zero[k]);
+        SHOWS(search, geometry.skin, below_zero[k]);
+        SHOWS(search, geometry.period[0], below_zero[k]);
+        SHOWS(use_lists, geometry.skin, -below_zero[k]);
+    }
+    SHOWS(search, geometry.period[1], 2 * own->scheme.support_radius * (1 - 1e-6));
+    own->geometry.period[1] = 2 * own->scheme.support_radius * (1 - 1e-6);
+    search(own);
+    require_number(own, "(H + skin) = ", 2 * own->scheme.support_radius);
+    subject_reset(own);
+    SHOWS(search, scheme.support_radius, test->precision == TEST_F32 ? 1.0000000001e20 : 1.1e200);
+    setlocale(LC_NUMERIC, "C");
+}
+
+/* ---- Widths ------------------------------------------------------------------------------- */
+
 /* A scheme that cannot be asked has no width. */
 static void correction_width_is_that_of_the_method(const test_case *test)
 {
@@ -483,6 +544,7 @@ static const test_entry entries[] = {
     EACH(reports_refuse_bad_handles),
     EACH(inversion_refuses_bad_arguments),
     EACH(eigen_and_svd_refuse_bad_arguments),
+    EACH(messages_print_numbers_that_read_back),
     EACH(correction_width_is_that_of_the_method),
 };
 TEST_MAIN(entries)

@@ -351,14 +351,16 @@ static void several_sets_must_agree(const test_case *test)
 static void bad_volumes_are_found_and_named(const test_case *test)
 {
     subject *own = subject_create(test);
-    const double bad[] = {-1, NAN, INFINITY, -1e-30};
-    for (int k = 0; k < 4; k++) {
+    const double bad[] = {-1, NAN, INFINITY, -1e-30, -1 - 0x1p-20};
+    for (int k = 0; k < 5; k++) {
         double numbers[SUBJECT_COUNT];
         for (int i = 0; i < SUBJECT_COUNT; i++)
             numbers[i] = i == 41 ? bad[k] : 0.125;
         const fixture_array volumes =
             fixture_numbers(test_field_type(test), SUBJECT_COUNT, 1, numbers);
         REFUSES(evaluate, SPHG_ERROR_VOLUME, "41", own->sources[0].volume = fixture_view(&volumes));
+        REFUSES(evaluate, SPHG_ERROR_VOLUME, k < 4 ? "is " : "is -1.0000009536743164",
+                own->sources[0].volume = fixture_view(&volumes));
     }
     const float negative = -1;
     const double negative_full = -1;

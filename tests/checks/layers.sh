@@ -8,7 +8,7 @@ layer_of() {
         evaluate.c | pairs.c | neighbors.c | list_check.c | entries.h | small_matrices.c) echo 4 ;;
         plan.* | plan_fields.c | plan_views.c | plan_sums.* | units.* | making.h | selection.* | tally.* | worker.* | clean.* | group.c | corrections.* | finish.* | sums.* | stage.* | traverse.* | sweep.* | svd.*) echo 3 ;;
         neighbors.h | places.* | skin.* | find.* | lists.* | grid.* | lattice.c | sort.c | surroundings.c) echo 3 ;;
-        context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.* | float_environment.*) echo 2 ;;
+        context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.* | digits.* | float_environment.*) echo 2 ;;
         passes/*) echo 1 ;;
         internal.h) echo 0 ;;
     esac
@@ -52,6 +52,9 @@ done
 
 if grep -rn --include='*.[ch]' -E 'include *<omp\.h>|pragma omp' src | grep -v '^src/parallel\.c:' >&2; then
     complain "OpenMP is parallel.c's alone"
+fi
+if grep -n --include='*.[ch]' -rE '"[^"]*%[-+ #0-9.*]*l?[aefgAEFG]' src | grep -v '^src/digits\.c:' >&2; then
+    complain "numbers are printed by digits.c alone"
 fi
 if grep -n '#include "' include/sphgrad/sphgrad.h >&2; then
     complain "the public header includes a file of ours"

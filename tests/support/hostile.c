@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 __attribute__((format(printf, 2, 3))) static void name_trial(trial *made, const char *format, ...)
@@ -87,7 +88,11 @@ static int put_real(victim *own, const argument *spoilt, double value, trial *ma
     memcpy(member(own, spoilt), &value, sizeof value);
     name_trial(made, "%g", value);
     expect(made, SPHG_ERROR_ARGUMENT, NULL);
-    snprintf(made->value, sizeof made->value, "%g", value);
+    for (int digits = 6; digits <= 17; digits++) { /* the fewest that read back */
+        snprintf(made->value, sizeof made->value, "%.*g", digits, value);
+        if (strtod(made->value, NULL) == value)
+            break;
+    }
     return 1;
 }
 

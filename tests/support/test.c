@@ -156,7 +156,7 @@ void test_within(test_tolerance tolerance, double value, const char *where)
     }
     worst[tolerance].used = 1;
     if (!(value <= tolerances[tolerance].limit))
-        fail_msg("%s: %g exceeds %g at %s", tolerances[tolerance].name, value,
+        fail_msg("%s: %.9g exceeds %g at %s", tolerances[tolerance].name, value,
                  tolerances[tolerance].limit, where);
 }
 
