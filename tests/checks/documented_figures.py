@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""documented_figures.py ROOT SPHGRAD_BENCH [SEED...]: the tables of docs/stability.md beside what their commands
+print today. "a to b" is a range, and each number stands for all that round to it. The commands that take
+minutes are left out."""
+import csv
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+METHODS = ["KGC", "MLS", "RKPM", "CMLS", "CRKPM"]
+LONG = {"neighbours"}  # minutes
+DROPPED = {"crowds"}  # a sentence, no table
+failures = 0
+
+
+def complain(text):
+    global failures
+    failures += 1
+    print(text, file=sys.stderr)
+
+
+def half_of_last_digit(text):
+    mantissa, _, exponent = text.partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    scale = 10.0 ** (int(exponent or 0) - decimals)
+    if not exponent and not decimals and float(mantissa) >= 10 and mantissa.endswith("0"):
+        scale = 10.0 ** (len(mantissa) - len(mantissa.rstrip("0")))  # 1600: two digits
+    return 0.5 * scale
+
+
+def agrees(cell, value, percent):
+    ends = cell.split(" to ")
+    if percent and cell in ("0", "100"):
+        return value == float(cell)
+    slack = 1e-9 + 1e-3 * (not percent)  # the CSV has four digits
+    low, high = ends[0], ends[-1]
+    return (float(low) - half_of_last_digit(low) * (1 + slack) <= value
+            <= float(high) + half_of_last_digit(high) * (1 + slack))
+
+
+def tables(text):
+    """Each table as a list of rows of cells, the head first."""
+    for block in re.findall(r"(?:^\|.*\|\n)+", text, re.M):
+        lines = [line.strip().strip("|").split("|") for line in block.splitlines()]
+        yield [[cell.strip() for cell in line] for line in lines if "---" not in line[0]]
+
+
+def run(program, sweep, repetitions, seed, folder):
+    subprocess.run([program, "stability", "--sweep", sweep, "--repetitions", repetitions, "--compare", "1",
+                    "--seed", seed, "--threads", "2", "--output", folder], check=True, stdout=subprocess.DEVNULL)
+    with open(os.path.join(folder, "stability.csv"), encoding="utf-8") as file:
+        next(file)
+        return [row for row in csv.DictReader(file) if row["policy"] == "blend"]
+
+
+def find(rows, method, precision, place):
+    for row in rows:
+        at = float(row["at"])
+        if row["method"] == method and row["precision"] == precision and abs(at - place) <= 1e-6 * place:
+            return row
+    raise SystemExit(f"no {method} {precision} at {place}")
+
+
+def compare(what, cell, value, percent=True):
+    if not agrees(cell, value, percent):
+        complain(f"docs/stability.md, {what}: '{cell}', but measured {value:.5g}")
+
+
+def check_threshold(table, rows):
+    columns = [("full", "f32"), ("linear_mean", "f32"), ("noise", "f32"), ("linear_full", "f32"),
+               ("linear_full", "f64"), ("decomposed", "f32")]
+    for row in table[1:]:
+        for (name, precision), cell in zip(columns, row[1:], strict=True):
+            percent = name in ("full", "decomposed")
+            value = float(find(rows, "KGC", precision, float(row[0]))[name])
+            compare(f"eps {row[0]}, {name} {precision}", cell, 100 * value if percent else value, percent)
+    return len(table) - 1
+
+
+def check_ranks(table, sweep, rows):
+    checked = 0
+    for row in table[1:]:
+        if row[0] != sweep:
+            continue
+        for method, cell in zip(METHODS, row[2:], strict=True):
+            compare(f"{sweep} {row[1]}, {method}", cell,
+                    100 * float(find(rows, method, "f32", float(row[1]))["full"]))
+        checked += 1
+    return checked
+
+
+def main():
+    root, program, seeds = sys.argv[1], sys.argv[2], sys.argv[3:] or ["0"]
+    with open(os.path.join(root, "docs", "stability.md"), encoding="utf-8") as file:
+        text = file.read()
+    by_head = {table[0][0]: table for table in tables(text)}
+    commands = re.findall(r"--sweep (\w+) --repetitions (\d+) --compare 1", text)
+    sweeps = [(sweep, count) for sweep, count in commands if sweep not in LONG | DROPPED]
+    if sorted(sweep for sweep, _ in sweeps) != ["jitter", "slab", "threshold", "volumes"]:
+        complain(f"commands in docs/stability.md: {commands}")
+    for seed in seeds:
+        for sweep, count in sweeps:
+            with tempfile.TemporaryDirectory() as folder:
+                rows = run(program, sweep, count, seed, folder)
+            checked = (check_threshold(by_head["eps"], rows) if sweep == "threshold"
+                       else check_ranks(by_head["sweep"], sweep, rows))
+            if checked == 0:
+                complain(f"docs/stability.md has no figures of {sweep}")
+    return 1 if failures else 0
+
+
+sys.exit(main())
