@@ -39,6 +39,48 @@ static void smallest_moments_are_never_negative(const test_case *test)
     assert_true(stats.lambda_min >= 0);
 }
 
+/* Targets of rank 0 and of full rank in percent when all volumes are `share` of what is right. */
+static void ranks_at(const stage *even, double share, double *none, double *full)
+{
+    const int count = even->points.count, d = even->points.dimension;
+    double *volume = test_memory((size_t)count * sizeof *volume);
+    for (int i = 0; i < count; i++)
+        volume[i] = share * pow(even->points.spacing, d);
+    const stage on = stage_with_volumes(even, volume);
+    const sphg_sources sources = stage_sources(&on);
+    sphg_stats stats = {0};
+    const sphg_request request = {.sources = &sources, .set_count = 1, .stats = &stats};
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    *none = 100.0 * (double)stats.rank[0] / count;
+    *full = 100.0 * (double)stats.rank[d] / count;
+}
+
+/* The figures of docs/theory.md, section 3: lambda is proportional to the volumes, but for classic
+ * methods. */
+static void volumes_in_a_wrong_unit_take_the_rank(const test_case *test)
+{
+    const int d = test->dimension;
+    random_state random = random_seeded(75);
+    cloud points = cloud_jittered(d, d == 2 ? 40 : 12, .125, .2, &random);
+    const stage even = stage_of(test, "block", points, 2 * points.spacing);
+    const double shares[] = {1000, 1, .3, .01, .001};
+    double none, full;
+    for (int k = 0; k < 5; k++) {
+        ranks_at(&even, shares[k], &none, &full);
+        const int kept = shares[k] >= .3 || sphg_correction_width(&even.scheme) > 6;
+        TEST_REQUIRE(kept ? full == 100 : none == 100, "volumes times %g: rank 0 %g %%, full %g %%",
+                     shares[k], none, full);
+    }
+    if (d == 2 || test->method != SPHG_KGC)
+        return;
+    ranks_at(&even, .1, &none, &full);
+    TEST_REQUIRE(fabs(full - 90) < 2, "a tenth: %g %%", full);
+    ranks_at(&even, .05, &none, &full);
+    TEST_REQUIRE(fabs(full - 48) < 3, "a twentieth: %g %%", full);
+    ranks_at(&even, .03, &none, &full);
+    TEST_REQUIRE(fabs(none - 99.8) < .3, "a thirtieth: %g %%", none);
+}
+
 static void compare(const stage *on, sphg_shape shape, sphg_form form, const fixture_array *table,
                     int samples)
 {
@@ -68,6 +110,8 @@ static void every_form_matches_the_oracle(const test_case *test)
 
 static const test_entry entries[] = {
     TEST_ENTRY(smallest_moments_are_never_negative, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
+    TEST_ENTRY(volumes_in_a_wrong_unit_take_the_rank, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
     TEST_ENTRY(every_form_matches_the_oracle, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS,

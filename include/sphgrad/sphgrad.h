@@ -244,7 +244,9 @@ typedef struct sphg_scheme {
     sphg_kernel kernel;
     sphg_policy policy;
     double support_radius; /* H [L] > 0 */
-    double threshold;      /* eps in (0, 1); 0: 1e-2 */
+    double threshold;      /* eps in (0, 1); 0: 1e-2. Needs absolute volumes, but for classic
+                              methods: lambda grows with them; 100 times too small, in a wrong
+                              unit, they give rank 0 everywhere and no error */
 } sphg_scheme;
 
 /* Numbers per item of a correction table: linearised d (d + 1) / 2, C_i as SYM_TENSOR; classic
@@ -390,7 +392,8 @@ SPHG_API sphg_result sphg_neighbors_get_order(sphg_context *context,
 /* One source set, as the targets see it. */
 typedef struct sphg_sources {
     const sphg_neighbors *neighbors;
-    sphg_view volume;     /* V_j [L^d] >= 0; not read by CMLS in DIFFERENCE and DIRECT */
+    sphg_view volume;     /* V_j [L^d] >= 0, in the unit of the positions: sums of V_j fill space
+                             (threshold); not read by CMLS in DIFFERENCE and DIRECT */
     sphg_view density;    /* rho_j; read in SYMMETRIC only */
     sphg_view correction; /* C_j; read in ADJOINT and SYMMETRIC, unless this set's A_j are 0 */
 } sphg_sources;
