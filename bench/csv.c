@@ -95,13 +95,17 @@ static bool read_rows(struct csv *csv, struct cells *cells)
     while (csv->row_count != csv->most_rows && text_file_line(&csv->text, &line)) {
         if (csv->text.line < csv->first_line || csv_is_remark(line))
             continue;
-        if (span_begins(line, "ITEM:")) /* the next moment of a dump */
+        if (span_begins(line, "ITEM:")) { /* the next moment of a dump */
+            csv->more = true;
             break;
+        }
         if (!grow(csv, &room) || !cells_split(cells, line, csv->separator))
             return refuse(csv, 0, "too many rows, or out of memory");
         if (!read_row(csv, cells))
             return false;
     }
+    while (csv->row_count == csv->most_rows && !csv->more && text_file_line(&csv->text, &line))
+        csv->more = !csv_is_remark(line);
     if (csv->row_count == 0)
         return refuse(csv, 0, "no particles in it");
     return csv->most_rows <= csv->row_count ||

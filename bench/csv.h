@@ -15,6 +15,7 @@ struct csv {
     int64_t most_rows;               /* where the file says how many; or -1 */
     int32_t least_cells, most_cells; /* of a row; cells at its end that are empty do not count */
     int32_t row_count;
+    bool more;                    /* moments follow the first, which is read */
     int64_t *lines;               /* line of each row in the file, from 1 */
     double (*values)[QUANTITIES]; /* of each row, finite; 0 where there is no column */
     char message[600];

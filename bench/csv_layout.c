@@ -195,10 +195,57 @@ static void take_positions(struct csv *csv, int32_t first, int32_t width)
         csv->columns[QUANTITY_X + axis] = first + axis;
 }
 
-/* XYZ: the number of particles, a line of words, then a name and a position in each line. */
-static bool is_xyz(struct csv *csv)
+/* The next of `Properties=species:S:1:pos:R:3:...` in the second line of extended XYZ. */
+static bool next_property(struct span *at, struct span *name, int32_t *width)
 {
-    struct span line[3];
+    struct span part[3];
+    for (int k = 0; k < 3; k++) {
+        part[k] = (struct span){at->start, at->start};
+        while (part[k].end < at->end && *part[k].end != ':')
+            part[k].end++;
+        at->start = part[k].end + (part[k].end < at->end);
+    }
+    double count;
+    if (!cell_number(part[2], ',', &count) || !(count >= 1 && count <= 1000))
+        return false;
+    *name = part[0];
+    *width = (int32_t)count;
+    return true;
+}
+
+/* What follows the word in a line, up to a blank or a quotation mark. */
+static bool value_of(struct span line, const char *word, struct span *value)
+{
+    while (line.start < line.end && !span_begins(line, word))
+        line.start++;
+    if (line.start == line.end)
+        return false;
+    value->start = line.start + strlen(word);
+    value->start += value->start < line.end && *value->start == '"';
+    value->end = value->start;
+    while (value->end < line.end && !isspace((unsigned char)*value->end) && *value->end != '"')
+        value->end++;
+    return true;
+}
+
+/* Where the position stands, 1 where nothing is said; -1: nowhere. */
+static int32_t position_column(struct span words)
+{
+    struct span at = words, name;
+    int32_t column = 0, width = 0;
+    if (!value_of(words, "Properties=", &at))
+        return 1;
+    for (; at.start < at.end && next_property(&at, &name, &width); column += width)
+        if (name.end - name.start == 3 && span_begins(name, "pos"))
+            return width == 3 ? column : -1;
+    return -1;
+}
+
+/* XYZ: the number of particles, a line of words, then a name and a position in each line, or the
+ * columns that the words list. */
+static bool is_xyz(struct csv *csv, char *reason, size_t size)
+{
+    struct span line[3], listed;
     struct cells row = {0};
     double count;
     text_file_rewind(&csv->text);
@@ -206,12 +253,17 @@ static bool is_xyz(struct csv *csv)
     for (int k = 0; k < 3; k++)
         good = good && text_file_line(&csv->text, &line[k]);
     good = good && cell_number(span_trim(line[0]), ',', &count) && count >= 1 && count < 1e15 &&
-           cells_split(&row, line[2], ' ') && row.count >= 4 && !is_number(row.at[0], ' ');
-    for (int32_t k = 1; good && k < 4; k++)
-        good = is_number(row.at[k], ' ');
+           cells_split(&row, line[2], ' ');
+    const bool extended = good && value_of(line[1], "Properties=", &listed);
+    const int32_t first = good ? position_column(line[1]) : 0;
+    if (extended && (first < 0 || row.count < first + 3))
+        snprintf(reason, size, "extended XYZ whose Properties have no pos:R:3 that its rows show");
+    good = good && first >= 0 && row.count >= first + 3 && (extended || !is_number(row.at[0], ' '));
+    for (int32_t k = first; good && k < first + 3; k++)
+        good = extended || is_number(row.at[k], ' ');
     if (good) {
         forget_names(csv);
-        take_positions(csv, 1, 3);
+        take_positions(csv, first, 3);
         csv->separator = ' ';
         csv->first_line = 3;
         csv->most_rows = (int64_t)count;
@@ -329,8 +381,10 @@ bool csv_find_layout(struct csv *csv, char *reason, size_t reason_size)
     char separator = ',';
     csv->most_rows = -1;
     *reason = '\0';
-    if (is_xyz(csv))
+    if (is_xyz(csv, reason, reason_size))
         return true;
+    if (*reason)
+        return false;
     text_file_rewind(&csv->text);
     if (find_names(csv, &candidate, &separator, reason, reason_size) ||
         (!*reason && take_candidate(csv, candidate, separator)))

@@ -3,8 +3,8 @@
 #define SPHGRAD_BENCH_CSV_LAYOUT_H
 #include "csv.h"
 
-/* Fills names, columns, separator, first_line, most_rows and the numbers of cells of a file that has been
- * read. false: `reason` says why it cannot be a table of particles. */
+/* Fills names, columns, separator, first_line, most_rows and the numbers of cells of a file that
+ * has been read. false: `reason` says why it cannot be a table of particles. */
 bool csv_find_layout(struct csv *csv, char *reason, size_t reason_size);
 
 /* Whether nothing but blanks or a comment stands there. */

@@ -161,6 +161,7 @@ static struct particles read_particles(const struct particle_source *source)
     describe_columns(&particles, &csv);
     if (!csv_read(&csv))
         options_refuse("%s", csv.message);
+    particles.more = csv.more;
     int axes[3] = {0, 1, 2};
     choose_axes(&particles, &csv, axes);
     particles.own_velocities = csv.columns[QUANTITY_VX + axes[0]] >= 0;

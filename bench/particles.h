@@ -19,6 +19,7 @@ struct particles {
     struct numbers positions, velocities;
     struct numbers volumes; /* count 0: not known yet */
     int32_t count, dimension;
+    bool more;                 /* the file holds later moments, too, which are not read */
     bool own_velocities;       /* read from the file; else v = (-y, x, 2z), in 2D (-y, x) */
     const char *volume_origin; /* where the volumes are from, in words */
     char columns[160];         /* of the file that were read */

@@ -154,6 +154,8 @@ static void print_input(const struct table1 *table)
     const struct particles *particles = &table->particles;
     printf("particles  %s of %s%s%s\n", text_grouped(particles->count, count),
            table->options.source.input, particles->flat[0] ? ", " : "", particles->flat);
+    if (particles->more)
+        printf("           the first of several frames in the file\n");
     printf("           columns %s\n", particles->columns);
     printf("           %s order, volume %s, timed field: %s\n",
            table->options.source.shuffled ? "shuffled" : "file's", table->particles.volume_origin,

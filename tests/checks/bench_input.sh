@@ -196,13 +196,25 @@ takes 'UTF-16 with a mark'
     particles 'ITEM: ATOMS id type x y z c_rho' 'N 1 X Y Z 7'
     printf 'ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n1\n'
 } >"$work/file"
-takes 'a dump of LAMMPS' 'columns x, y, z$'
+takes 'a dump of LAMMPS' 'columns x, y, z$' '^ +the first of several frames'
 {
     printf '125\nframe 0\n'
     particles '' 'W X Y Z'
     printf '125\nframe 1\n'
 } >"$work/file"
-takes XYZ
+takes XYZ '^ +the first of several frames'
+# Extended XYZ says in its second line what stands where.
+extended() {
+    printf '125\nLattice="1 0 0 0 1 0 0 0 1" %s pbc="F F F"\n' "$1"
+    particles '' "$2" | sed '/^$/d'
+}
+extended Properties=species:S:1:pos:R:3:velo:R:3 'W X Y Z 9 9 9' >"$work/file"
+takes 'extended XYZ'
+grep -q 'several frames' "$work/output" && complain 'one frame is called several'
+extended 'Properties=species:S:1:velo:R:3:pos:R:3:id:I:1' 'W 9 8 7 X Y Z 5' >"$work/file"
+takes 'extended XYZ, velocities first'
+extended 'properties="pos:R:3:species:S:1"' 'X Y Z W' >"$work/file"
+takes 'extended XYZ, positions first'
 
 # ---- Two dimensions ---------------------------------------------------------------------------------------
 
@@ -246,6 +258,9 @@ printf 'x,y,z\n' >"$work/file"
 refuses 'names alone' 'no particles in it$'
 : >"$work/file"
 refuses 'an empty file' 'no particles in it$'
+printf '9\nframe 0\nW 0 0 0\n' >"$work/file"
+extended Properties=species:S:1:velo:R:3 'W X Y Z' >"$work/file"
+refuses 'extended XYZ without positions' 'extended XYZ whose Properties have no pos:R:3'
 printf '9\nframe 0\nW 0 0 0\n' >"$work/file"
 refuses 'XYZ with lines missing' '1 particles, but its first line says 9$'
 
