@@ -1,5 +1,6 @@
 /* Nothing is ordinary: an empty std::vector hands over NULL and 0, and no call minds. */
 #include "support/fixture.h"
+#include <math.h>
 #include <string.h>
 
 typedef struct nobody {
@@ -144,6 +145,58 @@ static void an_empty_set_beside_another_adds_nothing(const test_case *test)
         assert_false(fixture_get(&one.result, 0, c) != fixture_get(&one.result, 0, c));
 }
 
+/* A second and a third set beside one particle, nobody in either. */
+static void a_third_set_of_nobody_adds_nothing(const test_case *test)
+{
+    nobody own = nobody_of(test);
+    const single one = single_of(&own);
+    const double origin[3] = {0};
+    const sphg_type at = test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
+    const fixture_array place = fixture_numbers(at, 1, test->dimension, origin);
+    sphg_geometry alone = empty_geometry(test), beside = alone;
+    alone.sources = beside.targets = fixture_view(&place);
+    alone.source_count = alone.target_count = beside.target_count = 1;
+    const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
+    const sphg_view fields[] = {none, ones, none};
+    const sphg_sources sources[] = {
+        {.neighbors = fixture_search(own.context, &own.scheme, &beside)},
+        {fixture_search(own.context, &own.scheme, &alone), ones, ones, fixture_view(&one.table)},
+        {.neighbors = fixture_search(own.context, &own.scheme, &beside)}};
+    every_form(&own, sources, 3, fields, none, fixture_view(&one.result));
+    for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
+        assert_true(isfinite(fixture_get(&one.result, 0, c)));
+}
+
+/* Without lists, and with a skin, again and again. */
+static void every_search_finds_nobody(const test_case *test)
+{
+    const nobody own = nobody_of(test);
+    const sphg_geometry base = empty_geometry(test);
+    sphg_geometry geometries[] = {base, base, base};
+    geometries[0].list_free = 1;
+    geometries[1].skin = 0.25;
+    geometries[2].sources = sphg_absent(); /* says nothing about the precision */
+    geometries[2].precision = own.type;
+    const sphg_view none = sphg_absent();
+    for (int k = 0; k < 3; k++) {
+        sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometries[k]);
+        const sphg_sources sources = {.neighbors = neighbors};
+        for (int round = 0; round < 2; round++) {
+            FIXTURE_OK(own.context,
+                       sphg_neighbors_search(own.context, neighbors, &own.scheme, &geometries[k]));
+            every_form(&own, &sources, 1, &none, none, none);
+        }
+        sphg_sources typed = sources;
+        const single one = single_of(&own);
+        typed.volume = fixture_view(&one.numbers); /* of the precision that was asked for */
+        every_form(&own, &typed, 1, &none, none, fixture_view(&one.result));
+        assert_true(fixture_is_canary(&one.result, 0));
+        sphg_neighbors_info info;
+        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
+        assert_int_equal(info.pairs, 0);
+    }
+}
+
 static void lists_of_nobody_are_lists(const test_case *test)
 {
     nobody own = nobody_of(test);
@@ -184,6 +237,10 @@ static const test_entry entries[] = {
     TEST_ENTRY(an_empty_set_has_the_type_of_its_views, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(an_empty_set_beside_another_adds_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(a_third_set_of_nobody_adds_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(every_search_finds_nobody, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(lists_of_nobody_are_lists, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
