@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""documented_figures.py ROOT SPHGRAD_BENCH [SEED...]: the tables of docs/stability.md beside what their commands
-print today. "a to b" is a range, and each number stands for all that round to it. The commands that take
-minutes are left out."""
+"""documented_figures.py ROOT SPHGRAD_BENCH TEST_HOSTILE_ARGUMENTS PUBLIC_NAMES [SEED...]: figures of the documents
+beside what their commands print today: the tables of docs/stability.md, and the counts of docs/reliability.md.
+"a to b" is a range, and each number stands for all that round to it. The commands that take minutes are left
+out."""
 import csv
 import os
 import re
@@ -91,10 +92,36 @@ def check_ranks(table, sweep, rows):
     return checked
 
 
+def read(*path):
+    with open(os.path.join(*path), encoding="utf-8") as file:
+        return file.read()
+
+
+def check_counts(root, hostile, names):
+    """Of hostile calls, functions and members, which grow with the interface."""
+    document = read(root, "docs", "reliability.md")
+    output = subprocess.run([hostile], check=True, stdout=subprocess.PIPE, text=True).stdout
+    counts = {"every_bad": 0, "trusted": 0}
+    name = ""
+    for line in output.splitlines():
+        name = line.split("]")[1].strip() if "RUN" in line else name
+        for begin in counts:
+            if line.endswith(" cells") and name.startswith(begin):
+                counts[begin] += int(line.split()[0])
+    public = read(names).split("#define")
+    functions, members = (len(re.findall(r"\bX\(\w+,", part)) for part in public[1:3])
+    for count, words in ((counts["every_bad"], "calls: "), (counts["trusted"], "calls |"),
+                         (functions, "functions, "), (functions, "names, "), (members, "members |")):
+        figure = f"{count:,}".replace(",", " ")
+        if f" {figure} {words}" not in document:
+            complain(f"docs/reliability.md does not say '{figure} {words}', which is what there is")
+
+
 def main():
-    root, program, seeds = sys.argv[1], sys.argv[2], sys.argv[3:] or ["0"]
-    with open(os.path.join(root, "docs", "stability.md"), encoding="utf-8") as file:
-        text = file.read()
+    root, program, hostile, names = sys.argv[1:5]
+    seeds = sys.argv[5:] or ["0"]
+    text = read(root, "docs", "stability.md")
+    check_counts(root, hostile, names)
     by_head = {table[0][0]: table for table in tables(text)}
     commands = re.findall(r"--sweep (\w+) --repetitions (\d+) --compare 1", text)
     sweeps = [(sweep, count) for sweep, count in commands if sweep not in LONG | DROPPED]
