@@ -1,4 +1,5 @@
 /* Do lists hold what the positions demand? A search of the same positions tells. */
+#include "digits.h"
 #include "entries.h"
 #include "parallel.h"
 #include "view.h"
@@ -42,8 +43,8 @@ static sphg_result check_tested(struct sphgi_checker checker, const sphg_neighbo
                           (int)n->dimension, (int)scheme->dimension);
     if (scheme->radius > n->radius)
         return sphgi_fail(checker.context, SPHG_ERROR_SIZE,
-                          "%s: scheme.support_radius is %.17g, neighbors were built for %.17g", f,
-                          scheme->radius, n->radius);
+                          "%s: scheme.support_radius is %s, neighbors were built for %s", f,
+                          sphgi_digits(scheme->radius).text, sphgi_digits(n->radius).text);
     return SPHG_OK;
 }
 
@@ -257,16 +258,17 @@ static sphg_result report(const struct list_check *check, const sphg_list_fault 
                           target, source, (int)fault->faulty);
     case SPHG_FAULT_ONE_SIDED:
         return sphgi_fail(context, SPHG_ERROR_LISTS,
-                          "%s: the list of target %d lacks source %d at the distance %.9g, whose "
+                          "%s: the list of target %d lacks source %d at the distance %s, whose "
                           "own list has %d: half a list? (%d lists are wrong)",
-                          f, target, source, fault->distance, target, (int)fault->faulty);
+                          f, target, source, sphgi_digits(fault->distance).text, target,
+                          (int)fault->faulty);
     case SPHG_FAULT_MISSING:
         break;
     }
     return sphgi_fail(context, SPHG_ERROR_LISTS,
-                      "%s: the list of target %d lacks source %d at the distance %.9g (%d lists "
+                      "%s: the list of target %d lacks source %d at the distance %s (%d lists "
                       "are wrong)",
-                      f, target, source, fault->distance, (int)fault->faulty);
+                      f, target, source, sphgi_digits(fault->distance).text, (int)fault->faulty);
 }
 
 /* ---- The call ------------------------------------------------------------------------------- */
