@@ -124,17 +124,24 @@ static void an_empty_set_has_the_type_of_its_views(const test_case *test)
     FIXTURE_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
 }
 
+/* One particle alone, and as the target of nobody. */
+static void place_one(const test_case *test, sphg_geometry *alone, sphg_geometry *beside)
+{
+    const double origin[3] = {0};
+    const sphg_type at = test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
+    const fixture_array place = fixture_numbers(at, 1, test->dimension, origin);
+    *alone = *beside = empty_geometry(test);
+    alone->sources = beside->targets = fixture_view(&place);
+    alone->source_count = alone->target_count = beside->target_count = 1;
+}
+
 /* A wall of nobody beside one particle; then nobody beside a wall. */
 static void an_empty_set_beside_another_adds_nothing(const test_case *test)
 {
     nobody own = nobody_of(test);
     const single one = single_of(&own);
-    const double origin[3] = {0};
-    const sphg_type at = test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
-    const fixture_array place = fixture_numbers(at, 1, test->dimension, origin);
-    sphg_geometry alone = empty_geometry(test), beside = alone;
-    alone.sources = beside.targets = fixture_view(&place);
-    alone.source_count = alone.target_count = beside.target_count = 1;
+    sphg_geometry alone, beside;
+    place_one(test, &alone, &beside);
     const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
     const sphg_view of_nobody[] = {ones, none};
     const sphg_sources sources[] = {
@@ -150,12 +157,8 @@ static void a_third_set_of_nobody_adds_nothing(const test_case *test)
 {
     nobody own = nobody_of(test);
     const single one = single_of(&own);
-    const double origin[3] = {0};
-    const sphg_type at = test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
-    const fixture_array place = fixture_numbers(at, 1, test->dimension, origin);
-    sphg_geometry alone = empty_geometry(test), beside = alone;
-    alone.sources = beside.targets = fixture_view(&place);
-    alone.source_count = alone.target_count = beside.target_count = 1;
+    sphg_geometry alone, beside;
+    place_one(test, &alone, &beside);
     const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
     const sphg_view fields[] = {none, ones, none};
     const sphg_sources sources[] = {
