@@ -245,6 +245,7 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
      * axis has one cell, so that every pair is tested. */
     const bool f64 = sphgi_type_of_positions(geometry) == SPHG_F64;
     const double rounding = f64 ? 0x1p-51 : 0x1p-22;
+    const double most = f64 ? DBL_MAX / 4 : (double)FLT_MAX / 4; /* differences do not overflow */
     if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, must be >= 0 and finite", f,
                sphgi_digits(geometry->skin).text);
@@ -253,9 +254,9 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
                sphgi_digits(geometry->skin).text);
     for (int32_t a = 0; a < scheme->dimension; ++a) {
         const double period = geometry->period[a], least = 2 * (scheme->radius + geometry->skin);
-        if (!(period >= 0) || !isfinite(period))
-            REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.period[%d] is %s, must be >= 0 and finite", f,
-                   (int)a, sphgi_digits(period).text);
+        if (!(period >= 0 && period <= most))
+            REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.period[%d] is %s, must be >= 0 and <= %s", f,
+                   (int)a, sphgi_digits(period).text, sphgi_digits(most).text);
         if (period > 0 && period < least * (1 - rounding))
             REFUSE(SPHG_ERROR_ARGUMENT,
                    "%s: geometry.period[%d] is %s, must be at least 2 (H + skin) = %s", f, (int)a,

@@ -31,9 +31,15 @@ struct sphgi_lattice {
     double slack; /* rounding of differences between periodic images [L] */
 };
 
-/* period[a] 0: open. largest[a]: the largest |coordinate| along a periodic axis. */
-struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
-                                      const double *largest, sphg_type type);
+/* The periodic axes of a search for that radius. */
+struct sphgi_periods sphgi_periods_of(int32_t dimension, double radius, const double *period,
+                                      sphg_type type);
+/* Bounds how far rounding brings images apart or together along any periodic axis [L]. largest[a]:
+ * the largest |coordinate|. */
+double sphgi_slack_of(const struct sphgi_periods *periods, const double *largest, sphg_type type);
+struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
+                                      const struct sphgi_periods *periods, const double *largest,
+                                      sphg_type type);
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice);
 int32_t sphgi_cells_per_block(const struct sphgi_lattice *lattice);
 void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell);

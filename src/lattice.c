@@ -1,5 +1,6 @@
 /* How space is cut into cells and blocks. */
 #include "grid.h"
+#include <math.h>
 #include <string.h>
 
 /* Particles closer than the reach must lie in the same or in adjacent cells, for every finite
@@ -38,6 +39,49 @@ static int64_t open_cell(double t)
     return t > 0 ? floor_to_int(far_cell(t)) : floor_to_int(-far_cell(-t));
 }
 
+/* ---- Periods -------------------------------------------------------------------------------- */
+
+static double unit_of(sphg_type type)
+{
+    return type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
+}
+
+/* Coordinates stay as they are while they lie within a period or are rounded to 2^-8 H or less:
+ * what is farther out would make all cells wider, and at last no whole number of periods would be
+ * exact any more. */
+struct sphgi_periods sphgi_periods_of(int32_t dimension, double radius, const double *period,
+                                      sphg_type type)
+{
+    struct sphgi_periods periods;
+    const double coarse = radius * 0x1p-8 / unit_of(type);
+    for (int32_t a = 0; a < 3; ++a) {
+        const double given = a < dimension ? period[a] : 0;
+        const double length = type == SPHG_F64 ? given : (double)(float)given;
+        periods.length[a] = length;
+        periods.limit[a] = length > 0 ? fmax(length, coarse) : INFINITY;
+    }
+    return periods;
+}
+
+/* With |x| <= m, the difference D of two coordinates is off by 2 u m, and k L, which is exact for
+ * |k| <= 2 and else at most 4/3 |D|, by 8/3 u m. That is less than 5 u m; dividing by the period
+ * when cells are numbered (f64) adds u m for each of the two. */
+static double axis_slack(double largest, sphg_type type)
+{
+    return 8 * unit_of(type) * largest;
+}
+
+double sphgi_slack_of(const struct sphgi_periods *periods, const double *largest, sphg_type type)
+{
+    double most = 0;
+    for (int32_t a = 0; a < 3; ++a)
+        if (periods->length[a] > 0)
+            most = fmax(most, axis_slack(largest[a], type));
+    return most;
+}
+
+/* ---- Cells ---------------------------------------------------------------------------------- */
+
 static int64_t periodic_cell(const struct sphgi_axis *axis, double x)
 {
     double turns = x / axis->length;
@@ -56,12 +100,13 @@ void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t
     }
 }
 
-struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const double *period,
-                                      const double *largest, sphg_type type)
+struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
+                                      const struct sphgi_periods *periods, const double *largest,
+                                      sphg_type type)
 {
     static const int32_t shift[2][3] = {{3, 2, 0}, {2, 2, 1}};
-    struct sphgi_lattice lattice = {.dimension = dimension};
-    const double unit = type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
+    struct sphgi_lattice lattice = {.dimension = dimension,
+                                    .slack = sphgi_slack_of(periods, largest, type)};
     const double wide = reach * (1 + 0x1p-9);
     for (int32_t a = 0; a < 3; ++a) {
         struct sphgi_axis *axis = &lattice.axis[a];
@@ -69,12 +114,10 @@ struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach, const dou
         axis->shift = shift[dimension == 3][a];
         if (a >= dimension)
             *axis = (struct sphgi_axis){.shift = 0};
-        else if (period[a] > 0) {
-            const double slack = 16 * unit * largest[a];
-            const double cells = period[a] / (wide + slack);
-            lattice.slack = slack > lattice.slack ? slack : lattice.slack;
+        else if (periods->length[a] > 0) {
+            const double cells = periods->length[a] / (wide + axis_slack(largest[a], type));
             lattice.periodic = true;
-            axis->length = period[a];
+            axis->length = periods->length[a];
             axis->cells = cells < 1 ? 1 : cells < 0x1p40 ? (int64_t)cells : (int64_t)1 << 40;
             axis->low = axis->cells >= 3 ? -1 : 0;
             axis->high = axis->cells >= 2 ? 1 : 0;

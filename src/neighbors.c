@@ -71,9 +71,25 @@ struct reading {
     struct sphgi_columns columns;
     char *rows;
     size_t row_size;
+    const struct sphgi_periods *periods; /* NULL: all axes are open */
     bool trusted;
-    atomic_int_least64_t bad; /* first item that is not finite, or INT64_MAX */
+    atomic_int_least64_t bad;        /* first item that is not finite, or INT64_MAX */
+    atomic_int_least64_t largest[3]; /* |coordinate|: bits of numbers >= 0 rise as these do */
 };
+
+static void take_into_box(struct reading *reading, int32_t begin, int32_t end)
+{
+    double largest[3] = {0};
+    reading->passes->take_into_box(reading->periods, end - begin,
+                                   reading->rows + (size_t)begin * reading->row_size, largest);
+    for (int32_t a = 0; a < 3; ++a) {
+        int64_t bits;
+        memcpy(&bits, &largest[a], sizeof bits);
+        int_least64_t seen = atomic_load(&reading->largest[a]);
+        while (seen < bits && !atomic_compare_exchange_weak(&reading->largest[a], &seen, bits))
+            ;
+    }
+}
 
 static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
@@ -81,6 +97,8 @@ static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
     (void)worker;
     const bool finite = reading->passes->read_positions(
         &reading->columns, begin, end, reading->rows + (size_t)begin * reading->row_size);
+    if (reading->periods)
+        take_into_box(reading, begin, end);
     if (finite || reading->trusted)
         return;
     const int64_t bad = reading->passes->first_not_finite(&reading->columns, begin, end);
@@ -90,15 +108,25 @@ static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
 }
 
 static sphg_result read_positions(struct sphgi_checker checker, const sphg_view *view,
-                                  const char *name, int32_t dimension, int32_t count, char *rows)
+                                  const char *name, int32_t count, char *rows,
+                                  struct sphgi_geometry *g)
 {
     struct reading reading = {.passes = sphgi_passes_of(checker.context, view->type),
-                              .columns = sphgi_columns_of(view, SPHG_VECTOR, dimension),
+                              .columns = sphgi_columns_of(view, SPHG_VECTOR, g->dimension),
                               .rows = rows,
                               .row_size = SPHGI_ROW * sphgi_size_of_type(view->type),
+                              .periods = g->periodic ? &g->periods : NULL,
                               .trusted = checker.context->config.trusted != 0};
     atomic_store(&reading.bad, INT64_MAX);
+    for (int32_t a = 0; a < 3; ++a)
+        atomic_store(&reading.largest[a], 0);
     sphgi_parallel_for(checker.context, reading_task, &reading, count, GRAIN);
+    for (int32_t a = 0; a < 3; ++a) {
+        const int64_t bits = atomic_load(&reading.largest[a]);
+        double largest;
+        memcpy(&largest, &bits, sizeof largest);
+        g->largest[a] = largest > g->largest[a] ? largest : g->largest[a];
+    }
     const int64_t bad = atomic_load(&reading.bad);
     if (bad == INT64_MAX)
         return SPHG_OK;
@@ -106,15 +134,19 @@ static sphg_result read_positions(struct sphgi_checker checker, const sphg_view 
                       checker.function, name, (long long)bad);
 }
 
-static struct sphgi_geometry geometry_of(const sphg_geometry *given, int32_t dimension)
+static struct sphgi_geometry geometry_of(const sphg_geometry *given,
+                                         const struct sphgi_scheme *scheme)
 {
     struct sphgi_geometry g = {.source_count = given->source_count,
                                .target_count = given->target_count,
-                               .dimension = dimension,
+                               .dimension = scheme->dimension,
                                .part_of = !given->targets.x};
     g.position_type = sphgi_type_of_positions(given);
     g.type = given->precision ? given->precision : g.position_type;
     g.row_size = SPHGI_ROW * sphgi_size_of_type(g.position_type);
+    g.periods = sphgi_periods_of(g.dimension, scheme->radius, given->period, g.position_type);
+    for (int32_t a = 0; a < 3; ++a)
+        g.periodic |= g.periods.length[a] > 0;
     return g;
 }
 
@@ -128,11 +160,11 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
         return sphgi_fail_memory(context, checker.function);
     g->source_rows = context->input.data;
     g->target_rows = g->source_rows + (size_t)g->source_count * g->row_size;
-    sphg_result result = read_positions(checker, &given->sources, "geometry.sources", g->dimension,
-                                        g->source_count, g->source_rows);
+    sphg_result result = read_positions(checker, &given->sources, "geometry.sources",
+                                        g->source_count, g->source_rows, g);
     if (!result && !g->part_of)
-        result = read_positions(checker, &given->targets, "geometry.targets", g->dimension,
-                                g->target_count, g->target_rows);
+        result = read_positions(checker, &given->targets, "geometry.targets", g->target_count,
+                                g->target_rows, g);
     if (g->part_of)
         g->target_rows = g->source_rows;
     return result;
@@ -175,18 +207,6 @@ static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbor
 
 /* ---- Search --------------------------------------------------------------------------------- */
 
-static void largest_coordinates(const struct sphgi_geometry *g, double *largest)
-{
-    const int64_t rows = (int64_t)g->source_count + (g->part_of ? 0 : g->target_count);
-    for (int64_t k = 0; k < rows * SPHGI_ROW; ++k) {
-        const double x = g->position_type == SPHG_F64
-                             ? ((const double *)(const void *)g->source_rows)[k]
-                             : (double)((const float *)(const void *)g->source_rows)[k];
-        double *most = &largest[k % SPHGI_ROW];
-        *most = fabs(x) > *most ? fabs(x) : *most;
-    }
-}
-
 static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_geometry *given,
                   double radius)
 {
@@ -195,11 +215,9 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     n->type = g->type;
     n->radius = radius;
     n->skin = given->skin;
-    n->periodic = false;
-    for (int32_t a = 0; a < 3; ++a) {
+    n->periodic = g->periodic;
+    for (int32_t a = 0; a < 3; ++a)
         n->period[a] = a < g->dimension ? given->period[a] : 0;
-        n->periodic |= n->period[a] > 0;
-    }
     n->list_free = given->list_free != 0;
     n->part_of = g->part_of;
     n->same = g->part_of && g->target_count == g->source_count;
@@ -225,11 +243,8 @@ static size_t tables_most(const sphg_neighbors *n)
 static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
                                const struct sphgi_geometry *g)
 {
-    double largest[SPHGI_ROW] = {0};
-    if (n->periodic)
-        largest_coordinates(g, largest);
-    const struct sphgi_lattice lattice =
-        sphgi_lattice_of(n->dimension, n->radius + n->skin, n->period, largest, n->position_type);
+    const struct sphgi_lattice lattice = sphgi_lattice_of(
+        n->dimension, n->radius + n->skin, &g->periods, g->largest, n->position_type);
     if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
         return SPHG_ERROR_MEMORY;
     char *tables = n->shared.data;
@@ -249,7 +264,7 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
 sphg_result sphgi_neighbors_search(struct sphgi_checker checker, sphg_neighbors *n,
                                    const struct sphgi_scheme *scheme, const sphg_geometry *given)
 {
-    struct sphgi_geometry g = geometry_of(given, scheme->dimension);
+    struct sphgi_geometry g = geometry_of(given, scheme);
     sphg_result result = read_geometry(checker, given, &g);
     if (result)
         return result;
@@ -261,13 +276,13 @@ sphg_result sphgi_neighbors_search(struct sphgi_checker checker, sphg_neighbors 
     result = build_grids(checker.context, n, &g);
     if (!result && !n->list_free)
         result = sphgi_lists_build(checker.context, n);
+    n->skin_left = 0;
     if (!result && n->skin > 0)
         result = sphgi_skin_remember(n, &g) ? SPHG_OK : SPHG_ERROR_MEMORY;
     if (result)
         return sphgi_fail_memory(checker.context, checker.function);
     n->kind = SPHGI_SEARCHED;
     n->rebuilt = true;
-    n->skin_left = n->skin / 2;
     return SPHG_OK;
 }
 
@@ -291,7 +306,7 @@ static sphg_result use_lists(struct sphgi_checker checker, sphg_neighbors *n,
                              const struct sphgi_scheme *scheme, const sphg_geometry *given,
                              const sphg_lists *lists)
 {
-    struct sphgi_geometry g = geometry_of(given, scheme->dimension);
+    struct sphgi_geometry g = geometry_of(given, scheme);
     sphg_result result = read_geometry(checker, given, &g);
     if (result)
         return result;
@@ -369,10 +384,10 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
  * whose memory stays with the context. */
 static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n, int32_t *order)
 {
-    static const double none[3] = {0};
+    static const struct sphgi_periods open;
     struct sphgi_grid grid = {.count = 0};
     const struct sphgi_lattice lattice =
-        sphgi_lattice_of(n->dimension, n->radius, none, none, n->position_type);
+        sphgi_lattice_of(n->dimension, n->radius, &open, NULL, n->position_type);
     struct sphgi_buffer *own[] = {&grid.cell_start, &grid.rows, &grid.order};
     for (int k = 0; k < 3; ++k)
         *own[k] = context->order_grid[k];

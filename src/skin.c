@@ -16,6 +16,7 @@ bool sphgi_skin_asks_the_same(const sphg_neighbors *n, const struct sphgi_geomet
 
 struct moves {
     const struct sphgi_passes *passes;
+    const struct sphgi_periods *periods;
     const void *then, *now;
     double *largest; /* a slot per task range start: see moved_task */
     int32_t chunk;
@@ -26,19 +27,26 @@ static void moved_task(void *data, int32_t begin, int32_t end, int32_t worker)
     const struct moves *moves = data;
     (void)worker;
     for (int32_t c = begin; c < end; ++c)
-        moves->largest[c] = moves->passes->largest_move(
-            moves->then, moves->now, (int64_t)c * moves->chunk, (int64_t)(c + 1) * moves->chunk);
+        moves->largest[c] =
+            moves->passes->largest_move(moves->periods, moves->then, moves->now,
+                                        (int64_t)c * moves->chunk, (int64_t)(c + 1) * moves->chunk);
 }
 
-static double largest_move(sphg_context *context, sphg_type type, const void *then, const void *now,
-                           int32_t count)
+static double largest_move(sphg_context *context, const struct sphgi_geometry *g, const void *then,
+                           const void *now, int32_t count)
 {
     enum { CHUNKS = 64 };
     double largest[CHUNKS + 1] = {0};
-    struct moves moves = {sphgi_passes_of(context, type), then, now, largest, count / CHUNKS};
+    struct moves moves = {sphgi_passes_of(context, g->position_type),
+                          &g->periods,
+                          then,
+                          now,
+                          largest,
+                          count / CHUNKS};
     if (moves.chunk)
         sphgi_parallel_for(context, moved_task, &moves, CHUNKS, 1);
-    largest[CHUNKS] = moves.passes->largest_move(then, now, (int64_t)moves.chunk * CHUNKS, count);
+    largest[CHUNKS] =
+        moves.passes->largest_move(&g->periods, then, now, (int64_t)moves.chunk * CHUNKS, count);
     for (int32_t c = 0; c < CHUNKS; ++c)
         largest[CHUNKS] = largest[c] > largest[CHUNKS] ? largest[c] : largest[CHUNKS];
     return largest[CHUNKS];
@@ -67,18 +75,29 @@ static void refresh_rows(sphg_context *context, struct sphgi_grid *grid, const c
     sphgi_parallel_for(context, refresh_task, &refresh, grid->count, GRAIN);
 }
 
+/* What rounding can take of half the skin. A pair that is decided to be closer than H now was so
+ * within H + skin when pairs were found if
+ *   H + rounding now + 2 moved + rounding then <= H + skin - rounding of the decision.
+ * Decisions are off by a few units of H + skin; between images a distance is off by sqrt(3) 5 u m,
+ * now and then, and a move (f64) by sqrt(3) 2 u m, twice: 25 u m, half of which is less than the
+ * slack of 8 u m twice. */
+static double skin_reserve(const sphg_neighbors *n, const struct sphgi_geometry *g)
+{
+    const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
+    const double then = n->sources.lattice.slack;
+    const double now = sphgi_slack_of(&g->periods, g->largest, g->position_type);
+    return (n->skin / 2 + n->radius) * unit + 2 * (then > now ? then : now);
+}
+
 bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sphgi_geometry *g)
 {
-    double moved = largest_move(context, g->position_type, n->sources_then.data, g->source_rows,
-                                g->source_count);
+    double moved = largest_move(context, g, n->sources_then.data, g->source_rows, g->source_count);
     if (!g->part_of) {
-        const double targets = largest_move(context, g->position_type, n->targets_then.data,
-                                            g->target_rows, g->target_count);
+        const double targets =
+            largest_move(context, g, n->targets_then.data, g->target_rows, g->target_count);
         moved = targets > moved ? targets : moved;
     }
-    /* Differences of positions are rounded: leave that much of the skin alone. */
-    const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
-    const double left = n->skin * (1 - unit) / 2 - moved - n->radius * unit;
+    const double left = n->skin / 2 - moved - skin_reserve(n, g);
     if (!(left >= 0))
         return false;
     refresh_rows(context, &n->sources, g->source_rows, g->row_size);
@@ -100,5 +119,7 @@ bool sphgi_skin_remember(sphg_neighbors *n, const struct sphgi_geometry *g)
         memcpy(n->sources_then.data, g->source_rows, sources * g->row_size);
     if (!g->part_of && targets)
         memcpy(n->targets_then.data, g->target_rows, targets * g->row_size);
+    const double left = n->skin / 2 - skin_reserve(n, g);
+    n->skin_left = left > 0 ? left : 0;
     return true;
 }

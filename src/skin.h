@@ -7,7 +7,9 @@
 struct sphgi_geometry {
     int32_t source_count, target_count, dimension;
     sphg_type position_type, type;
-    bool part_of;
+    bool part_of, periodic;
+    struct sphgi_periods periods;
+    double largest[3]; /* |coordinate|, of a periodic geometry */
     size_t row_size;
     char *source_rows, *target_rows; /* in the order of the host, in context->input */
 };
@@ -21,7 +23,8 @@ bool sphgi_skin_asks_the_same(const sphg_neighbors *neighbors,
 bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *neighbors,
                       const struct sphgi_geometry *geometry);
 
-/* Keeps the positions that the pairs were found at. False: out of memory. */
+/* Keeps the positions that the pairs were found at, and says how far particles may move. False: out
+ * of memory. */
 bool sphgi_skin_remember(sphg_neighbors *neighbors, const struct sphgi_geometry *geometry);
 
 #endif

@@ -24,6 +24,39 @@ static bool read_positions(const struct sphgi_columns *columns, int64_t begin, i
                                : read_as(columns, begin, end, rows, 2);
 }
 
+SPHGI_TEMPLATE real size_of(real x)
+{
+    return x < R(0) ? -x : x;
+}
+
+/* Of one axis; gives the largest |coordinate| that is left. */
+SPHGI_TEMPLATE real reduce_axis(real *x, int64_t count, real period, real limit)
+{
+    real largest = R(0);
+    for (int64_t k = 0; k < count; ++k, x += SPHGI_ROW) {
+        if (size_of(*x) > limit)
+            *x = R(__builtin_fmod(*x, period));
+        largest = size_of(*x) > largest ? size_of(*x) : largest;
+    }
+    return largest;
+}
+
+static void take_into_box(const struct sphgi_periods *periods, int64_t count, void *rows,
+                          double *largest)
+{
+    real most[SPHGI_ROW] = {0};
+    const real *row = rows;
+    for (int64_t k = 0; k < count; ++k, row += SPHGI_ROW)
+        for (int c = 0; c < SPHGI_ROW; ++c)
+            most[c] = size_of(row[c]) > most[c] ? size_of(row[c]) : most[c];
+    for (int a = 0; a < 3; ++a) {
+        const real limit = R(periods->limit[a]);
+        if (most[a] > limit)
+            most[a] = reduce_axis((real *)rows + a, count, R(periods->length[a]), limit);
+        largest[a] = most[a] > largest[a] ? most[a] : largest[a];
+    }
+}
+
 typedef double four_doubles __attribute__((vector_size(32), may_alias));
 typedef int64_t four_longs __attribute__((vector_size(32), may_alias));
 typedef uint64_t four_bits __attribute__((vector_size(32), may_alias));

@@ -142,6 +142,12 @@ struct sphgi_cutting {
     int32_t local_shift[3]; /* where the axis stands in the number of a cell in its block */
 };
 
+/* Periodic axes, as distances have them: in the type of the positions. */
+struct sphgi_periods {
+    double length[3]; /* 0: open */
+    double limit[3];  /* coordinates beyond it are taken into the box; open: infinite */
+};
+
 /* Staged runs that hold the candidates of a cell; the first one holds the cell itself, from staged
  * number `own` on. */
 struct sphgi_runs {
@@ -170,6 +176,10 @@ struct sphgi_passes {
     /* Rows x y z 0 of positions [begin, end); false: one is not finite. */
     bool (*read_positions)(const struct sphgi_columns *columns, int64_t begin, int64_t end,
                            void *rows);
+    /* Coordinates of rows beyond the limit become their remainder by the period, which is exact and
+     * has their sign. largest[a] is raised to the largest |coordinate| there is then. */
+    void (*take_into_box)(const struct sphgi_periods *periods, int64_t count, void *rows,
+                          double *largest);
     /* Block, and cell in it, of each row; false: one is too far away, and all are undefined. */
     bool (*cut)(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                 int32_t (*block)[4], uint8_t *local);
@@ -181,7 +191,8 @@ struct sphgi_passes {
                      const int32_t *order, int64_t begin, int64_t count, void *rows);
     /* x, y, z of rows; up to SPHGI_LANES_MOST - 1 items more are read and written. */
     void (*transpose_rows)(const void *rows, int32_t count, void *x, void *y, void *z);
-    double (*largest_move)(const void *then, const void *now, int64_t begin, int64_t end);
+    double (*largest_move)(const struct sphgi_periods *periods, const void *then, const void *now,
+                           int64_t begin, int64_t end);
 
     /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: staged number
      * of the first, if it is a source, those of the others follow; else -1. Returns the number of

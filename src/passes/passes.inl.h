@@ -40,6 +40,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .lanes = LANES,
     .load_rows = load_rows,
     .read_positions = read_positions,
+    .take_into_box = take_into_box,
     .cut = cut,
     .first_not_finite = first_not_finite,
 #if REAL_IS_F64

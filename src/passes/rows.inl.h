@@ -106,19 +106,30 @@ static bool stage_f64(const void *positions, const struct sphgi_columns *volume,
 }
 #endif
 
-/* Largest |x - x'| of two sets of rows, rounded up; NaN if one is. */
-static double largest_move(const void *then, const void *now, int64_t begin, int64_t end)
+/* The move along an axis, by way of the nearest image. */
+SPHGI_TEMPLATE double move_of(real then, real now, double period, double half)
+{
+    const double move = (double)then - (double)now;
+    return move > half || move < -half ? __builtin_remainder(move, period) : move;
+}
+
+/* Largest |x - x'| of two sets of rows, rounded up; infinite if one is not finite. */
+static double largest_move(const struct sphgi_periods *periods, const void *then, const void *now,
+                           int64_t begin, int64_t end)
 {
     const real *a = (const real *)then + SPHGI_ROW * begin;
     const real *b = (const real *)now + SPHGI_ROW * begin;
-    double largest = 0;
+    double largest = 0, half[3];
+    for (int c = 0; c < 3; ++c)
+        half[c] = periods->length[c] > 0 ? periods->length[c] / 2 : __builtin_inf();
     for (int64_t k = begin; k < end; ++k, a += SPHGI_ROW, b += SPHGI_ROW) {
         double square = 0;
         for (int c = 0; c < 3; ++c) {
-            const double difference = (double)a[c] - (double)b[c];
-            square += difference * difference;
+            const double move = move_of(a[c], b[c], periods->length[c], half[c]);
+            square += move * move;
         }
-        largest = square > largest ? square : largest;
+        if (!(square <= largest))
+            largest = square - square == 0 ? square : __builtin_inf();
     }
     return __builtin_sqrt(largest) * (1 + 0x1p-50);
 }

@@ -55,10 +55,20 @@ static double rounded(const cloud *on, double x)
     return on->type == SPHG_F64 ? x : (double)(float)x;
 }
 
-/* Of fl(x_i - x_j) + k period the smallest. */
-static double separation(const cloud *on, double a, double b, int axis)
+/* Taken into the box where it is rounded by more than 2^-8 H. */
+static double boxed(const cloud *on, double x, int axis)
 {
-    const double period = on->geometry.period[axis], difference = rounded(on, a - b);
+    const double period = on->geometry.period[axis];
+    const double coarse = on->scheme.support_radius * (on->type == SPHG_F64 ? 0x1p45 : 0x1p16);
+    return period > 0 && fabs(x) > fmax(coarse, period) ? fmod(x, period) : x;
+}
+
+/* Of fl(x_i - x_j) + k period the smallest. */
+static double separation(const cloud *on, double x, double other, int axis)
+{
+    const double period = on->geometry.period[axis];
+    const double a = boxed(on, x, axis), b = boxed(on, other, axis);
+    const double difference = rounded(on, a - b);
     double best = difference;
     if (!(period > 0))
         return difference;

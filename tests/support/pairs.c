@@ -47,12 +47,21 @@ static double rounded(const scene *particles, double x)
     return particles->is_double ? x : (double)(float)x;
 }
 
-/* The difference of two coordinates, shifted by whole periods to the nearest image. The tests'
- * periods are short enough in bits for k * period to be exact. A sum of two floats that is rounded
- * to double first and then to float is the one that is rounded once, since 53 >= 2 * 24 + 2. */
+/* A coordinate along a periodic axis, taken into the box where it is too far out to be told from
+ * its neighbours within 2^-8 H. */
+static double boxed(const scene *particles, double x, int axis, double support_radius)
+{
+    const double period = rounded(particles, particles->period[axis]);
+    const double coarse = support_radius * (particles->is_double ? 0x1p45 : 0x1p16);
+    return period > 0 && fabs(x) > fmax(coarse, period) ? fmod(x, period) : x;
+}
+
+/* The difference of two coordinates, shifted by whole periods to the nearest image. A sum of two
+ * floats that is rounded to double first and then to float is the one that is rounded once, since
+ * 53 >= 2 * 24 + 2. */
 static double separation(const scene *particles, double a, double b, int axis)
 {
-    const double period = particles->period[axis];
+    const double period = rounded(particles, particles->period[axis]);
     const double difference = rounded(particles, a - b);
     double best = difference;
     const double nearest = period > 0 ? -nearbyint(difference / period) : 0;
@@ -94,7 +103,8 @@ static int is_neighbour(const scene *particles, int i, int j, double support_rad
     if (!particles->targets && i == j)
         return 0;
     for (int k = 0; k < d; k++) {
-        difference[k] = separation(particles, target[k], source[k], k);
+        difference[k] = separation(particles, boxed(particles, target[k], k, support_radius),
+                                   boxed(particles, source[k], k, support_radius), k);
         if (fabs(difference[k]) > far)
             return 0;
     }
