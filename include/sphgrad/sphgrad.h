@@ -283,7 +283,9 @@ typedef struct sphg_geometry {
     double skin;         /* [L], search only: find pairs up to H + skin and keep them until a
                             particle has moved skin / 2; results are exact throughout */
     double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin) up to rounding; positions
-                            anywhere: of fl(fl(x_i - x_j) + k period) the smallest counts */
+                            anywhere: of fl(fl(x_i - x_j) + k period) the smallest counts, where
+                            fmod(x, period) stands for x if |x| is beyond a period and 2^16 H
+                            (f64: 2^45 H). Skins measure moves to the nearest image */
 } sphg_geometry;
 
 /* The usual ways; set precision, list_free, skin and period afterwards. */
@@ -336,8 +338,9 @@ SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is igno
 /* Copies the positions and finds all pairs with r < H, exactly those of brute force. Reads
  * dimension and support_radius of scheme. Call it each step: it does what the skin demands.
  * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY (build again).
- * Cost: time and memory O(n + pairs) for any extent of the domain. On a periodic axis cells are
- * wider by 2^-20 (f64: 2^-49) of the largest |x|: wrap positions before that counts beside H. */
+ * Cost: time and memory O(n + pairs) for any extent of the domain, wrapped by the host or not. Cells
+ * of a periodic axis are wider by 2^-21 (f64: 2^-50) of the largest |x| that is left (see period):
+ * it counts beside H only where the period is longer than about 10^5 H (f64: 10^13 H). */
 SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
                                            const sphg_scheme *scheme,
                                            const sphg_geometry *geometry);
