@@ -26,7 +26,7 @@ static bool read_positions(const struct sphgi_columns *columns, int64_t begin, i
 
 SPHGI_TEMPLATE real size_of(real x)
 {
-    return x < R(0) ? -x : x;
+    return R(__builtin_fabs(x));
 }
 
 /* Of one axis; gives the largest |coordinate| that is left. */

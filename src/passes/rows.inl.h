@@ -110,28 +110,38 @@ static bool stage_f64(const void *positions, const struct sphgi_columns *volume,
 SPHGI_TEMPLATE double move_of(real then, real now, double period, double half)
 {
     const double move = (double)then - (double)now;
-    return move > half || move < -half ? __builtin_remainder(move, period) : move;
+    return __builtin_fabs(move) > half ? __builtin_remainder(move, period) : move;
 }
 
 /* Largest |x - x'| of two sets of rows, rounded up; infinite if one is not finite. */
-static double largest_move(const struct sphgi_periods *periods, const void *then, const void *now,
-                           int64_t begin, int64_t end)
+SPHGI_TEMPLATE double largest_move_as(const double *length, const real *a, const real *b,
+                                      int64_t count, bool periodic)
 {
-    const real *a = (const real *)then + SPHGI_ROW * begin;
-    const real *b = (const real *)now + SPHGI_ROW * begin;
     double largest = 0, half[3];
     for (int c = 0; c < 3; ++c)
-        half[c] = periods->length[c] > 0 ? periods->length[c] / 2 : __builtin_inf();
-    for (int64_t k = begin; k < end; ++k, a += SPHGI_ROW, b += SPHGI_ROW) {
+        half[c] = length[c] > 0 ? length[c] / 2 : __builtin_inf();
+    for (int64_t k = 0; k < count; ++k, a += SPHGI_ROW, b += SPHGI_ROW) {
         double square = 0;
         for (int c = 0; c < 3; ++c) {
-            const double move = move_of(a[c], b[c], periods->length[c], half[c]);
+            const double move =
+                periodic ? move_of(a[c], b[c], length[c], half[c]) : (double)a[c] - (double)b[c];
             square += move * move;
         }
         if (!(square <= largest))
             largest = square - square == 0 ? square : __builtin_inf();
     }
     return __builtin_sqrt(largest) * (1 + 0x1p-50);
+}
+
+static double largest_move(const struct sphgi_periods *periods, const void *then, const void *now,
+                           int64_t begin, int64_t end)
+{
+    const double *length = periods->length;
+    const real *a = (const real *)then + SPHGI_ROW * begin;
+    const real *b = (const real *)now + SPHGI_ROW * begin;
+    if (length[0] > 0 || length[1] > 0 || length[2] > 0)
+        return largest_move_as(length, a, b, end - begin, true);
+    return largest_move_as(length, a, b, end - begin, false);
 }
 
 /* What belongs to targets: items of numbers that follow one another are moved four numbers
