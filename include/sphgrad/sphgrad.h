@@ -292,8 +292,15 @@ typedef struct sphg_geometry {
 static inline sphg_geometry sphg_targets_apart(sphg_view targets, int32_t target_count,
                                                sphg_view sources, int32_t source_count)
 {
-    sphg_geometry geometry = {sources,      targets, source_count, target_count,
-                              (sphg_type)0, 0,       0,            {0, 0, 0}};
+#ifdef __cplusplus
+    sphg_geometry geometry = sphg_geometry();
+#else
+    sphg_geometry geometry = {0};
+#endif
+    geometry.sources = sources;
+    geometry.targets = targets;
+    geometry.source_count = source_count;
+    geometry.target_count = target_count;
     return geometry;
 }
 static inline sphg_geometry sphg_all(sphg_view positions, int32_t count) /* over all */

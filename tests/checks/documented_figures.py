@@ -100,7 +100,8 @@ def read(*path):
 def check_counts(root, hostile, names):
     """Of hostile calls, functions and members, which grow with the interface."""
     document = read(root, "docs", "reliability.md")
-    output = subprocess.run([hostile], check=True, stdout=subprocess.PIPE, text=True).stdout
+    every_case = {name: value for name, value in os.environ.items() if name != "SPHG_TEST_SHARE"}
+    output = subprocess.run([hostile], check=True, stdout=subprocess.PIPE, text=True, env=every_case).stdout
     counts = {"every_bad": 0, "trusted": 0}
     name = ""
     for line in output.splitlines():
