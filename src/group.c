@@ -1,4 +1,4 @@
-/* A group of targets from its pairs to its results: pieces are filled, summed, finished. */
+/* A group of targets from its pairs to its results: tiles are filled, summed, finished. */
 #include "worker.h"
 #include "clean.h"
 #include "corrections.h"
@@ -7,12 +7,7 @@
 #include "view.h"
 #include <string.h>
 
-static void empty_piece(struct sphgi_worker *w)
-{
-    w->regular = false;
-    w->piece.parts = 0;
-    w->piece.begin[0] = 0;
-}
+/* ---- Lanes ---------------------------------------------------------------------------------- */
 
 /* The lanes from `first` on. Those without a target repeat one: they are read like the others, and
  * never written. */
@@ -25,6 +20,7 @@ static void put_to_work(struct sphgi_worker *w, int32_t first)
     for (int32_t l = group->lanes; l < first + w->width; ++l) {
         group->target[l] = group->target[first];
         group->place[l] = group->place[first];
+        group->x[l] = group->x[first];
     }
 }
 
@@ -32,7 +28,7 @@ static void begin(struct sphgi_worker *w)
 {
     put_to_work(w, w->summed);
     w->targets_loaded = false;
-    w->pieces = 0;
+    w->tiles = 0;
     if (w->sweep->pairs)
         memset(w->written + w->first, 0, (size_t)w->targets * sizeof w->written[0]);
     w->summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
@@ -44,128 +40,224 @@ static void begin(struct sphgi_worker *w)
     }
 }
 
-void sphgi_group_begin(struct sphgi_worker *w)
+/* The sums of this round. */
+static int32_t first_sum(const struct sphgi_worker *w)
 {
-    empty_piece(w);
-    w->touched = 0;
-    begin(w);
+    return w->summing & SPHGI_SUM_MOMENTS ? 0 : w->sweep->plan->moment_sums;
 }
 
-/* One part of the piece: pairs of one lane, at most what is left of it. */
-static void add_part(struct sphgi_worker *w, int32_t lane, const void *ids, int32_t count)
+static int32_t sums_of_round(const struct sphgi_worker *w)
 {
-    struct sphgi_piece *piece = &w->piece;
-    const int32_t part = piece->parts++;
-    piece->ids[part] = ids;
-    piece->lane[part] = lane;
-    piece->count[part] = count;
-    piece->fresh[part] = !(w->touched >> lane & 1);
-    w->touched |= 1u << lane;
-    piece->begin[part + 1] = piece->begin[part] + ((count + w->pad - 1) & -w->pad);
+    const struct sphgi_plan *plan = w->sweep->plan;
+    return (w->summing & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums) - first_sum(w);
 }
 
-static void gather(struct sphgi_worker *w, int32_t first, bool wide)
+/* ---- Tiles ---------------------------------------------------------------------------------- */
+
+/* Steps [begin, begin + tile.steps) of 32-bit lists: the host's numbers become ids of rows, and
+ * rows that are not at hand are copied. */
+static void fill_from_wide(struct sphgi_worker *w, const struct sphgi_lane_lists *lists,
+                           int32_t begin)
 {
-    w->piece.wide = wide;
+    const bool hosts = w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS;
+    struct sphgi_lane_lists ready = {.wide = true, .dummy = w->gather.dummy};
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        const int32_t count = w->pairs[l];
+        const uint32_t *list = (const uint32_t *)lists->ids[l] + begin;
+        uint32_t *ids = (uint32_t *)(void *)w->clean_ids + l * SPHGI_CHUNK;
+        if (hosts && count)
+            sphgi_clean_list(w, sphgi_targets(w)[l], (const int32_t *)list, count, ids);
+        for (int32_t k = 0; !hosts && k < count; ++k)
+            ids[k] = list[k] * SPHGI_ID_STEP;
+        if (w->local && count)
+            sphgi_make_local(w, ids, count, l * SPHGI_CHUNK);
+        ready.ids[l] = ids;
+        ready.count[l] = count;
+    }
+    w->passes->interleave(&ready, 0, &w->tile);
+}
+
+static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+{
+    for (int32_t l = 0; l < w->passes->lanes; ++l)
+        w->pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
+    if (lists->wide)
+        fill_from_wide(w, lists, begin);
+    else
+        w->passes->interleave(lists, begin, &w->tile);
     w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
-        &w->gather, w->group.x + w->first, &w->piece, first, w->masked_ids);
+        &w->gather, w->group.x + w->first, w->passes->lanes, &w->tile);
+    sphgi_evaluate_tile(w);
 }
 
-static int32_t room_of(struct sphgi_worker *w, int64_t wanted)
+/* A lane for each target. */
+static void run_lanes(struct sphgi_worker *w)
 {
-    struct sphgi_piece *piece = &w->piece;
-    const int32_t room = SPHGI_PIECE - piece->begin[piece->parts];
-    const bool fits = piece->parts < SPHGI_LANES_MOST && wanted <= room;
-    if (!fits && piece->parts) {
-        sphgi_evaluate_piece(w);
-        empty_piece(w);
-        return SPHGI_PIECE;
+    w->tile.spread = false;
+    int32_t at = 0;
+    do {
+        w->tile.chunk = at / SPHGI_CHUNK;
+        w->tile.steps = sphgi_min32(SPHGI_CHUNK, w->longest - at);
+        run_tile(w, &w->lists, at);
+        at += SPHGI_CHUNK;
+    } while (at < w->longest);
+}
+
+static void join(struct sphgi_worker *w)
+{
+    const int32_t chunks = (w->spread_pairs + SPHGI_CHUNK - 1) / SPHGI_CHUNK,
+                  sums = sums_of_round(w);
+    if (w->tile.spread && sums)
+        w->passes->join_lanes(&w->tile, sphgi_max32(chunks, 1), sums,
+                              sphgi_lane(w, w->reduced, first_sum(w)));
+}
+
+/* All lanes for one target: a chunk each, from pair number `at` of its list on.
+ */
+static void run_spread(struct sphgi_worker *w, const void *ids, int32_t count, ptrdiff_t distance,
+                       int32_t at, bool wide)
+{
+    struct sphgi_lane_lists lists = {.wide = wide};
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        const int32_t first = l * SPHGI_CHUNK;
+        lists.ids[l] = (const char *)ids + first * distance;
+        lists.count[l] = sphgi_max32(0, sphgi_min32(SPHGI_CHUNK, count - first));
+        lists.stride[l] = w->lists.stride[0];
     }
-    return room;
+    w->tile.spread = true;
+    w->spread_pairs = count;
+    w->tile.chunk = at / SPHGI_CHUNK;
+    w->tile.steps = sphgi_min32(SPHGI_CHUNK, count);
+    run_tile(w, &lists, 0);
+    join(w);
 }
 
-/* Ids in the host's numbers, or in those of rows: cleaned, and copied if rows are local. */
-static void add_listed(struct sphgi_worker *w, int32_t lane, const void *ids, int64_t count)
+static int32_t spread_most(const struct sphgi_worker *w)
 {
-    const sphg_neighbors *n = w->sweep->set->neighbors;
-    while (count > 0) {
-        const int32_t part = (int32_t)(count < SPHGI_PIECE ? count : SPHGI_PIECE);
-        room_of(w, part);
-        const int32_t at = w->piece.begin[w->piece.parts];
-        uint32_t *clean = (uint32_t *)(void *)w->clean_ids + at;
-        int32_t kept = part;
-        if (n->kind == SPHGI_HOST_LISTS)
-            kept = sphgi_clean_list(w, sphgi_targets(w)[lane], ids, part, clean);
-        else
-            memcpy(clean, ids, (size_t)part * sizeof *clean);
-        if (w->local)
-            sphgi_make_local(w, clean, kept, at);
-        for (int32_t k = 0; k < kept; ++k)
-            clean[k] *= SPHGI_ID_STEP;
-        const int32_t padded = (int32_t)sphgi_round_up((size_t)kept, SPHGI_PAD);
-        for (int32_t k = kept; k < padded; ++k)
-            clean[k] = w->gather.dummy;
-        if (kept) {
-            add_part(w, lane, clean, kept);
-            gather(w, w->piece.parts - 1, true);
-        }
-        ids = (const char *)ids + (size_t)part * sizeof(int32_t);
-        count -= part;
+    return w->passes->lanes * SPHGI_CHUNK;
+}
+
+static void run_long_list(struct sphgi_worker *w)
+{
+    const struct sphgi_lane_lists *lists = &w->lists;
+    const ptrdiff_t distance = lists->wide ? 4 : 2 * lists->stride[0];
+    const int32_t most = spread_most(w);
+    for (int64_t at = 0; at < w->longest; at += most)
+        run_spread(w, (const char *)lists->ids[0] + at * distance,
+                   (int32_t)(w->longest - at < most ? w->longest - at : most), distance,
+                   (int32_t)at, lists->wide);
+}
+
+/* ---- Rounds --------------------------------------------------------------------------------- */
+
+static void settle(struct sphgi_worker *w)
+{
+    if (w->longest > SPHGI_PLAIN_CHUNKS * SPHGI_CHUNK)
+        w->passes->settle(&w->tile, sums_of_round(w), sphgi_lane(w, w->reduced, first_sum(w)));
+}
+
+/* One target in all lanes: the matrices of lanes without a target of their own are not decomposed.
+ */
+static void repeat_coefficients(struct sphgi_worker *w)
+{
+    const size_t size = sphgi_size_of_type(w->sweep->plan->type);
+    for (int32_t number = 0; number < 16; ++number) {
+        char *lane = sphgi_lane(w, w->coefficients, number);
+        for (int32_t l = 1; l < w->passes->lanes; ++l)
+            memcpy(lane + (size_t)l * size, lane, size);
     }
 }
 
-void sphgi_group_add(struct sphgi_worker *w, int32_t lane, const void *ids, int64_t count,
-                     bool wide)
+/* All pairs were added once: is another round over them needed? Classic, corrections and fields in
+ * one sweep: the first round gives the coefficients. If one tile held everything, it is still
+ * there. */
+static bool again(struct sphgi_worker *w)
 {
-    if (wide) {
-        add_listed(w, lane, ids, count);
-        return;
-    }
-    while (count > 0) {
-        const int32_t room = room_of(w, count);
-        const int32_t part = (int32_t)(count < room ? count : room);
-        add_part(w, lane, ids, part);
-        gather(w, w->piece.parts - 1, false);
-        ids = (const char *)ids + (size_t)part * sizeof(uint16_t);
-        count -= part;
-    }
-}
-
-/* Sums [first, first + count); lanes that saw no pair have none. */
-static void reduce(struct sphgi_worker *w, int32_t first, int32_t count)
-{
-    const int32_t lanes = w->passes->lanes;
-    if (w->touched != (1u << lanes) - 1)
-        for (int32_t l = 0; l < lanes; ++l)
-            if (!(w->touched >> l & 1))
-                w->passes->clear_partial(sphgi_partial(w, first), count, l);
-    w->passes->reduce(sphgi_partial(w, first), count, sphgi_lane(w, w->reduced, first));
-}
-
-/* After all pairs were added: is another round needed? Classic, corrections and fields in one
- * sweep: the first round gives the coefficients. If one piece held everything, the second round
- * reads it again by itself. */
-bool sphgi_group_again(struct sphgi_worker *w)
-{
-    const bool rest = w->piece.parts > 0;
-    if (rest)
-        sphgi_evaluate_piece(w);
-    const bool first_round = w->coefficients_first && (w->sweep->steps & SPHGI_SUM_MOMENTS) &&
-                             w->summing == SPHGI_SUM_MOMENTS;
-    if (!first_round)
+    settle(w);
+    if (!w->coefficients_first || !(w->sweep->steps & SPHGI_SUM_MOMENTS) ||
+        w->summing != SPHGI_SUM_MOMENTS)
         return false;
-    reduce(w, 0, w->sweep->plan->moment_sums);
     sphgi_finish_corrections(w);
+    if (w->tile.spread)
+        repeat_coefficients(w);
     w->summing = SPHGI_SUM_FIELDS;
-    if (w->pieces == 0 || (w->pieces == 1 && rest)) {
-        if (rest)
-            sphgi_evaluate_piece(w);
-        empty_piece(w);
-        return false;
+    const bool held = w->tiles == 1;
+    w->tiles = 0;
+    if (!held)
+        return true;
+    sphgi_evaluate_tile(w);
+    join(w);
+    settle(w);
+    return false;
+}
+
+static void end(struct sphgi_worker *w)
+{
+    w->summed = w->group.lanes;
+    if (!w->sweep->pairs && (w->summing & SPHGI_SUM_FIELDS))
+        sphgi_load_targets(w);
+}
+
+void sphgi_group_run(struct sphgi_worker *w)
+{
+    begin(w);
+    w->longest = 0;
+    for (int32_t l = 0; l < w->targets; ++l)
+        w->longest = sphgi_max32(w->longest, w->lists.count[l]);
+    for (int32_t l = w->targets; l < w->passes->lanes; ++l) {
+        w->lists.ids[l] = w->lists.ids[0];
+        w->lists.count[l] = 0;
+        w->lists.stride[l] = 1;
     }
-    empty_piece(w);
-    w->touched = 0;
-    return true;
+    w->lists.side_by_side &= w->targets == w->passes->lanes;
+    const bool spread = w->targets == 1 && w->longest > SPHGI_CHUNK;
+    do
+        if (spread)
+            run_long_list(w);
+        else
+            run_lanes(w);
+    while (again(w));
+    end(w);
+}
+
+void sphgi_stream_begin(struct sphgi_worker *w)
+{
+    begin(w);
+    w->streamed = w->waiting = 0;
+}
+
+static void run_waiting(struct sphgi_worker *w)
+{
+    run_spread(w, w->host_ids, w->waiting, sizeof(uint32_t), w->streamed, true);
+    w->streamed += w->waiting;
+    w->waiting = 0;
+}
+
+void sphgi_stream_add(struct sphgi_worker *w, const uint32_t *rows, int32_t count)
+{
+    while (count > 0) {
+        const int32_t part = sphgi_min32(count, spread_most(w) - w->waiting);
+        memcpy((uint32_t *)(void *)w->host_ids + w->waiting, rows, (size_t)part * sizeof *rows);
+        w->waiting += part;
+        rows += part;
+        count -= part;
+        if (w->waiting == spread_most(w))
+            run_waiting(w);
+    }
+}
+
+bool sphgi_stream_again(struct sphgi_worker *w)
+{
+    if (w->waiting || !w->streamed)
+        run_waiting(w);
+    w->longest = w->streamed;
+    w->streamed = 0;
+    return again(w);
+}
+
+void sphgi_stream_end(struct sphgi_worker *w)
+{
+    end(w);
 }
 
 /* ---- The arena: sums of several source sets ------------------------------------------------- */
@@ -232,17 +324,6 @@ static void finish_pairs(struct sphgi_worker *w)
     }
 }
 
-void sphgi_group_end(struct sphgi_worker *w)
-{
-    w->summed = w->group.lanes;
-    if (w->sweep->pairs)
-        return;
-    if (w->summing & SPHGI_SUM_FIELDS)
-        sphgi_load_targets(w); /* no pair may have asked for them */
-    const int32_t first = w->coefficients_first ? w->sweep->plan->moment_sums : 0;
-    reduce(w, first, w->sweep->plan->sums - first);
-}
-
 void sphgi_group_finish(struct sphgi_worker *w)
 {
     put_to_work(w, 0);
@@ -253,56 +334,6 @@ void sphgi_group_finish(struct sphgi_worker *w)
     else
         each_arena_part(w, false);
     w->group.lanes = w->summed = 0;
-}
-
-/* One part a lane, whole and fresh. False: a piece cannot hold them. */
-static bool make_regular(struct sphgi_worker *w)
-{
-    struct sphgi_piece *piece = &w->piece;
-    const int32_t lanes = w->group.lanes - w->summed;
-    int64_t at = 0;
-    for (int32_t l = 0; l < lanes; ++l) {
-        at += ((int64_t)piece->count[l] + w->pad - 1) & -w->pad;
-        piece->begin[l + 1] = (int32_t)at;
-    }
-    piece->begin[0] = 0;
-    piece->parts = lanes;
-    w->touched = (1u << lanes) - 1;
-    for (int32_t l = 0; !w->regular && l < SPHGI_LANES_MOST; ++l) {
-        piece->lane[l] = l;
-        piece->fresh[l] = true;
-    }
-    w->regular = true;
-    return at <= SPHGI_PIECE;
-}
-
-/* More pairs than a piece holds. */
-static void run_in_pieces(struct sphgi_worker *w, bool wide)
-{
-    const void *ids[SPHGI_LANES_MOST];
-    int32_t count[SPHGI_LANES_MOST];
-    memcpy(ids, w->piece.ids, sizeof ids);
-    memcpy(count, w->piece.count, sizeof count);
-    sphgi_group_begin(w);
-    do
-        for (int32_t l = 0; l < w->targets; ++l)
-            sphgi_group_add(w, l, ids[l], count[l], wide);
-    while (sphgi_group_again(w));
-    sphgi_group_end(w);
-}
-
-void sphgi_group_run(struct sphgi_worker *w, bool wide)
-{
-    if (!make_regular(w) || (wide && w->local)) {
-        run_in_pieces(w, wide);
-        return;
-    }
-    begin(w);
-    if (wide && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
-        sphgi_clean_piece(w);
-    gather(w, 0, wide);
-    sphgi_group_again(w); /* a whole piece never needs its pairs again */
-    sphgi_group_end(w);
 }
 
 void sphgi_group_finish_from_arena(struct sphgi_worker *w)

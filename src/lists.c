@@ -53,6 +53,36 @@ static int64_t most_units(const struct sphgi_runs *runs)
     return (int64_t)SPHGI_FIND_MOST * (runs->candidates + SPHGI_PAD);
 }
 
+static int64_t woven_units(const uint16_t *lengths, int32_t targets)
+{
+    int64_t units = 0;
+    for (int32_t t = 0; t < targets; t += SPHGI_LANES_MOST)
+        units += sphgi_list_group_of(lengths + t, targets - t).units;
+    return units;
+}
+
+/* The block's lists, collected one after the other, in the form that is kept. */
+static void weave_block(const struct sphgi_finder *finder, const uint16_t *lengths, int32_t targets,
+                        uint16_t *to)
+{
+    const uint16_t *from = finder->ids;
+    for (int32_t t = 0; t < targets; t += SPHGI_LANES_MOST) {
+        const struct sphgi_list_group group = sphgi_list_group_of(lengths + t, targets - t);
+        const uint16_t *list[SPHGI_LANES_MOST], *const first = from;
+        int32_t count[SPHGI_LANES_MOST];
+        for (int32_t k = 0; k < group.count; ++k) {
+            list[k] = from;
+            count[k] = lengths[t + k];
+            from += sphgi_round_up(lengths[t + k], SPHGI_PAD);
+        }
+        if (group.side_by_side)
+            finder->passes->weave(list, count, group.count, group.longest, to);
+        else
+            memcpy(to, first, (size_t)group.units * sizeof *to);
+        to += group.units;
+    }
+}
+
 /* False: the lists of the block are too long to be collected at once. */
 static bool build_block(struct build *build, const struct sphgi_finder *finder,
                         const struct sphgi_surroundings *around)
@@ -76,15 +106,17 @@ static bool build_block(struct build *build, const struct sphgi_finder *finder,
                                        lengths + t);
         }
     }
-    for (int32_t t = start[0]; t < start[grid->cells]; ++t)
-        pairs += lengths[t];
+    const int32_t first = start[0], targets = start[grid->cells] - first;
+    for (int32_t t = 0; t < targets; ++t)
+        pairs += lengths[first + t];
     atomic_fetch_add(&build->pairs, pairs);
     const int64_t head = head_units(around);
-    const int64_t place = claim(build, around->block, head + used, false);
+    const int64_t units = woven_units(lengths + first, targets);
+    const int64_t place = claim(build, around->block, head + units, false);
     if (place < 0)
         return true;
     write_head(around, n->found.ids + place);
-    memcpy(n->found.ids + place + head, finder->ids, (size_t)used * sizeof(uint16_t));
+    weave_block(finder, lengths + first, targets, n->found.ids + place + head);
     return true;
 }
 

@@ -5,10 +5,10 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Found pairs, target by target in grid order. A target's ids are padded to a multiple of SPHGI_PAD
- * with 0. Normally they are staged numbers (struct sphgi_surroundings) times SPHGI_ID_STEP in 16
- * bits; in a clump too dense for that ("wide" block) they are 32-bit numbers of rows, and behind
- * each target's length.
+/* Found pairs, target by target in grid order, in groups of SPHGI_LANES_MOST that stand side by
+ * side: [step][target], padded with 0. Normally ids are staged numbers (struct sphgi_surroundings)
+ * times SPHGI_ID_STEP in 16 bits; in a clump too dense for that ("wide" block) they are 32-bit
+ * numbers of rows, and behind each target's length.
  *
  * Lists share one piece of memory with the tables of the grids: these are large where lists are
  * small, in clouds so thin that many particles have a block of their own. Memory grows only when
@@ -24,6 +24,29 @@ struct sphgi_found {
     int64_t most_pairs;          /* of any search; < 0: none yet */
     int32_t most_targets, most_sources;
 };
+
+/* Targets of a block whose lists stand side by side, as sweeps read them. If one of them is much
+ * longer than the others, they follow one another instead, each padded to SPHGI_PAD. */
+struct sphgi_list_group {
+    int32_t count;   /* targets */
+    int32_t longest; /* pairs of one */
+    bool side_by_side;
+    int64_t units;
+};
+
+static inline struct sphgi_list_group sphgi_list_group_of(const uint16_t *lengths, int32_t left)
+{
+    struct sphgi_list_group group = {.count = sphgi_min32(left, SPHGI_LANES_MOST)};
+    int64_t padded = 0;
+    for (int32_t k = 0; k < group.count; ++k) {
+        group.longest = sphgi_max32(group.longest, lengths[k]);
+        padded += (int64_t)sphgi_round_up(lengths[k], SPHGI_PAD);
+    }
+    const int64_t woven = (int64_t)group.longest * group.count;
+    group.side_by_side = group.count > 1 && woven <= 2 * padded;
+    group.units = group.side_by_side ? (int64_t)sphgi_round_up((size_t)woven, SPHGI_PAD) : padded;
+    return group;
+}
 
 enum sphgi_neighbors_kind { SPHGI_NEVER_BUILT, SPHGI_SEARCHED, SPHGI_HOST_LISTS };
 

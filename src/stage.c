@@ -122,14 +122,14 @@ void sphgi_use_local_rows(struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const sphg_type type = sweep->set->neighbors->position_type;
     const size_t size = row_size(sweep->plan->type);
-    make_dummy(w->staged_positions + SPHGI_PIECE * row_size(type), type);
+    make_dummy(w->staged_positions + SPHGI_TILE * row_size(type), type);
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
-        char *rows = w->staged_rows + (size_t)s * (SPHGI_PIECE + 1) * size;
-        memset(rows + SPHGI_PIECE * size, 0, size);
+        char *rows = w->staged_rows + (size_t)s * (SPHGI_TILE + 1) * size;
+        memset(rows + SPHGI_TILE * size, 0, size);
         w->rows[s] = rows;
     }
     w->gather.rows = w->staged_positions;
-    w->gather.dummy = SPHGI_ID_STEP * SPHGI_PIECE;
+    w->gather.dummy = SPHGI_ID_STEP * SPHGI_TILE;
     w->gather.guarded = true;
     w->items = (const int32_t *)(const void *)w->local_items;
     w->local = true;

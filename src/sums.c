@@ -3,12 +3,6 @@
 #include "view.h"
 #include <string.h>
 
-char *sphgi_partial(const struct sphgi_worker *w, int32_t sum)
-{
-    const size_t lanes = (size_t)w->passes->lanes;
-    return w->partial + (size_t)sum * lanes * lanes * sphgi_size_of_type(w->sweep->plan->type);
-}
-
 /* Classic gradients are whole; those of the linearised methods still lack C_i. */
 static enum sphgi_vectors vectors_of(const struct sphgi_worker *w)
 {
@@ -21,16 +15,16 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     if (field->contracts)
-        w->passes->sum_divergence(&w->piece, plan->dimension, field->shape, vectors,
+        w->passes->sum_divergence(&w->tile, plan->dimension, field->shape, vectors,
                                   w->rows + field->stream, at_target,
-                                  sphgi_partial(w, field->divergence_sum));
+                                  sphgi_lane(w, w->reduced, field->divergence_sum));
     for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
         const int32_t first = k * SPHGI_ROW;
         const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
-        w->passes->sum_field(&w->piece, plan->dimension, vectors, w->rows[field->stream + k], count,
+        w->passes->sum_field(&w->tile, plan->dimension, vectors, w->rows[field->stream + k], count,
                              at_target +
                                  (size_t)first * SPHGI_WIDTH * sphgi_size_of_type(plan->type),
-                             sphgi_partial(w, field->sum + first * plan->dimension));
+                             sphgi_lane(w, w->reduced, field->sum + first * plan->dimension));
     }
 }
 
@@ -54,9 +48,9 @@ static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *f
 {
     sum_rows(w, field, vectors_of(w), subtracted(w, field));
     if (field->square.count)
-        w->passes->sum_squares(&w->piece, w->sweep->plan->dimension, vectors_of(w),
+        w->passes->sum_squares(&w->tile, w->sweep->plan->dimension, vectors_of(w),
                                sphgi_square_sums(w->sweep->plan), w->rows[field->stream],
-                               subtracted(w, field), sphgi_partial(w, field->square_sum));
+                               subtracted(w, field), sphgi_lane(w, w->reduced, field->square_sum));
 }
 
 /* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
@@ -76,19 +70,19 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         table[k] = w->rows[plan->correction_stream + k];
     if (plan->classic) {
         const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
-        w->passes->transposed_classic(&w->piece, plan->dimension, table, &units,
+        w->passes->transposed_classic(&w->tile, plan->dimension, table, &units,
                                       plan->weighted ? sphgi_lane(w, w->volume, 0) : NULL, density,
                                       weight);
     } else
-        w->passes->transposed(&w->piece, plan->dimension, table, density, weight);
+        w->passes->transposed(&w->tile, plan->dimension, table, density, weight);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && !field->forward &&
             symmetric == (field->form == SPHG_SYMMETRIC))
             sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
-    w->passes->sum_vectors(&w->piece, plan->dimension, vectors_of(w), symmetric ? density : NULL,
-                           sphgi_partial(w, plan->vector_sum[symmetric]));
+    w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w), symmetric ? density : NULL,
+                           sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]));
 }
 
 static void load_target(struct sphgi_worker *w, int32_t number, char *to)
@@ -141,28 +135,21 @@ static void sum_fields(struct sphgi_worker *w)
     const size_t lane = SPHGI_WIDTH * sphgi_size_of_type(plan->type);
     sphgi_load_targets(w);
     if (plan->classic && plan->corrects)
-        w->passes->classic_vectors(&w->piece, plan->dimension, plan->weighted,
+        w->passes->classic_vectors(&w->tile, plan->dimension, plan->weighted,
                                    sphgi_lane(w, w->coefficients, 0));
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && field->forward)
             sum_forward(w, field);
         for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
-            w->passes->sum_value(&w->piece, w->rows[field->stream + s],
+            w->passes->sum_value(&w->tile, w->rows[field->stream + s],
                                  sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
                                  subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
-                                 sphgi_partial(w, field->value_sum + s * SPHGI_ROW));
+                                 sphgi_lane(w, w->reduced, field->value_sum + s * SPHGI_ROW));
     }
     for (int symmetric = 0; symmetric < 2; ++symmetric)
         if (plan->transposes[symmetric])
             sum_transposed(w, symmetric);
-}
-
-static uint32_t row_at(const struct sphgi_piece *piece, int32_t part, int32_t k)
-{
-    const uint32_t id = piece->wide ? ((const uint32_t *)piece->ids[part])[k]
-                                    : ((const uint16_t *)piece->ids[part])[k];
-    return id / SPHGI_ID_STEP;
 }
 
 static void put_pair(const struct sphgi_worker *w, int64_t place, int32_t source, int32_t at)
@@ -172,33 +159,39 @@ static void put_pair(const struct sphgi_worker *w, int64_t place, int32_t source
     pairs->indices[place] = source;
     for (int32_t a = 0; a < pairs->gradient.count; ++a)
         memcpy((char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
-               w->arrays + ((size_t)(SPHGI_GX + a) * SPHGI_PIECE + (size_t)at) * size, size);
+               w->arrays + ((size_t)(SPHGI_GX + a) * SPHGI_TILE + (size_t)at) * size, size);
+}
+
+/* The pairs of one lane of the tile inside the cutoff, for the target of lane `of`. */
+static void write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
+{
+    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
+    const int32_t row = pairs->row_of_target[w->group.target[of]], lanes = w->passes->lanes;
+    for (int32_t k = 0; k < w->pairs[lane]; ++k) {
+        const int32_t at = k * lanes + lane;
+        const uint32_t id = w->tile.ids[at];
+        if (w->gather.guarded && id == w->gather.dummy)
+            continue;
+        const uint32_t number = id / SPHGI_ID_STEP;
+        if (pairs->offsets)
+            put_pair(w, pairs->offsets[row] + w->written[of],
+                     w->items ? w->items[number] : (int32_t)number, at);
+        ++w->written[of];
+    }
 }
 
 /* Hands on the pairs inside the cutoff; counts them in any case. */
 static void write_pairs(struct sphgi_worker *w)
 {
-    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const struct sphgi_piece *piece = &w->piece;
-    if (pairs->gradient.count)
-        w->passes->pair_gradients(piece, w->sweep->plan->dimension, vectors_of(w),
-                                  w->sweep->plan->classic || !w->sweep->plan->corrects
-                                      ? NULL
-                                      : sphgi_lane(w, w->coefficients, 0),
-                                  w->inverse_h);
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = w->first + piece->lane[p];
-        const int32_t row = pairs->row_of_target[w->group.target[lane]];
-        for (int32_t k = 0; k < piece->count[p]; ++k) {
-            const uint32_t id = row_at(piece, p, k);
-            if (w->gather.superset && id == w->gather.dummy / SPHGI_ID_STEP)
-                continue;
-            if (pairs->offsets)
-                put_pair(w, pairs->offsets[row] + w->written[lane],
-                         w->items ? w->items[id] : (int32_t)id, piece->begin[p] + k);
-            ++w->written[lane];
-        }
-    }
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (w->sweep->pairs->gradient.count)
+        w->passes->pair_gradients(
+            &w->tile, plan->dimension, vectors_of(w),
+            plan->classic || !plan->corrects ? NULL : sphgi_lane(w, w->coefficients, 0),
+            w->inverse_h);
+    const int32_t lanes = w->tile.spread ? w->passes->lanes : w->targets;
+    for (int32_t l = 0; l < lanes; ++l)
+        write_lane(w, l, w->first + (w->tile.spread ? 0 : l));
 }
 
 static void weigh(struct sphgi_worker *w, int32_t count)
@@ -212,24 +205,25 @@ static void weigh(struct sphgi_worker *w, int32_t count)
     if (plan->wants_value || plan->mean_volume)
         p->shape_values(w->arrays, count);
     if (plan->mean_volume && (w->summing & SPHGI_SUM_MOMENTS))
-        p->sum_volume(&w->piece, sphgi_partial(w, plan->volume_sum));
+        p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */
         p->shape_factors(&w->shape, w->arrays, count);
 }
 
-void sphgi_evaluate_piece(struct sphgi_worker *w)
+void sphgi_evaluate_tile(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
-    struct sphgi_piece *piece = &w->piece;
-    weigh(w, piece->begin[piece->parts]);
+    const struct sphgi_tile *tile = &w->tile;
+    weigh(w, tile->steps * p->lanes);
+    char *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
     if ((w->summing & SPHGI_SUM_MOMENTS) && plan->classic)
-        p->sum_classic(piece, plan->dimension, plan->weighted, sphgi_partial(w, plan->moment_sum));
+        p->sum_classic(tile, plan->dimension, plan->weighted, moments);
     else if ((w->summing & SPHGI_SUM_MOMENTS) && plan->computes)
-        p->sum_moments(piece, plan->dimension, sphgi_partial(w, plan->moment_sum));
+        p->sum_moments(tile, plan->dimension, moments);
     if (w->summing & SPHGI_SUM_FIELDS)
         sum_fields(w);
     if ((w->summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)
         write_pairs(w);
-    ++w->pieces;
+    ++w->tiles;
 }

@@ -1,16 +1,13 @@
-/* The pairs of a piece into the sums of a plan. */
+/* The pairs of a tile into the sums of a plan. */
 #ifndef SPHGI_SUMS_H
 #define SPHGI_SUMS_H
 #include "worker.h"
 
 /* Weighs the gathered pairs and adds them to the sums of this round, or hands them on one by one.
  */
-void sphgi_evaluate_piece(struct sphgi_worker *worker);
+void sphgi_evaluate_tile(struct sphgi_worker *worker);
 
 /* A_i, V_i, rho_i of the targets at work, once. */
 void sphgi_load_targets(struct sphgi_worker *worker);
-
-/* Partial sums from number `sum` on. */
-char *sphgi_partial(const struct sphgi_worker *worker, int32_t sum);
 
 #endif

@@ -1,5 +1,6 @@
 #include "traverse.h"
 #include "stage.h"
+#include <string.h>
 
 /* ---- Groups --------------------------------------------------------------------------------- */
 
@@ -18,22 +19,24 @@ static void finish_group(struct sphgi_worker *w)
         sphgi_group_finish(w);
 }
 
-/* Lists wait in the piece until a vector of targets is there. wide: they hold 32-bit numbers. */
-static void run_rest(struct sphgi_worker *w, bool wide)
+/* Lists wait until a vector of targets is there. */
+static void run_rest(struct sphgi_worker *w)
 {
     if (w->group.lanes > w->summed)
-        sphgi_group_run(w, wide);
+        sphgi_group_run(w);
     finish_group(w);
 }
 
-static void add_listed(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
-                       const void *ids, int32_t count, bool wide)
+/* Of 32-bit numbers, or of 16-bit ids that stand `stride` apart. */
+static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
+                     const void *ids, int32_t count, int32_t stride)
 {
     const int32_t lane = add_target(w, target, place, row) - w->summed;
-    w->piece.ids[lane] = ids;
-    w->piece.count[lane] = count;
+    w->lists.ids[lane] = ids;
+    w->lists.count[lane] = count;
+    w->lists.stride[lane] = stride;
     if (lane + 1 == w->passes->lanes)
-        sphgi_group_run(w, wide);
+        sphgi_group_run(w);
     if (w->summed == SPHGI_WIDTH)
         finish_group(w);
 }
@@ -55,72 +58,109 @@ static int32_t padded(int32_t length)
     return (length + SPHGI_PAD - 1) & -SPHGI_PAD;
 }
 
-static void sweep_all_of(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
-                         int32_t end, const uint16_t *ids, const uint16_t *lengths)
+/* Lists of some targets, one by one. */
+struct walk {
+    const uint16_t *ids, *lengths;
+    int32_t begin, end; /* targets, in grid order */
+    bool woven;         /* in groups side by side, as lists are kept; else one after the other */
+};
+
+/* The lists of the next targets: all of a group, or one; each ids[] and the distance of its ids.
+ * Returns how many. */
+static int32_t next_lists(struct walk *walk, const uint16_t **ids, int32_t *stride)
+{
+    struct sphgi_list_group group = {.count = 1, .units = padded(*walk->lengths)};
+    if (walk->woven)
+        group = sphgi_list_group_of(walk->lengths, walk->end - walk->begin);
+    const uint16_t *list = walk->ids;
+    for (int32_t k = 0; k < group.count; ++k) {
+        ids[k] = list;
+        list += group.side_by_side ? 1 : padded(walk->lengths[k]);
+    }
+    *stride = group.side_by_side ? group.count : 1;
+    walk->ids += group.units;
+    walk->lengths += group.count;
+    walk->begin += group.count;
+    return group.count;
+}
+
+/* Whole groups: their lanes stand as the tiles want them. */
+static void sweep_all_of(const struct sphgi_task *task, struct sphgi_worker *w, struct walk walk)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const int32_t *order = sphgi_target_grid(n)->order.data;
-    const size_t row_size = SPHGI_ROW * sphgi_size_of_type(n->position_type);
-    const char *row = sphgi_target_row(n, begin);
-    for (int32_t t = begin; t < end; ++t, ++lengths, row += row_size) {
-        add_listed(w, order[t], t, row, ids, *lengths, false);
-        ids += padded(*lengths);
+    while (walk.begin < walk.end) {
+        const uint16_t *ids[SPHGI_LANES_MOST], *lengths = walk.lengths;
+        int32_t stride;
+        const int32_t first = walk.begin, count = next_lists(&walk, ids, &stride);
+        for (int32_t k = 0; k < count; ++k) {
+            w->lists.side_by_side = stride > 1;
+            add_list(w, order[first + k], first + k, sphgi_target_row(n, first + k), ids[k],
+                     lengths[k], stride);
+        }
     }
 }
 
 /* The selected ones are picked first, without a branch that nobody could foresee. */
-static void sweep_some_of(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
-                          int32_t end, const uint16_t *ids, const uint16_t *lengths)
+static void sweep_some_of(const struct sphgi_task *task, struct sphgi_worker *w, struct walk walk)
 {
-    enum { PICKED = 64 };
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    int32_t place[PICKED + 1];
-    const uint16_t *list[PICKED + 1];
-    for (int32_t t = begin; t < end;) {
-        const int32_t stop = sphgi_min32(t + PICKED, end);
-        int32_t picked = 0;
-        for (; t < stop; ++t) {
-            place[picked] = t;
-            list[picked] = ids;
-            ids += padded(lengths[t - begin]);
-            picked += is_active(task, t) ? 1 : 0;
+    w->lists.side_by_side = false;
+    while (walk.begin < walk.end) {
+        const uint16_t *ids[SPHGI_LANES_MOST], *lengths = walk.lengths;
+        int32_t stride, picked = 0, number[SPHGI_LANES_MOST + 1];
+        const int32_t first = walk.begin, count = next_lists(&walk, ids, &stride);
+        for (int32_t k = 0; k < count; ++k) {
+            number[picked] = k;
+            picked += is_active(task, first + k) ? 1 : 0;
         }
-        for (int32_t k = 0; k < picked; ++k)
-            add_listed(w, target_at(n, place[k]), place[k], sphgi_target_row(n, place[k]), list[k],
-                       lengths[place[k] - begin], false);
+        for (int32_t p = 0; p < picked; ++p) {
+            const int32_t k = number[p], place = first + k;
+            add_list(w, target_at(n, place), place, sphgi_target_row(n, place), ids[k], lengths[k],
+                     stride);
+        }
     }
 }
 
-/* Targets [begin, end), whose lists follow one another. */
-static void sweep_run(const struct sphgi_task *task, struct sphgi_worker *w, int32_t begin,
-                      int32_t end, const uint16_t *ids, const uint16_t *lengths)
+static void sweep_lists(const struct sphgi_task *task, struct sphgi_worker *w, struct walk walk)
 {
+    w->lists.wide = false;
     if (task->selection->subset)
-        sweep_some_of(task, w, begin, end, ids, lengths);
+        sweep_some_of(task, w, walk);
     else
-        sweep_all_of(task, w, begin, end, ids, lengths);
+        sweep_all_of(task, w, walk);
+}
+
+/* Of a block that is kept and not wide; around: what is staged for it. */
+static struct walk walk_block(const sphg_neighbors *n, int32_t block,
+                              struct sphgi_surroundings *around)
+{
+    const struct sphgi_grid *grid = sphgi_target_grid(n);
+    const int32_t first = grid->blocks[block].first;
+    const uint16_t *lengths = n->found.lengths.data;
+    return (struct walk){.ids = sphgi_kept_ids(n, block, around),
+                         .lengths = lengths + first,
+                         .begin = first,
+                         .end = grid->blocks[block + 1].first,
+                         .woven = true};
 }
 
 static void sweep_kept_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block)
 {
-    const sphg_neighbors *n = task->sweep.set->neighbors;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const uint16_t *lengths = n->found.lengths.data;
-    const int32_t first = grid->blocks[block].first, end = grid->blocks[block + 1].first;
     struct sphgi_surroundings around;
-    const uint16_t *ids = sphgi_kept_ids(n, block, &around);
+    const struct walk walk = walk_block(task->sweep.set->neighbors, block, &around);
     sphgi_stage_block(w, &around);
-    sweep_run(task, w, first, end, ids, lengths + first);
-    run_rest(w, false);
+    sweep_lists(task, w, walk);
+    run_rest(w);
 }
 
 /* Staged numbers to those of rows: ranges follow one another among the staged ones. */
 static void unstage(const struct sphgi_surroundings *around, const uint16_t *ids, int32_t count,
-                    uint32_t *rows)
+                    int32_t stride, uint32_t *rows)
 {
     int32_t range = 0, first = 1; /* the staged number of its first row */
     for (int32_t k = 0; k < count; ++k) {
-        const int32_t number = ids[k] / SPHGI_ID_STEP;
+        const int32_t number = ids[k * stride] / SPHGI_ID_STEP;
         if (number < first) /* lists go up but for one step back */
             range = 0, first = 1;
         while (number >= first + around->count[range])
@@ -148,28 +188,31 @@ static void sweep_sparse_block(const struct sphgi_task *task, struct sphgi_worke
 {
     enum { ROOM = SPHGI_UNITS_MOST / 2 }; /* numbers */
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
-    const uint16_t *lengths = n->found.lengths.data;
     uint32_t *rows = (uint32_t *)(void *)finder->ids;
     int32_t used = 0;
     struct sphgi_surroundings around;
-    const uint16_t *ids = sphgi_kept_ids(n, block, &around);
+    struct walk walk = walk_block(n, block, &around);
     sphgi_use_local_rows(w);
-    for (int32_t t = grid->blocks[block].first; t < grid->blocks[block + 1].first; ++t) {
-        const int32_t length = lengths[t];
-        if (is_active(task, t)) {
+    w->lists.wide = true;
+    while (walk.begin < walk.end) {
+        const uint16_t *ids[SPHGI_LANES_MOST], *lengths = walk.lengths;
+        int32_t stride;
+        const int32_t first = walk.begin, count = next_lists(&walk, ids, &stride);
+        for (int32_t k = 0; k < count; ++k) {
+            const int32_t t = first + k, length = lengths[k];
+            if (!is_active(task, t))
+                continue;
             if (used + length > ROOM) {
-                run_rest(w, true);
+                run_rest(w);
                 used = 0;
             }
-            unstage(&around, ids, length, rows + used);
+            unstage(&around, ids[k], length, stride, rows + used);
             ask_for_rows(n, rows + used, length);
-            add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), rows + used, length, true);
+            add_list(w, target_at(n, t), t, sphgi_target_row(n, t), rows + used, length, 1);
             used += length;
         }
-        ids += padded(length);
     }
-    run_rest(w, true);
+    run_rest(w);
 }
 
 /* Nothing is kept: pairs are found cell by cell and used at once; they only have to stay until the
@@ -194,15 +237,17 @@ static void sweep_found_block(const struct sphgi_task *task, struct sphgi_worker
             if (!any)
                 continue;
             if (used + (int64_t)(end - t) * (runs.candidates + SPHGI_PAD) > SPHGI_UNITS_MOST) {
-                run_rest(w, false);
+                run_rest(w);
                 used = 0;
             }
             uint16_t *ids = finder->ids + used;
             used += sphgi_find_targets(finder, n, around, &runs, c, t, end, ids, finder->lengths);
-            sweep_run(task, w, t, end, ids, finder->lengths);
+            sweep_lists(
+                task, w,
+                (struct walk){.ids = ids, .lengths = finder->lengths, .begin = t, .end = end});
         }
     }
-    run_rest(w, false);
+    run_rest(w);
 }
 
 static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
@@ -212,19 +257,20 @@ static void sweep_kept_wide_block(const struct sphgi_task *task, struct sphgi_wo
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const struct sphgi_grid *grid = sphgi_target_grid(n);
     const uint32_t *row = (const uint32_t *)(const void *)sphgi_kept_units(n, block);
+    w->lists.wide = true;
     for (int32_t t = grid->blocks[block].first; t < grid->blocks[block + 1].first; ++t) {
         const size_t count = row[0];
         if (is_active(task, t))
-            add_listed(w, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER, (int32_t)count,
-                       true);
+            add_list(w, target_at(n, t), t, sphgi_target_row(n, t), row + HEADER, (int32_t)count,
+                     1);
         row += HEADER + sphgi_round_up(count, SPHGI_PAD);
     }
-    run_rest(w, true);
+    run_rest(w);
 }
 
 static void take_wide(void *data, const uint32_t *rows, int32_t count)
 {
-    sphgi_group_add(data, 0, rows, count, true);
+    sphgi_stream_add(data, rows, count);
 }
 
 static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_worker *w,
@@ -242,11 +288,11 @@ static void sweep_found_wide_block(const struct sphgi_task *task, struct sphgi_w
             w->group.target[0] = target_at(n, t);
             w->group.place[0] = t;
             w->group.x[0] = sphgi_target_row(n, t);
-            sphgi_group_begin(w);
+            sphgi_stream_begin(w);
             do
                 sphgi_find_wide(finder, n, around, c, t, take_wide, w);
-            while (sphgi_group_again(w));
-            sphgi_group_end(w);
+            while (sphgi_stream_again(w));
+            sphgi_stream_end(w);
             finish_group(w);
         }
 }
@@ -298,12 +344,44 @@ void sphgi_block_task(void *data, int32_t begin, int32_t end, int32_t number)
 
 /* ---- The host's lists ----------------------------------------------------------------------- */
 
+static void note_bad_length(struct sphgi_tally *tally, int32_t target)
+{
+    if (tally->bad_target < 0 || target < tally->bad_target) {
+        tally->bad_target = target;
+        tally->bad_index = SPHGI_BAD_LENGTH;
+    }
+}
+
+/* A function of the host may reuse its array: lists are copied until a vector of targets is there.
+ * What is too long for that is summed at once. used: numbers that wait. */
+static void add_copied(struct sphgi_worker *w, int32_t target, const int32_t *ids, int32_t count,
+                       int32_t *used)
+{
+    int32_t *copies = (int32_t *)(void *)w->host_ids;
+    const char *row = sphgi_target_row(w->sweep->set->neighbors, target);
+    if (*used + (int64_t)count > SPHGI_HOST_IDS) {
+        run_rest(w);
+        *used = 0;
+    }
+    if (count > SPHGI_HOST_IDS) {
+        add_list(w, target, target, row, ids, count, 1);
+        run_rest(w);
+        return;
+    }
+    if (count)
+        memcpy(copies + *used, ids, (size_t)count * sizeof *ids);
+    add_list(w, target, target, row, copies + *used, count, 1);
+    *used = w->group.lanes > w->summed ? *used + count : 0;
+}
+
 void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_worker w;
+    int32_t used = 0;
     sphgi_worker_open(&w, &task->sweep, number);
+    w.lists.wide = true;
     if (task->sweep.packed)
         sphgi_use_packed_rows(&w);
     else
@@ -314,18 +392,14 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
             continue;
         const int32_t *ids;
         const int64_t count = sphgi_host_row(&n->lists, target, number, &ids);
-        if (!sphgi_is_host_row(ids, count)) {
-            if (w.tally->bad_target < 0 || target < w.tally->bad_target) {
-                w.tally->bad_target = target;
-                w.tally->bad_index = SPHGI_BAD_LENGTH;
-            }
-            continue;
-        }
-        add_listed(&w, target, target, sphgi_target_row(n, target), ids, (int32_t)count, true);
-        if (n->lists.row)
-            run_rest(&w, true); /* the function may reuse its array */
+        if (!sphgi_is_host_row(ids, count))
+            note_bad_length(w.tally, target);
+        else if (n->lists.row)
+            add_copied(&w, target, ids, (int32_t)count, &used);
+        else
+            add_list(&w, target, target, sphgi_target_row(n, target), ids, (int32_t)count, 1);
     }
-    run_rest(&w, true);
+    run_rest(&w);
 }
 
 /* ---- Finishing the sums of several sets ----------------------------------------------------- */

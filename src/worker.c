@@ -24,9 +24,9 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
 {
     const struct sphgi_plan *plan = sweep->plan;
     const sphg_neighbors *n = sweep->set->neighbors;
-    const size_t size = sphgi_size_of_type(plan->type), lanes = (size_t)sweep->passes->lanes;
+    const size_t size = sphgi_size_of_type(plan->type);
     const size_t position = sphgi_size_of_type(n->position_type);
-    const size_t staged = (size_t)sphgi_max32(sweep->staged_most, SPHGI_PIECE + 1);
+    const size_t staged = (size_t)sphgi_max32(sweep->staged_most, SPHGI_TILE + 1);
     const size_t streams = (size_t)plan->stream_count, row = SPHGI_ROW * size;
     struct layout layout = {0};
 #define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
@@ -34,12 +34,13 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(rows, streams + 1, sizeof(void *));
     CARVE(staged_positions, staged, SPHGI_ROW * position);
     CARVE(staged_rows, staged * streams, row);
-    CARVE(arrays, SPHGI_ARRAYS * SPHGI_PIECE, size);
-    CARVE(masked_ids, SPHGI_PIECE, sizeof(uint32_t));
-    CARVE(clean_ids, SPHGI_PIECE, sizeof(uint32_t));
-    CARVE(local_items, SPHGI_PIECE, sizeof(uint32_t));
-    CARVE(partial, (size_t)plan->sums * lanes * lanes, size);
-    CARVE(reduced, (size_t)plan->sums * SPHGI_WIDTH, size);
+    CARVE(arrays, SPHGI_ARRAYS * SPHGI_TILE, size);
+    CARVE(ids, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(clean_ids, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(local_items, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(host_ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_HOST_IDS,
+          sizeof(uint32_t));
+    CARVE(reduced, SPHGI_SECTIONS * (size_t)plan->sums * SPHGI_WIDTH, size);
     CARVE(at_target, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
     CARVE(opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
     CARVE(raw, 16 * SPHGI_WIDTH, size);
@@ -132,14 +133,14 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
     open_scheme(w);
     w->inverse_h = 1 / sweep->plan->scheme.radius;
-    w->pad =
-        sphgi_max32(SPHGI_PAD, sphgi_max32(sweep->passes->lanes, sweep->position_passes->lanes));
     sphgi_shares_of(sweep->plan, w->share);
     w->coefficients_first = needs_coefficients_first(sweep);
-    w->piece.arrays = w->arrays;
-    const size_t volumes = SPHGI_V * SPHGI_PIECE * sphgi_size_of_type(sweep->plan->type);
+    w->tile.arrays = w->arrays;
+    w->tile.ids = (uint32_t *)(void *)w->ids;
+    w->tile.section = (ptrdiff_t)sweep->plan->sums * SPHGI_WIDTH;
+    const size_t volumes = SPHGI_V * SPHGI_TILE * sphgi_size_of_type(sweep->plan->type);
     if (!sweep->volumes)
-        w->passes->fill(SPHGI_PIECE, sweep->volume, w->arrays + volumes);
+        w->passes->fill(SPHGI_TILE, sweep->volume, w->arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     find_targets_in_rows(w);
 }

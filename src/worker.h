@@ -1,4 +1,4 @@
-/* One worker's share of a sweep: it takes groups of targets, gathers their pairs piece by piece,
+/* One worker's share of a sweep: it takes groups of targets, gathers their pairs tile by tile,
  * sums, and finishes the group. */
 #ifndef SPHGI_WORKER_H
 #define SPHGI_WORKER_H
@@ -58,50 +58,52 @@ struct sphgi_worker {
     struct sphgi_shape shape;
     struct sphgi_threshold threshold;
     double inverse_h;
-    struct sphgi_piece piece;
+    struct sphgi_tile tile;
+    struct sphgi_lane_lists lists; /* of the lanes at work */
     struct sphgi_group group;
-    int32_t first, width, targets; /* the lanes of the group that are at work: first of them, how
-                                      many, and how many of those have a target */
-    int32_t summed;                /* lanes whose sums are done */
-    int32_t pad;                   /* parts of a piece begin at multiples of this */
-    struct sphgi_share share[2];   /* of the table of corrections */
-    bool regular;                  /* part k of the piece is lane k, whole */
-    const void **rows;             /* of each stream */
-    unsigned summing;              /* SPHGI_SUM_..., of this pass over the group */
-    bool coefficients_first;       /* they must be known before fields can be summed */
-    bool targets_loaded;           /* A_i, V_i, rho_i of the group */
-    uint32_t targets_in_rows;      /* a bit per field: A_i stand in packed rows */
-    int32_t pieces;                /* evaluated since the group began */
-    bool local;                    /* rows are copied pair by pair */
-    const int32_t *items;          /* sources behind the ids; NULL: the ids are their numbers */
-    uint32_t touched;              /* a bit per lane: had a pair in this round */
-    int64_t written[SPHGI_WIDTH];  /* pairs of each target so far */
+    int32_t first, width, targets;   /* the lanes of the group that are at work: first of them, how
+                                        many, and how many of those have a target */
+    int32_t summed;                  /* lanes whose sums are done */
+    struct sphgi_share share[2];     /* of the table of corrections */
+    const void **rows;               /* of each stream */
+    unsigned summing;                /* SPHGI_SUM_..., of this pass over the group */
+    bool coefficients_first;         /* they must be known before fields can be summed */
+    bool targets_loaded;             /* A_i, V_i, rho_i of the group */
+    uint32_t targets_in_rows;        /* a bit per field: A_i stand in packed rows */
+    int32_t tiles;                   /* evaluated in this round over the group's pairs */
+    int32_t longest;                 /* pairs of a list, of the lanes at work */
+    int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
+    int32_t spread_pairs;            /* of a tile that holds one list */
+    int32_t streamed, waiting;    /* pairs of a list that comes bit by bit: summed, and yet to be */
+    bool local;                   /* rows are copied pair by pair */
+    const int32_t *items;         /* sources behind the ids; NULL: the ids are their numbers */
+    int64_t written[SPHGI_WIDTH]; /* pairs of each target so far */
 
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
-    char *staged_positions, *staged_rows, *arrays, *masked_ids, *clean_ids, *local_items;
-    char *partial, *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume,
-        *density;
+    char *staged_positions, *staged_rows, *arrays, *ids, *clean_ids, *local_items, *host_ids;
+    char *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume, *density;
     char *self, *zeros, *jacobian, *contracted, *extra, *staged_items;
     char *finder_memory;
 };
+
+enum { SPHGI_HOST_IDS = 1 << 15 }; /* copied of lists that a function of the host makes */
 
 /* Bytes of memory of one worker; 0 on overflow. */
 size_t sphgi_worker_size(const struct sphgi_sweep *sweep);
 void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sweep,
                        int32_t number);
 
-/* Up to `lanes` targets of a group are summed together:
- *   begin; do { for each lane: add } while (again); end.
- * When no more follow, the group is finished. Lanes of add count from the first of these. */
-void sphgi_group_begin(struct sphgi_worker *worker);
-void sphgi_group_add(struct sphgi_worker *worker, int32_t lane, const void *ids, int64_t count,
-                     bool wide);
-bool sphgi_group_again(struct sphgi_worker *worker);
-void sphgi_group_end(struct sphgi_worker *worker);
+/* Sums the targets whose lists stand in worker->lists, up to `lanes` of them. When no more follow,
+ * the group is finished. */
+void sphgi_group_run(struct sphgi_worker *worker);
 
-/* From begin to end, for lists that stand in piece.ids and .count, lane by lane. */
-void sphgi_group_run(struct sphgi_worker *worker, bool wide);
+/* The same for one target whose list comes bit by bit, 32-bit numbers of rows:
+ *   begin; do { add ... } while (again); end. */
+void sphgi_stream_begin(struct sphgi_worker *worker);
+void sphgi_stream_add(struct sphgi_worker *worker, const uint32_t *rows, int32_t count);
+bool sphgi_stream_again(struct sphgi_worker *worker);
+void sphgi_stream_end(struct sphgi_worker *worker);
 
 /* Writes the results; the group is empty again. */
 void sphgi_group_finish(struct sphgi_worker *worker);

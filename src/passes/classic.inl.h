@@ -3,22 +3,20 @@
 
 /* Order of the sums: w, w x, w xx, d x, d xx, d xxx with x = x_ij / H; xx stands for the upper
  * triangle row by row, xxx likewise. */
-SPHGI_TEMPLATE void classic_orders(const struct sphgi_piece *piece, int32_t p, void *partial,
-                                   bool weighted, bool three, int32_t part)
+SPHGI_TEMPLATE void classic_orders(const struct sphgi_tile *tile, real *sums, bool weighted,
+                                   bool three, int32_t part)
 {
-    const int32_t lane = piece->lane[p], d = three ? 3 : 2, pairs = three ? 6 : 3;
-    const int32_t triples = three ? 10 : 4;
+    const int32_t d = three ? 3 : 2, pairs = three ? 6 : 3, triples = three ? 10 : 4;
     const int32_t first = part == 0 ? 0 : part == 1 ? 1 + d + pairs : 1 + 2 * d + 2 * pairs;
     const int32_t n = part == 0 ? 1 + d + pairs : part == 1 ? d + pairs : triples;
     vec sum[10];
-    for (int32_t c = 0; c < n; ++c)
-        sum[c] = begin_sum(piece, p, partial, first + c);
-    for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-        const vec x = from(piece, SPHGI_X, k), y = from(piece, SPHGI_Y, k);
-        const vec z = three ? from(piece, SPHGI_Z, k) : x;
-        vec s = from(piece, part == 0 ? SPHGI_S : SPHGI_D, k);
+    clear(sum, n);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const vec x = from(tile, SPHGI_X, k), y = from(tile, SPHGI_Y, k);
+        const vec z = three ? from(tile, SPHGI_Z, k) : x;
+        vec s = from(tile, part == 0 ? SPHGI_S : SPHGI_D, k);
         if (weighted)
-            s *= from(piece, SPHGI_V, k);
+            s *= from(tile, SPHGI_V, k);
         const vec sx = s * x, sy = s * y, sz = s * z;
         const vec first_order[3] = {sx, sy, sz};
         const vec second[6] = {sx * x, sx * y, three ? sx * z : sy * y, sy * y, sy * z, sz * z};
@@ -42,130 +40,112 @@ SPHGI_TEMPLATE void classic_orders(const struct sphgi_piece *piece, int32_t p, v
                 sum[c] += third[c];
         }
     }
-    for (int32_t c = 0; c < n; ++c)
-        *partial_of(partial, first + c, lane) = sum[c];
+    end_tile(tile, sum, n, sums + first * SPHGI_WIDTH);
 }
 
-SPHGI_TEMPLATE void classic_sums_as(const struct sphgi_piece *piece, void *partial, bool weighted,
+SPHGI_TEMPLATE void classic_sums_as(const struct sphgi_tile *tile, void *sums, bool weighted,
                                     bool three)
 {
     /* Three loops: 29 sums do not fit the registers, 10 do. */
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        classic_orders(piece, p, partial, weighted, three, 0);
-        classic_orders(piece, p, partial, weighted, three, 1);
-        classic_orders(piece, p, partial, weighted, three, 2);
-    }
+    classic_orders(tile, sums, weighted, three, 0);
+    classic_orders(tile, sums, weighted, three, 1);
+    classic_orders(tile, sums, weighted, three, 2);
 }
 
-static void sum_classic(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
-                        void *partial)
+static void sum_classic(const struct sphgi_tile *tile, int32_t dimension, bool weighted, void *sums)
 {
     if (dimension == 3 && weighted)
-        classic_sums_as(piece, partial, true, true);
+        classic_sums_as(tile, sums, true, true);
     else if (dimension == 3)
-        classic_sums_as(piece, partial, false, true);
+        classic_sums_as(tile, sums, false, true);
     else if (weighted)
-        classic_sums_as(piece, partial, true, false);
+        classic_sums_as(tile, sums, true, false);
     else
-        classic_sums_as(piece, partial, false, false);
+        classic_sums_as(tile, sums, false, false);
 }
 
 /* G_ij = D x (p.y) + S (p.z_k), PHI = S (p.y) from the coefficients [y0 y | z_x0 z_x | ..][target].
  */
-SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_piece *piece, const real *coefficients,
+SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_tile *tile, const real *coefficients,
                                        bool weighted, bool three)
 {
     const int32_t d = three ? 3 : 2, width = d + 1;
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = piece->lane[p];
-        vec c[16];
-        for (int32_t k = 0; k < width * width; ++k)
-            c[k] = splat(coefficients[k * SPHGI_WIDTH + lane]);
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            vec x[3], s = from(piece, SPHGI_S, k), slope = from(piece, SPHGI_D, k);
-            for (int32_t a = 0; a < d; ++a)
-                x[a] = from(piece, (enum sphgi_array)(SPHGI_X + a), k);
-            if (weighted) {
-                const vec v = from(piece, SPHGI_V, k);
-                s *= v;
-                slope *= v;
-            }
-            vec polynomial[4]; /* p.y, p.z_x, p.z_y, p.z_z */
-            for (int32_t m = 0; m < width; ++m) {
-                polynomial[m] = c[m * width];
-                for (int32_t a = 0; a < d; ++a)
-                    polynomial[m] -= c[m * width + 1 + a] * x[a];
-            }
-            const vec slope_y = slope * polynomial[0];
-            real *g = array_of(piece->arrays, SPHGI_GX) + k;
-            for (int32_t a = 0; a < d; ++a)
-                store(g + a * SPHGI_PIECE, slope_y * x[a] + s * polynomial[1 + a]);
-            store(array_of(piece->arrays, SPHGI_PHI) + k, s * polynomial[0]);
+    vec c[16];
+    for (int32_t k = 0; k < width * width; ++k)
+        c[k] = load(coefficients + k * SPHGI_WIDTH);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec x[3], s = from(tile, SPHGI_S, k), slope = from(tile, SPHGI_D, k);
+        for (int32_t a = 0; a < d; ++a)
+            x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+        if (weighted) {
+            const vec v = from(tile, SPHGI_V, k);
+            s *= v;
+            slope *= v;
         }
+        vec polynomial[4]; /* p.y, p.z_x, p.z_y, p.z_z */
+        for (int32_t m = 0; m < width; ++m) {
+            polynomial[m] = c[m * width];
+            for (int32_t a = 0; a < d; ++a)
+                polynomial[m] -= c[m * width + 1 + a] * x[a];
+        }
+        const vec slope_y = slope * polynomial[0];
+        real *g = array_of(tile->arrays, SPHGI_GX) + k;
+        for (int32_t a = 0; a < d; ++a)
+            store(g + a * SPHGI_TILE, slope_y * x[a] + s * polynomial[1 + a]);
+        store(array_of(tile->arrays, SPHGI_PHI) + k, s * polynomial[0]);
     }
 }
 
-static void classic_vectors(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
+static void classic_vectors(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                             const void *coefficients)
 {
     if (dimension == 3 && weighted)
-        classic_vectors_as(piece, coefficients, true, true);
+        classic_vectors_as(tile, coefficients, true, true);
     else if (dimension == 3)
-        classic_vectors_as(piece, coefficients, false, true);
+        classic_vectors_as(tile, coefficients, false, true);
     else if (weighted)
-        classic_vectors_as(piece, coefficients, true, false);
+        classic_vectors_as(tile, coefficients, true, false);
     else
-        classic_vectors_as(piece, coefficients, false, false);
+        classic_vectors_as(tile, coefficients, false, false);
 }
 
 /* T = - weight G_ji with j's coefficients in rows (y_j, z_x,j, ...: one row each): the offset seen
  * from j is +x_ij / H, its slope points the other way, and the volume in w is the target's. */
-SPHGI_TEMPLATE void transposed_classic_as(const struct sphgi_piece *piece,
-                                          const void *const rows[4],
+SPHGI_TEMPLATE void transposed_classic_as(const struct sphgi_tile *tile, const void *const rows[4],
                                           const struct sphgi_scales *scales,
                                           const real *target_volume, const void *density,
-                                          enum sphgi_weight kind, bool three, bool wide)
+                                          enum sphgi_weight kind, bool three)
 {
     const int32_t d = three ? 3 : 2;
     const vec y_unit = splat(R(scales->value)), z_unit = splat(R(scales->slope));
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        const real volume = target_volume ? target_volume[piece->lane[p]] : R(1);
-        struct listed list = first_listed(piece, p, wide);
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
-             k += LANES, list = after(list, LANES)) {
-            const vec weight = weight_of(piece, list, k, density, kind);
-            const vec x[3] = {from(piece, SPHGI_X, k), from(piece, SPHGI_Y, k),
-                              three ? from(piece, SPHGI_Z, k) : splat(R(0))};
-            vec polynomial[4];
-            for (int32_t m = 0; m <= d; ++m) {
-                const struct four c = gather_rows(rows[m], list);
-                polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
-                if (three)
-                    polynomial[m] += c.w * x[2];
-            }
-            /* Units meet the coefficients first: both may be far from 1, their quotient is not. */
-            const vec slope =
-                weight * from(piece, SPHGI_D, k) * (volume * (polynomial[0] / y_unit));
-            const vec s = weight * from(piece, SPHGI_S, k);
-            real *t = array_of(piece->arrays, SPHGI_TX) + k;
-            for (int32_t a = 0; a < d; ++a)
-                store(t + a * SPHGI_PIECE,
-                      slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
+    const vec volume = target_volume ? load(target_volume) : splat(R(1));
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const vec weight = weight_of(tile, k, density, kind);
+        const vec x[3] = {from(tile, SPHGI_X, k), from(tile, SPHGI_Y, k),
+                          three ? from(tile, SPHGI_Z, k) : splat(R(0))};
+        vec polynomial[4];
+        for (int32_t m = 0; m <= d; ++m) {
+            const struct four c = gather_rows(rows[m], tile->ids + k);
+            polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
+            if (three)
+                polynomial[m] += c.w * x[2];
         }
+        /* Units meet the coefficients first: both may be far from 1, their quotient is not. */
+        const vec slope = weight * from(tile, SPHGI_D, k) * (volume * (polynomial[0] / y_unit));
+        const vec s = weight * from(tile, SPHGI_S, k);
+        real *t = array_of(tile->arrays, SPHGI_TX) + k;
+        for (int32_t a = 0; a < d; ++a)
+            store(t + a * SPHGI_TILE, slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
     }
 }
 
-static void transposed_classic(const struct sphgi_piece *piece, int32_t dimension,
+static void transposed_classic(const struct sphgi_tile *tile, int32_t dimension,
                                const void *const rows[4], const struct sphgi_scales *scales,
                                const void *target_volume, const void *density,
                                enum sphgi_weight kind)
 {
-    if (dimension == 3 && piece->wide)
-        transposed_classic_as(piece, rows, scales, target_volume, density, kind, true, true);
-    else if (dimension == 3)
-        transposed_classic_as(piece, rows, scales, target_volume, density, kind, true, false);
-    else if (piece->wide)
-        transposed_classic_as(piece, rows, scales, target_volume, density, kind, false, true);
+    if (dimension == 3)
+        transposed_classic_as(tile, rows, scales, target_volume, density, kind, true);
     else
-        transposed_classic_as(piece, rows, scales, target_volume, density, kind, false, false);
+        transposed_classic_as(tile, rows, scales, target_volume, density, kind, false);
 }

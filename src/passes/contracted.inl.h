@@ -20,84 +20,68 @@ SPHGI_TEMPLATE void add_contracted(sphg_shape shape, int d, const vec *a, const 
             sum[row] += a[shape == SPHG_VECTOR ? k : tensor_index(shape, row, k, d)] * b[k];
 }
 
-/* A_j - A_i of the pairs that the list begins with. */
-SPHGI_TEMPLATE void differences(const void *const *rows, struct listed list, const vec *own,
-                                int count, vec *difference)
+/* A_j - A_i of the pairs from place k on. */
+SPHGI_TEMPLATE void differences(const struct sphgi_tile *tile, int32_t k, const void *const *rows,
+                                const vec *own, int count, vec *difference)
 {
     for (int c = 0; c < count; c += SPHGI_ROW) {
-        const struct four row = gather_rows(rows[c / SPHGI_ROW], list);
+        const struct four row = gather_rows(rows[c / SPHGI_ROW], tile->ids + k);
         const vec value[4] = {row.x, row.y, row.z, row.w};
-        for (int k = 0; k < SPHGI_ROW && c + k < count; ++k)
-            difference[c + k] = value[k] - own[c + k];
+        for (int n = 0; n < SPHGI_ROW && c + n < count; ++n)
+            difference[c + n] = value[n] - own[c + n];
     }
 }
 
-SPHGI_TEMPLATE void divergence_as(const struct sphgi_piece *piece, sphg_shape shape,
+SPHGI_TEMPLATE void divergence_as(const struct sphgi_tile *tile, sphg_shape shape,
                                   enum sphgi_vectors vectors, const void *const *rows,
-                                  const real *at_target, void *partial, bool three, bool wide)
+                                  const real *at_target, void *sums, bool three)
 {
     const int d = three ? 3 : 2, count = components_of(shape, d);
     const int results = shape == SPHG_VECTOR ? 1 : d;
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        const int32_t lane = piece->lane[p];
-        struct listed list = first_listed(piece, p, wide);
-        vec own[9], sum[3];
-        for (int c = 0; c < count; ++c)
-            own[c] = splat(at_target[c * SPHGI_WIDTH + lane]);
-        for (int r = 0; r < results; ++r)
-            sum[r] = begin_sum(piece, p, partial, r);
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
-             k += LANES, list = after(list, LANES)) {
-            vec difference[9], g[3];
-            differences(rows, list, own, count, difference);
-            vectors_at(piece, k, vectors, three, g);
-            add_contracted(shape, d, difference, g, sum);
-        }
-        for (int r = 0; r < results; ++r)
-            *partial_of(partial, r, lane) = sum[r];
+    vec own[9];
+    for (int c = 0; c < count; ++c)
+        own[c] = load(at_target + c * SPHGI_WIDTH);
+    vec sum[3];
+    clear(sum, results);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec difference[9], g[3];
+        differences(tile, k, rows, own, count, difference);
+        vectors_at(tile, k, vectors, three, g);
+        add_contracted(shape, d, difference, g, sum);
     }
+    end_tile(tile, sum, results, sums);
 }
 
-SPHGI_TEMPLATE void divergence_ids(const struct sphgi_piece *piece, sphg_shape shape,
-                                   enum sphgi_vectors vectors, const void *const *rows,
-                                   const void *at_target, void *partial, bool three)
-{
-    if (piece->wide)
-        divergence_as(piece, shape, vectors, rows, at_target, partial, three, true);
-    else
-        divergence_as(piece, shape, vectors, rows, at_target, partial, three, false);
-}
-
-SPHGI_TEMPLATE void divergence_of(const struct sphgi_piece *piece, sphg_shape shape,
+SPHGI_TEMPLATE void divergence_of(const struct sphgi_tile *tile, sphg_shape shape,
                                   enum sphgi_vectors vectors, const void *const *rows,
-                                  const void *at_target, void *partial, bool three)
+                                  const void *at_target, void *sums, bool three)
 {
     if (shape == SPHG_VECTOR)
-        divergence_ids(piece, SPHG_VECTOR, vectors, rows, at_target, partial, three);
+        divergence_as(tile, SPHG_VECTOR, vectors, rows, at_target, sums, three);
     else if (shape == SPHG_SYM_TENSOR)
-        divergence_ids(piece, SPHG_SYM_TENSOR, vectors, rows, at_target, partial, three);
+        divergence_as(tile, SPHG_SYM_TENSOR, vectors, rows, at_target, sums, three);
     else
-        divergence_ids(piece, SPHG_TENSOR, vectors, rows, at_target, partial, three);
+        divergence_as(tile, SPHG_TENSOR, vectors, rows, at_target, sums, three);
 }
 
-SPHGI_TEMPLATE void divergence_in(const struct sphgi_piece *piece, sphg_shape shape,
+SPHGI_TEMPLATE void divergence_in(const struct sphgi_tile *tile, sphg_shape shape,
                                   enum sphgi_vectors vectors, const void *const *rows,
-                                  const void *at_target, void *partial, bool three)
+                                  const void *at_target, void *sums, bool three)
 {
     if (vectors == SPHGI_FACTORS)
-        divergence_of(piece, shape, SPHGI_FACTORS, rows, at_target, partial, three);
+        divergence_of(tile, shape, SPHGI_FACTORS, rows, at_target, sums, three);
     else
-        divergence_of(piece, shape, SPHGI_TRANSPOSED, rows, at_target, partial, three);
+        divergence_of(tile, shape, SPHGI_TRANSPOSED, rows, at_target, sums, three);
 }
 
-static void sum_divergence(const struct sphgi_piece *piece, int32_t dimension, sphg_shape shape,
+static void sum_divergence(const struct sphgi_tile *tile, int32_t dimension, sphg_shape shape,
                            enum sphgi_vectors vectors, const void *const *rows,
-                           const void *at_target, void *partial)
+                           const void *at_target, void *sums)
 {
     if (dimension == 3)
-        divergence_in(piece, shape, vectors, rows, at_target, partial, true);
+        divergence_in(tile, shape, vectors, rows, at_target, sums, true);
     else
-        divergence_in(piece, shape, vectors, rows, at_target, partial, false);
+        divergence_in(tile, shape, vectors, rows, at_target, sums, false);
 }
 
 /* What add_outer is to a gradient. */
@@ -127,61 +111,45 @@ static void add_product(int32_t width, int32_t dimension, sphg_shape shape, cons
 
 /* ---- Squares -------------------------------------------------------------------------------- */
 
-SPHGI_TEMPLATE void squares_as(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
-                               const real *rows, const real *own, void *partial, bool three,
-                               bool trace, bool wide)
+SPHGI_TEMPLATE void squares_as(const struct sphgi_tile *tile, enum sphgi_vectors vectors,
+                               const real *rows, const real *own, void *sums, bool three,
+                               bool trace)
 {
-    const int d = three ? 3 : 2, sums = trace ? 1 : d * (d + 1) / 2;
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        struct listed list = first_listed(piece, p, wide);
-        const vec off = splat(own[piece->lane[p]]);
-        vec sum[6];
-        for (int c = 0; c < sums; ++c)
-            sum[c] = begin_sum(piece, p, partial, c);
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1];
-             k += LANES, list = after(list, LANES)) {
-            const vec a = gather_rows(rows, list).x - off;
-            vec g[3];
-            vectors_at(piece, k, vectors, three, g);
-            for (int b = 0; b < d; ++b)
-                for (int c = b; c < (trace ? b + 1 : d); ++c)
-                    sum[trace ? 0 : pair_index(b, c, d)] += a * g[b] * g[c];
-        }
-        for (int c = 0; c < sums; ++c)
-            *partial_of(partial, c, piece->lane[p]) = sum[c];
+    const int d = three ? 3 : 2, count = trace ? 1 : d * (d + 1) / 2;
+    const vec off = load(own);
+    vec sum[6];
+    clear(sum, count);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const vec a = gather_rows(rows, tile->ids + k).x - off;
+        vec g[3];
+        vectors_at(tile, k, vectors, three, g);
+        for (int b = 0; b < d; ++b)
+            for (int c = b; c < (trace ? b + 1 : d); ++c)
+                sum[trace ? 0 : pair_index(b, c, d)] += a * g[b] * g[c];
     }
+    end_tile(tile, sum, count, sums);
 }
 
-SPHGI_TEMPLATE void squares_ids(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
-                                const void *rows, const void *own, void *partial, bool three,
-                                bool trace)
-{
-    if (piece->wide)
-        squares_as(piece, vectors, rows, own, partial, three, trace, true);
-    else
-        squares_as(piece, vectors, rows, own, partial, three, trace, false);
-}
-
-SPHGI_TEMPLATE void squares_in(const struct sphgi_piece *piece, enum sphgi_vectors vectors,
-                               int32_t sums, const void *rows, const void *own, void *partial,
+SPHGI_TEMPLATE void squares_in(const struct sphgi_tile *tile, enum sphgi_vectors vectors,
+                               int32_t count, const void *rows, const void *own, void *sums,
                                bool three)
 {
-    if (sums > 1)
-        squares_ids(piece, SPHGI_FACTORS, rows, own, partial, three, false);
+    if (count > 1)
+        squares_as(tile, SPHGI_FACTORS, rows, own, sums, three, false);
     else if (vectors == SPHGI_FACTORS)
-        squares_ids(piece, SPHGI_FACTORS, rows, own, partial, three, true);
+        squares_as(tile, SPHGI_FACTORS, rows, own, sums, three, true);
     else
-        squares_ids(piece, SPHGI_GRADIENTS, rows, own, partial, three, true);
+        squares_as(tile, SPHGI_GRADIENTS, rows, own, sums, three, true);
 }
 
-static void sum_squares(const struct sphgi_piece *piece, int32_t dimension,
-                        enum sphgi_vectors vectors, int32_t sums, const void *rows, const void *own,
-                        void *partial)
+static void sum_squares(const struct sphgi_tile *tile, int32_t dimension,
+                        enum sphgi_vectors vectors, int32_t count, const void *rows,
+                        const void *at_target, void *sums)
 {
     if (dimension == 3)
-        squares_in(piece, vectors, sums, rows, own, partial, true);
+        squares_in(tile, vectors, count, rows, at_target, sums, true);
     else
-        squares_in(piece, vectors, sums, rows, own, partial, false);
+        squares_in(tile, vectors, count, rows, at_target, sums, false);
 }
 
 /* sum_ab C_ab (C S)_ab */

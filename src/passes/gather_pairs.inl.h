@@ -1,4 +1,4 @@
-/* Pairs into the arrays of a piece: x_ij and |x_ij|, narrowed to OUT after the difference was
+/* Pairs into the arrays of a tile: x_ij and |x_ij|, narrowed to OUT after the difference was
  * taken, and V_j in units of H^d. What is no pair gets a distance beyond the cutoff and finite
  * offsets: every weight is exactly 0 there.
  * Parameters: OUT, the type of the arrays; OUT_NAME(x), a name of its own for each. */
@@ -8,27 +8,31 @@ typedef OUT OUT_NAME(narrow) __attribute__((vector_size(sizeof(OUT) * VECTOR_BYT
 
 SPHGI_TEMPLATE void OUT_NAME(put)(OUT *at, enum sphgi_array array, vec v)
 {
-    *(OUT_NAME(narrow) *)(at + array * SPHGI_PIECE) = __builtin_convertvector(v, OUT_NAME(narrow));
+    *(OUT_NAME(narrow) *)(at + array * SPHGI_TILE) = __builtin_convertvector(v, OUT_NAME(narrow));
 }
 
 /* What is known when a loop is compiled. */
 struct OUT_NAME(how) {
-    bool wide, guarded, periodic, three, scaled, volumes;
+    bool guarded, periodic, three, scaled, volumes;
 };
 
-/* One part: pairs of the target at x, `at` is where they begin in the arrays. padded: their number
- * there. */
-SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const real *x,
-                                          struct listed list, int32_t padded, OUT *at, char *masked,
-                                          struct OUT_NAME(how) how)
+/* LANES of the tile's lanes, from `first` on, whose targets stand at x. */
+SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const void *const *x,
+                                           int32_t lanes, int32_t first, struct sphgi_tile *tile,
+                                           struct OUT_NAME(how) how)
 {
-    const vec xi = splat(x[0]), yi = splat(x[1]), zi = splat(x[2]);
+    const real *own_rows[LANES];
+    for (int l = 0; l < LANES; ++l)
+        own_rows[l] = x[first + l];
+    const struct four own = transpose(own_rows);
     const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
     const vec far = splat(R(2 * g->cutoff));
     const struct wraps w = wraps_of(g->period);
-    for (int32_t k = 0; k < padded; k += LANES, at += LANES, list = after(list, LANES)) {
-        const struct four row = gather_rows(g->rows, list);
-        vec dx = xi - row.x, dy = yi - row.y, dz = zi - row.z;
+    uint32_t *ids = tile->ids + first;
+    OUT *at = (OUT *)tile->arrays + first;
+    for (int32_t k = 0; k < tile->steps; ++k, at += lanes, ids += lanes) {
+        const struct four row = gather_rows(g->rows, ids);
+        vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         mask inside = first_lanes(0);
         if (how.periodic) {
             dx = wrapped(dx, w.axis[0]);
@@ -37,8 +41,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
         }
         if (how.guarded) {
             inside = less(square_distance(dx, dy, dz), cutoff);
-            keep_ids(inside, list, masked);
-            masked += LANES * (how.wide ? 4 : 2);
+            keep_ids(inside, g->dummy, ids);
             dx = where(inside, dx);
             dy = where(inside, dy);
             dz = where(inside, dz);
@@ -60,68 +63,45 @@ SPHGI_TEMPLATE void OUT_NAME(gather_part)(const struct sphgi_gather *g, const re
         if (how.three)
             OUT_NAME(put)(at, SPHGI_Z, dz);
         OUT_NAME(put)(at, SPHGI_R, r);
-        if (how.guarded ? g->volumes : how.volumes)
+        if (how.volumes)
             OUT_NAME(put)(at, SPHGI_V, how.guarded ? where(inside, row.w) : row.w);
     }
 }
 
 SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void *const *x,
-                                        struct sphgi_piece *piece, int32_t first, char *masked,
+                                        int32_t lanes, struct sphgi_tile *tile,
                                         struct OUT_NAME(how) how)
 {
-    for (int k = 0; k < SPHGI_PAD; ++k)
-        piece->dummies[k] = g->dummy;
-    for (int32_t p = first; p < piece->parts; ++p) {
-        const int32_t begin = piece->begin[p];
-        char *kept = masked + (how.wide ? 4 : 2) * (size_t)begin;
-        OUT_NAME(gather_part)
-        (g, x[piece->lane[p]], first_listed(piece, p, how.wide), piece->begin[p + 1] - begin,
-         (OUT *)piece->arrays + begin, kept, how);
-        if (how.guarded)
-            piece->ids[p] = kept;
-    }
+    for (int32_t first = 0; first < lanes; first += LANES)
+        OUT_NAME(gather_lanes)(g, x, lanes, first, tile, how);
 }
 
-SPHGI_TEMPLATE void OUT_NAME(gather_guarded)(const struct sphgi_gather *g, const void *const *x,
-                                             struct sphgi_piece *piece, int32_t first, char *masked,
-                                             struct OUT_NAME(how) how)
+/* Every combination; periodic ones are always guarded. */
+static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x, int32_t lanes,
+                             struct sphgi_tile *tile)
 {
-    how.guarded = true;
-    how.wide = true;
-    if (piece->wide) {
-        OUT_NAME(gather_as)(g, x, piece, first, masked, how);
-        return;
+    struct OUT_NAME(how) how = {.guarded = false};
+#define WITH(name, value, call)                                                                    \
+    do                                                                                             \
+        if (value) {                                                                               \
+            how.name = true;                                                                       \
+            call;                                                                                  \
+        } else {                                                                                   \
+            how.name = false;                                                                      \
+            call;                                                                                  \
+        }                                                                                          \
+    while (0)
+#define GATHER  OUT_NAME(gather_as)(g, x, lanes, tile, how)
+#define SHAPED  WITH(three, g->dimension == 3, WITH(scaled, g->unit != 1, GATHER))
+#define WEIGHED WITH(volumes, g->volumes, SHAPED)
+    if (!g->guarded)
+        WEIGHED;
+    else {
+        how.guarded = true;
+        WITH(periodic, g->periodic, WEIGHED);
     }
-    how.wide = false;
-    OUT_NAME(gather_as)(g, x, piece, first, masked, how);
-}
-
-/* Every combination; whether volumes differ the guarded ones ask as they go. */
-static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x,
-                             struct sphgi_piece *piece, int32_t first, void *masked)
-{
-    const bool guarded = g->guarded || piece->wide, last = guarded ? g->periodic : g->volumes;
-    const int way = (guarded ? 8 : 0) | (g->dimension == 3 ? 4 : 0) | (g->unit != 1 ? 2 : 0) | last;
-    switch (way) {
-#define WAY(number)                                                                                \
-    case number:                                                                                   \
-        OUT_NAME(gather_as)                                                                        \
-        (g, x, piece, first, masked,                                                               \
-         (struct OUT_NAME(how)){                                                                   \
-             .three = number >> 2 & 1, .scaled = number >> 1 & 1, .volumes = number & 1});         \
-        break;
-        WAY(0)
-        WAY(1)
-        WAY(2) WAY(3) WAY(4) WAY(5) WAY(6) WAY(7)
-#undef WAY
-#define WAY(number)                                                                                \
-    case 8 + number:                                                                               \
-        OUT_NAME(gather_guarded)                                                                   \
-        (g, x, piece, first, masked,                                                               \
-         (struct OUT_NAME(how)){                                                                   \
-             .three = number >> 2 & 1, .scaled = number >> 1 & 1, .periodic = number & 1});        \
-        break;
-            WAY(0) WAY(1) WAY(2) WAY(3) WAY(4) WAY(5) WAY(6) WAY(7)
-#undef WAY
-    }
+#undef WEIGHED
+#undef SHAPED
+#undef GATHER
+#undef WITH
 }

@@ -1,69 +1,4 @@
-/* What crosses the lanes of vectors: sums over them, and rows of four numbers turned into vectors
- * and back. */
-
-#if VECTOR_BYTES == 64
-/* Sums over the quarters of a, b in each half of the result, two by two; twice gives a sum. */
-SPHGI_TEMPLATE vec sum_quarters(vec a, vec b)
-{
-#if REAL_IS_F64
-    return (vec)_mm512_shuffle_f64x2((__m512d)a, (__m512d)b, 0x88) +
-           (vec)_mm512_shuffle_f64x2((__m512d)a, (__m512d)b, 0xdd);
-#else
-    return (vec)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0x88) +
-           (vec)_mm512_shuffle_f32x4((__m512)a, (__m512)b, 0xdd);
-#endif
-}
-SPHGI_TEMPLATE vec unpacked_sum(vec a, vec b)
-{
-    return (vec)OP(unpacklo)((NATIVE)a, (NATIVE)b) + (vec)OP(unpackhi)((NATIVE)a, (NATIVE)b);
-}
-#endif
-
-/* sum over the lanes of a[k], for k = 0 .. LANES - 1, in lane k. */
-SPHGI_TEMPLATE vec sum_across(const vec *a)
-{
-#if VECTOR_BYTES == 64
-    vec quarter[4]; /* a 128-bit quarter sums the same quarter of as many vectors as it has lanes */
-#if REAL_IS_F64
-    for (int k = 0; k < 4; ++k)
-        quarter[k] = unpacked_sum(a[2 * k], a[2 * k + 1]);
-#else
-    for (int k = 0; k < 4; ++k) {
-        const __m512 low = (__m512)unpacked_sum(a[4 * k], a[4 * k + 1]);
-        const __m512 high = (__m512)unpacked_sum(a[4 * k + 2], a[4 * k + 3]);
-        quarter[k] =
-            (vec)_mm512_shuffle_ps(low, high, 0x44) + (vec)_mm512_shuffle_ps(low, high, 0xee);
-    }
-#endif
-    return sum_quarters(sum_quarters(quarter[0], quarter[1]), sum_quarters(quarter[2], quarter[3]));
-#elif REAL_IS_F64 && VECTOR_BYTES == 16
-    return __builtin_shufflevector(a[0], a[1], 0, 2) + __builtin_shufflevector(a[0], a[1], 1, 3);
-#elif REAL_IS_F64
-    const vec ab = __builtin_shufflevector(a[0], a[1], 0, 4, 2, 6) +
-                   __builtin_shufflevector(a[0], a[1], 1, 5, 3, 7);
-    const vec cd = __builtin_shufflevector(a[2], a[3], 0, 4, 2, 6) +
-                   __builtin_shufflevector(a[2], a[3], 1, 5, 3, 7);
-    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
-           __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-#elif VECTOR_BYTES == 16
-    const vec ab = __builtin_shufflevector(a[0], a[1], 0, 4, 1, 5) +
-                   __builtin_shufflevector(a[0], a[1], 2, 6, 3, 7);
-    const vec cd = __builtin_shufflevector(a[2], a[3], 0, 4, 1, 5) +
-                   __builtin_shufflevector(a[2], a[3], 2, 6, 3, 7);
-    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
-           __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-#else
-    vec pair[4], four[2];
-    for (int k = 0; k < 4; ++k)
-        pair[k] = __builtin_shufflevector(a[2 * k], a[2 * k + 1], 0, 8, 1, 9, 4, 12, 5, 13) +
-                  __builtin_shufflevector(a[2 * k], a[2 * k + 1], 2, 10, 3, 11, 6, 14, 7, 15);
-    for (int k = 0; k < 2; ++k)
-        four[k] = __builtin_shufflevector(pair[2 * k], pair[2 * k + 1], 0, 1, 8, 9, 4, 5, 12, 13) +
-                  __builtin_shufflevector(pair[2 * k], pair[2 * k + 1], 2, 3, 10, 11, 6, 7, 14, 15);
-    return __builtin_shufflevector(four[0], four[1], 0, 1, 2, 3, 8, 9, 10, 11) +
-           __builtin_shufflevector(four[0], four[1], 4, 5, 6, 7, 12, 13, 14, 15);
-#endif
-}
+/* What crosses the lanes of vectors: rows of four numbers turned into vectors and back. */
 
 /* Four numbers each of LANES rows, as four vectors. */
 struct four {
@@ -178,36 +113,11 @@ SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
 }
 #endif
 
-/* Ids of a list, padded to SPHGI_PAD. Long vectors read beyond that: there they see the dummies. */
-struct listed {
-    const void *ids;
-    int32_t count;
-    const void *dummies; /* SPHGI_PAD ids */
-    bool wide;
-};
-
-SPHGI_TEMPLATE struct listed after(struct listed list, int32_t ids)
-{
-    list.ids = (const char *)list.ids + ids * (list.wide ? 4 : 2);
-    list.count -= ids;
-    return list;
-}
-
-SPHGI_TEMPLATE size_t id_at(const void *ids, int k, bool wide)
-{
-    return wide ? ((const uint32_t *)ids)[k] : ((const uint16_t *)ids)[k];
-}
-
 /* The rows that the first LANES ids stand for. */
-SPHGI_TEMPLATE struct four gather_rows(const real *rows, struct listed list)
+SPHGI_TEMPLATE struct four gather_rows(const real *rows, const uint32_t *ids)
 {
     const real *row[LANES];
-    for (int k = 0; k < LANES; k += SPHGI_PAD) {
-        const void *ids = after(list, k).ids;
-        if (VECTOR_BYTES == 64)
-            ids = list.count > k ? ids : list.dummies;
-        for (int l = k; l < LANES && l < k + SPHGI_PAD; ++l)
-            row[l] = rows + SPHGI_ROW / SPHGI_ID_STEP * id_at(ids, l - k, list.wide);
-    }
+    for (int l = 0; l < LANES; ++l)
+        row[l] = rows + SPHGI_ROW / SPHGI_ID_STEP * (size_t)ids[l];
     return transpose(row);
 }

@@ -7,9 +7,11 @@
  *   lanes   numbers that an instruction works on
  *   group   up to SPHGI_WIDTH targets that are corrected and written together, summed `lanes` at a
  *           time. What belongs to targets stands as [number][SPHGI_WIDTH].
- *   piece   pairs of a group, gathered into arrays that stay in the L1 cache
- *   sums    what is accumulated over the pairs of a target; first a vector of partial sums per
- *           target (lane k adds the pairs k, k + lanes, ...), then reduced to one number a lane */
+ *   tile    pairs of `lanes` targets, gathered into arrays that stay in the L1 cache: [step][lane],
+ *           a lane for each target, its pairs one after the other
+ *   chunk   SPHGI_CHUNK pairs that follow one another in the list of a target
+ *   sums    what is accumulated over the pairs of a target: in a register along a chunk, then chunk
+ * by chunk in memory, so that neither the length of vectors nor that of tiles changes a bit */
 #ifndef SPHGI_PASSES_H
 #define SPHGI_PASSES_H
 #include "../internal.h"
@@ -19,11 +21,15 @@ enum {
     SPHGI_PAD = 8,         /* lists are padded to a multiple of this */
     SPHGI_ID_STEP = 2,     /* 16-bit ids are staged numbers times this: a row of f32 then stands at
                               base + 8 * id [byte], which needs no shift */
-    SPHGI_PIECE = 1040,    /* pairs in a piece, at most: sixteen targets with twice the usual number
-                              each; no power of two, lest the arrays share lines of the cache */
     SPHGI_LANES_MOST = 16, /* of any scalar type and instruction set */
-    SPHGI_WIDTH = 32,      /* targets that are finished together */
-    SPHGI_FIND_MOST = 16   /* targets that share one set of candidates */
+    SPHGI_CHUNK = 64,      /* pairs: twice the usual number of neighbours. A sum is rounded like one
+                              of so many terms */
+    SPHGI_PLAIN_CHUNKS = 4, /* of a list; what is added beyond these is compensated */
+    SPHGI_SECTIONS = 3,     /* of sums: they, their carries, what spread chunks come to */
+    SPHGI_TILE = SPHGI_CHUNK * SPHGI_LANES_MOST + 16, /* numbers in an array: no power of two, lest
+                                                         the arrays share lines of the cache */
+    SPHGI_WIDTH = 32,                                 /* targets that are finished together */
+    SPHGI_FIND_MOST = 16                              /* targets that share one set of candidates */
 };
 
 /* Where the components of the items of a view stand. */
@@ -35,7 +41,7 @@ struct sphgi_columns {
     bool together;    /* they follow one another in memory */
 };
 
-/* Arrays of a piece, SPHGI_PIECE numbers each. */
+/* Arrays of a tile, SPHGI_TILE numbers each. */
 enum sphgi_array {
     SPHGI_X, /* x_ij, times sphgi_gather.unit */
     SPHGI_Y,
@@ -62,16 +68,23 @@ enum sphgi_vectors {
     SPHGI_TRANSPOSED /* T_ij */
 };
 
-struct sphgi_piece {
+struct sphgi_tile {
     void *arrays;
-    int32_t parts;                       /* runs of pairs, one per target at most */
-    int32_t lane[SPHGI_LANES_MOST];      /* whose pairs they are */
-    int32_t begin[SPHGI_LANES_MOST + 1]; /* multiples of SPHGI_PAD and of all lanes at work */
-    int32_t count[SPHGI_LANES_MOST];     /* without the padding */
-    bool fresh[SPHGI_LANES_MOST];        /* the lane's first: its sums begin at 0 */
-    const void *ids[SPHGI_LANES_MOST];   /* of the pairs, padded to SPHGI_PAD with the dummy */
-    bool wide;                           /* ids are uint32_t, else uint16_t */
-    uint32_t dummies[SPHGI_PAD];         /* ids of a row of zeros; 0 if ids are narrow */
+    uint32_t *ids;     /* [step][lane]: of rows; the dummy where there is no pair */
+    int32_t steps;     /* SPHGI_CHUNK at most */
+    int32_t chunk;     /* of the lists, that the tile holds: 0 starts the sums */
+    bool spread;       /* the lanes hold one list, a chunk each */
+    ptrdiff_t section; /* numbers from a sum to its carry, and on to what a spread chunk comes to */
+};
+
+/* Lists to be laid side by side, one for each lane. */
+struct sphgi_lane_lists {
+    const void *ids[SPHGI_LANES_MOST];
+    int32_t count[SPHGI_LANES_MOST];
+    int32_t stride[SPHGI_LANES_MOST]; /* of 16-bit ids */
+    bool wide;                        /* ids are uint32_t, else uint16_t */
+    bool side_by_side;                /* they stand as the tile wants them, dummies included */
+    uint32_t dummy;
 };
 
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
@@ -201,11 +214,17 @@ struct sphgi_passes {
                     const void *targets, int32_t count, int32_t self, uint16_t *ids,
                     uint16_t *lengths);
 
-    /* Pairs of the parts from `first` on into the arrays of the piece; x: row of each lane's
-     * target. [0]: f32 arrays, [1]: f64. masked: room for the ids of a piece; supersets leave
-     * theirs there, the dummy where there is no pair, and the parts point to them. */
-    void (*gather[2])(const struct sphgi_gather *gather, const void *const *x,
-                      struct sphgi_piece *piece, int32_t first, void *masked);
+    /* Pairs behind tile->ids into the arrays; x: row of each lane's target; lanes: of the tile.
+     * [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
+    void (*gather[2])(const struct sphgi_gather *gather, const void *const *x, int32_t lanes,
+                      struct sphgi_tile *tile);
+
+    /* Lists padded to a multiple of SPHGI_PAD side by side: [step][lane], 0 behind their ends. */
+    void (*weave)(const uint16_t *const *lists, const int32_t *count, int32_t lanes, int32_t steps,
+                  uint16_t *to);
+    /* Steps [begin, begin + tile->steps) of the lists into tile->ids. */
+    void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin,
+                       struct sphgi_tile *tile);
 
     bool (*clean_ids)(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out);
@@ -214,40 +233,42 @@ struct sphgi_passes {
     void (*shape_factors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
-    void (*classic_vectors)(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
+    void (*classic_vectors)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                             const void *coefficients);
     /* G_ij = scale C_i times the vectors; correction NULL: scale alone. */
-    void (*pair_gradients)(const struct sphgi_piece *piece, int32_t dimension,
+    void (*pair_gradients)(const struct sphgi_tile *tile, int32_t dimension,
                            enum sphgi_vectors vectors, const void *correction, double scale);
-    void (*transposed)(const struct sphgi_piece *piece, int32_t dimension,
-                       const void *const rows[4], const void *density, enum sphgi_weight kind);
-    void (*transposed_classic)(const struct sphgi_piece *piece, int32_t dimension,
+    void (*transposed)(const struct sphgi_tile *tile, int32_t dimension, const void *const rows[4],
+                       const void *density, enum sphgi_weight kind);
+    void (*transposed_classic)(const struct sphgi_tile *tile, int32_t dimension,
                                const void *const rows[4], const struct sphgi_scales *scales,
                                const void *target_volume, const void *density,
                                enum sphgi_weight kind);
 
-    /* Sums; partial: [sum][lane] vectors. */
-    void (*sum_moments)(const struct sphgi_piece *piece, int32_t dimension, void *partial);
-    void (*sum_classic)(const struct sphgi_piece *piece, int32_t dimension, bool weighted,
-                        void *partial);
-    void (*sum_field)(const struct sphgi_piece *piece, int32_t dimension,
-                      enum sphgi_vectors vectors, const void *rows, int32_t count,
-                      const void *at_target, void *partial);
+    /* Sums: [sum][SPHGI_WIDTH]. */
+    void (*sum_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);
+    void (*sum_classic)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
+                        void *sums);
+    void (*sum_field)(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_vectors vectors,
+                      const void *rows, int32_t count, const void *at_target, void *sums);
     /* The same, contracted: (A_j - A_i) . g, of tensors row by row. rows: of each stream */
-    void (*sum_divergence)(const struct sphgi_piece *piece, int32_t dimension, sphg_shape shape,
+    void (*sum_divergence)(const struct sphgi_tile *tile, int32_t dimension, sphg_shape shape,
                            enum sphgi_vectors vectors, const void *const *rows,
-                           const void *at_target, void *partial);
+                           const void *at_target, void *sums);
     /* sum (A_j - at_target) g g^T: one sum for its trace, d (d + 1) / 2 for its triangle */
-    void (*sum_squares)(const struct sphgi_piece *piece, int32_t dimension,
-                        enum sphgi_vectors vectors, int32_t sums, const void *rows,
-                        const void *at_target, void *partial);
-    void (*sum_value)(const struct sphgi_piece *piece, const void *rows, int32_t count,
-                      const void *at_target, void *partial);
-    void (*sum_vectors)(const struct sphgi_piece *piece, int32_t dimension,
-                        enum sphgi_vectors vectors, const void *rows, void *partial);
-    void (*sum_volume)(const struct sphgi_piece *piece, void *partial);
-    void (*clear_partial)(void *partial, int32_t sums, int32_t lane);
-    void (*reduce)(const void *partial, int32_t sums, void *reduced); /* of `lanes` targets */
+    void (*sum_squares)(const struct sphgi_tile *tile, int32_t dimension,
+                        enum sphgi_vectors vectors, int32_t count, const void *rows,
+                        const void *at_target, void *sums);
+    void (*sum_value)(const struct sphgi_tile *tile, const void *rows, int32_t count,
+                      const void *at_target, void *sums);
+    void (*sum_vectors)(const struct sphgi_tile *tile, int32_t dimension,
+                        enum sphgi_vectors vectors, const void *rows, void *sums);
+    void (*sum_volume)(const struct sphgi_tile *tile, void *sums);
+    /* What the chunks of a spread tile come to, added to the first lane's sums; chunks: there are.
+     */
+    void (*join_lanes)(const struct sphgi_tile *tile, int32_t chunks, int32_t count, void *sums);
+    /* Adds the carries, once a list is through. */
+    void (*settle)(const struct sphgi_tile *tile, int32_t count, void *sums);
 
     /* From here on `width` says for how many targets, a multiple of lanes.
      * Corrections: sums in, numbers of the table out. scale: what turns a target's sums into

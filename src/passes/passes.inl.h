@@ -11,6 +11,7 @@
 #include "kernels.inl.h"
 #include "rows.inl.h"
 #include "gather.inl.h"
+#include "lists.inl.h"
 #define OUT         float
 #define OUT_NAME(x) x##_f32
 #include "gather_pairs.inl.h"
@@ -53,6 +54,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .transpose_rows = transpose_rows,
     .largest_move = largest_move,
     .find = find,
+    .weave = weave,
+    .interleave = interleave,
     .clean_ids = clean_ids,
     .shape_factors = shape_factors,
     .shape_weights = shape_weights,
@@ -69,8 +72,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_value = sum_value,
     .sum_vectors = sum_vectors,
     .sum_volume = sum_volume,
-    .clear_partial = clear_partial,
-    .reduce = reduce,
+    .join_lanes = join_lanes,
+    .settle = settle,
     .invert = invert,
     .decompose = decompose_lanes,
     .invert_classic = invert_classic,

@@ -37,29 +37,27 @@ static void apply(int32_t width, int32_t dimension, int32_t count, const void *c
     }
 }
 
-/* G_ij = scale C_i g_ij for each pair of the piece. */
-static void pair_gradients(const struct sphgi_piece *piece, int32_t dimension,
+/* G_ij = scale C_i g_ij for each pair of the tile. */
+static void pair_gradients(const struct sphgi_tile *tile, int32_t dimension,
                            enum sphgi_vectors vectors, const void *correction, double scale)
 {
     const int32_t d = dimension;
     const real *c = correction;
     const vec factor = splat(R(scale));
-    for (int32_t p = 0; p < piece->parts; ++p) {
-        vec matrix[3][3];
-        for (int32_t a = 0; a < d; ++a)
-            for (int32_t b = 0; b < d; ++b)
-                matrix[a][b] =
-                    splat(c ? c[pair_index(a, b, d) * SPHGI_WIDTH + piece->lane[p]] : R(a == b));
-        for (int32_t k = piece->begin[p]; k < piece->begin[p + 1]; k += LANES) {
-            real *g = array_of(piece->arrays, SPHGI_GX) + k;
-            vec in[3];
-            vectors_at(piece, k, vectors, d == 3, in);
-            for (int32_t a = 0; a < d; ++a) {
-                vec sum = matrix[a][0] * in[0];
-                for (int32_t b = 1; b < d; ++b)
-                    sum += matrix[a][b] * in[b];
-                store(g + a * SPHGI_PIECE, factor * sum);
-            }
+    vec matrix[3][3];
+    for (int32_t a = 0; a < d; ++a)
+        for (int32_t b = 0; b < d; ++b)
+            matrix[a][b] =
+                c ? load(c + pair_index(a, b, d) * SPHGI_WIDTH) : splat(R(a == b ? 1 : 0));
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        real *g = array_of(tile->arrays, SPHGI_GX) + k;
+        vec in[3];
+        vectors_at(tile, k, vectors, d == 3, in);
+        for (int32_t a = 0; a < d; ++a) {
+            vec sum = matrix[a][0] * in[0];
+            for (int32_t b = 1; b < d; ++b)
+                sum += matrix[a][b] * in[b];
+            store(g + a * SPHGI_TILE, factor * sum);
         }
     }
 }

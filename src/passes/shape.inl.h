@@ -1,8 +1,8 @@
-/* Weights of the pairs of a piece: from distances and V_j to what is summed. */
+/* Weights of the pairs of a tile: from distances and V_j to what is summed. */
 
 SPHGI_TEMPLATE real *array_of(void *arrays, enum sphgi_array array)
 {
-    return (real *)arrays + array * SPHGI_PIECE;
+    return (real *)arrays + array * SPHGI_TILE;
 }
 
 /* s_ij / H (theory.md, section 2), divided by m_ref; MLS still lacks its V_i. */
@@ -12,12 +12,12 @@ SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t
     const vec scale = splat(R(method == SPHG_KGC ? shape->w_scale : -shape->w_scale));
     const vec inverse_h = splat(R(shape->inverse_h));
     for (int32_t k = 0; k < count; k += LANES, a += LANES) {
-        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_PIECE);
+        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_TILE);
         const vec value = method == SPHG_KGC ? kernel_d(kernel, q) : kernel_w(kernel, q);
         vec weight = scale;
         if (method != SPHG_MLS)
-            weight *= load(a + SPHGI_V * SPHGI_PIECE);
-        store(a + SPHGI_S * SPHGI_PIECE, weight * value);
+            weight *= load(a + SPHGI_V * SPHGI_TILE);
+        store(a + SPHGI_S * SPHGI_TILE, weight * value);
     }
 }
 
@@ -27,9 +27,9 @@ SPHGI_TEMPLATE void weights_as(const struct sphgi_shape *shape, real *a, int32_t
 {
     const vec scale = splat(R(shape->value_scale)), inverse_h = splat(R(shape->inverse_h));
     for (int32_t k = 0; k < count; k += LANES, a += LANES) {
-        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_PIECE);
-        store(a + SPHGI_S * SPHGI_PIECE, scale * kernel_w(kernel, q));
-        store(a + SPHGI_D * SPHGI_PIECE, scale * kernel_d(kernel, q));
+        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_TILE);
+        store(a + SPHGI_S * SPHGI_TILE, scale * kernel_w(kernel, q));
+        store(a + SPHGI_D * SPHGI_TILE, scale * kernel_d(kernel, q));
     }
 }
 
