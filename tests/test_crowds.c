@@ -118,7 +118,7 @@ static void require_linear(const crowd *on, const sums *found, int count, const 
 }
 
 /* The sweep that computes corrections, and one that is given them. */
-static void require_exact(const crowd *on, const sphg_neighbors *neighbors, int own_targets,
+static sums require_exact(const crowd *on, const sphg_neighbors *neighbors, int own_targets,
                           const char *where)
 {
     const sums fused = sum_up(on, neighbors, own_targets, NULL);
@@ -127,13 +127,16 @@ static void require_exact(const crowd *on, const sphg_neighbors *neighbors, int 
     require_linear(on, &fused, TARGETS - own_targets, where);
     for (int c = 0; c < on->test->dimension && own_targets; c++)
         assert_true(fixture_get(&fused.gradient, TARGETS - 1, c) == 0);
+    return fused;
 }
 
 static void gradient_at_targets_in_a_crowd_is_exact(const test_case *test)
 {
     const crowd on = crowd_of(test);
-    require_exact(&on, neighbors_of(&on, 1, 0), 1, "targets, kept lists");
-    require_exact(&on, neighbors_of(&on, 1, 1), 1, "targets, list-free");
+    const sums kept = require_exact(&on, neighbors_of(&on, 1, 0), 1, "targets, kept lists");
+    const sums found = require_exact(&on, neighbors_of(&on, 1, 1), 1, "targets, list-free");
+    assert_true(fixture_same_bits(&kept.gradient, &found.gradient));
+    assert_true(fixture_same_bits(&kept.correction, &found.correction));
 }
 
 /* Lists of all would not fit. */
