@@ -120,19 +120,20 @@ run_coverage() {
 
 # GCC's analyser and cppcheck do not follow vector extensions, so only clang-tidy sees the passes.
 run_analyse() {
-    local file status=0
+    local file status=0 plain
+    plain=$(ls src/*/*.c | grep -v ^src/passes/)
     quietly cmake --preset release || return 1
-    for file in src/*.c; do
-        gcc -std=c11 -Iinclude -DSPHG_HAVE_V3=1 -DSPHG_HAVE_V4=1 -DSPHG_USE_OPENMP=1 -fopenmp -O0 -fanalyzer -Werror \
+    for file in $plain; do
+        gcc -std=c11 -Iinclude -Isrc -DSPHG_HAVE_V3=1 -DSPHG_HAVE_V4=1 -DSPHG_USE_OPENMP=1 -fopenmp -O0 -fanalyzer -Werror \
             -c "$file" -o /dev/null || status=1
     done
-    for file in src/*.c src/passes/*.c; do
+    for file in src/*/*.c; do
         facts=(--extra-arg=-include --extra-arg="$PWD/tests/checks/analyser.h")
-        case $file in src/context.c | src/check.c | src/memory.c) facts=() ;; esac
+        case $file in src/core/context.c | src/core/check.c | src/core/memory.c) facts=() ;; esac
         clang-tidy --quiet -p build/release "${facts[@]}" "$file" 2>/dev/null || status=1
     done
     cppcheck --quiet --std=c11 --enable=warning,portability,performance --inconclusive \
         --inline-suppr --error-exitcode=1 -Iinclude -Isrc \
-        -DSPHG_HAVE_V3=1 -DSPHG_HAVE_V4=1 -DSPHG_USE_OPENMP=1 -D__SSE2__=1 -D__GNUC__=12 src/*.c || status=1
+        -DSPHG_HAVE_V3=1 -DSPHG_HAVE_V4=1 -DSPHG_USE_OPENMP=1 -D__SSE2__=1 -D__GNUC__=12 $plain || status=1
     return $status
 }

@@ -14,7 +14,7 @@
  * by chunk in memory, so that neither the length of vectors nor that of tiles changes a bit */
 #ifndef SPHGI_PASSES_H
 #define SPHGI_PASSES_H
-#include "../internal.h"
+#include "internal.h"
 
 enum {
     SPHGI_ROW = 4,         /* numbers in a row */

@@ -4,7 +4,7 @@
  * The instruction set comes from the compile flags of the including file. Everything is static:
  * code for one instruction set must never be merged with that for another. */
 #include "passes.h"
-#include "../kernel_list.h"
+#include "kernel_list.h"
 
 #include "vec.inl.h"
 #include "lanes.inl.h"

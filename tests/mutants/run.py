@@ -234,7 +234,7 @@ def all_mutants(original, seed):
     """Every place of every source once, in the order of the seed; of its mutants, one."""
     choice = random.Random(seed)
     places = collections.defaultdict(list)
-    for pattern in ("src/*.c", "src/*.h", "src/passes/*.h", "src/passes/*.c"):
+    for pattern in ("src/*.h", "src/*/*.h", "src/*/*.c"):
         for path in sorted(glob.glob("%s/%s" % (original, pattern))):
             name = os.path.relpath(path, original)
             for mutant in operators.mutants_of(name, text_of(original, name)):

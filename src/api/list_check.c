@@ -1,8 +1,8 @@
 /* Do lists hold what the positions demand? A search of the same positions tells. */
-#include "digits.h"
+#include "core/digits.h"
 #include "entries.h"
-#include "parallel.h"
-#include "view.h"
+#include "core/parallel.h"
+#include "core/view.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "lists.h"
 #include "find.h"
-#include "parallel.h"
+#include "core/parallel.h"
 #include <string.h>
 
 enum {

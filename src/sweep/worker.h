@@ -2,10 +2,10 @@
  * sums, and finishes the group. */
 #ifndef SPHGI_WORKER_H
 #define SPHGI_WORKER_H
-#include "find.h"
-#include "plan.h"
+#include "search/find.h"
+#include "plan/plan.h"
 #include "tally.h"
-#include "units.h"
+#include "plan/units.h"
 
 /* What one sweep over one source set does. */
 enum sphgi_step {

@@ -1,5 +1,5 @@
 #include "stage.h"
-#include "parallel.h"
+#include "core/parallel.h"
 #include <math.h>
 #include <string.h>
 

@@ -3,7 +3,7 @@
  * are sorted by block along a Morton curve, inside a block by cell, inside a cell by number. */
 #ifndef SPHGI_GRID_H
 #define SPHGI_GRID_H
-#include "context.h"
+#include "core/context.h"
 
 enum {
     SPHGI_BLOCK_CELLS_MOST = 32,   /* 4 x 4 x 2 in 3D, 8 x 4 in 2D */

@@ -4,7 +4,7 @@
 #include "corrections.h"
 #include "finish.h"
 #include "sums.h"
-#include "view.h"
+#include "core/view.h"
 #include <string.h>
 
 /* ---- Lanes ---------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* The views of a request: each is checked, named for messages, and remembered for overlaps. */
 #include "making.h"
-#include "view.h"
+#include "core/view.h"
 #include <stdio.h>
 
 const char *sphgi_name_view(struct sphgi_making *making, const char *format, int32_t a, int32_t b)

@@ -1,11 +1,11 @@
-#include "neighbors.h"
-#include "check.h"
+#include "search/neighbors.h"
+#include "core/check.h"
 #include "entries.h"
-#include "kernel.h"
-#include "lists.h"
-#include "parallel.h"
-#include "skin.h"
-#include "view.h"
+#include "core/kernel.h"
+#include "search/lists.h"
+#include "core/parallel.h"
+#include "search/skin.h"
+#include "core/view.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 #include "skin.h"
-#include "parallel.h"
+#include "core/parallel.h"
 #include <string.h>
 
 enum { GRAIN = 4096 }; /* particles */

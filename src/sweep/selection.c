@@ -1,5 +1,5 @@
 #include "selection.h"
-#include "parallel.h"
+#include "core/parallel.h"
 #include <string.h>
 
 enum {

@@ -1,6 +1,6 @@
 #include "worker.h"
-#include "kernel.h"
-#include "view.h"
+#include "core/kernel.h"
+#include "core/view.h"
 #include <string.h>
 
 struct layout {

@@ -1,6 +1,6 @@
 #include "sums.h"
 #include "corrections.h"
-#include "view.h"
+#include "core/view.h"
 #include <string.h>
 
 /* Classic gradients are whole; those of the linearised methods still lack C_i. */

@@ -1,5 +1,5 @@
 #include "clean.h"
-#include "view.h"
+#include "core/view.h"
 #include <string.h>
 
 static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w, int32_t target)

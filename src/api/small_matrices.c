@@ -1,12 +1,12 @@
 /* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
-#include "check.h"
-#include "digits.h"
-#include "kernel.h"
-#include "parallel.h"
+#include "core/check.h"
+#include "core/digits.h"
+#include "core/kernel.h"
+#include "core/parallel.h"
 #include "svd.h"
-#include "tally.h"
-#include "units.h"
-#include "view.h"
+#include "sweep/tally.h"
+#include "plan/units.h"
+#include "core/view.h"
 #include <math.h>
 
 enum { GRAIN = 16 /* groups */ };

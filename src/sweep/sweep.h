@@ -1,7 +1,7 @@
 /* Carries out a plan: sweeps over the source sets, in parallel over blocks of targets. */
 #ifndef SPHGI_SWEEP_H
 #define SPHGI_SWEEP_H
-#include "plan.h"
+#include "plan/plan.h"
 
 struct sphgi_pair_sink;
 

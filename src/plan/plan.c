@@ -1,7 +1,7 @@
 #include "making.h"
-#include "digits.h"
-#include "places.h"
-#include "view.h"
+#include "core/digits.h"
+#include "search/places.h"
+#include "core/view.h"
 #include <string.h>
 
 /* ---- Sets ----------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 #include "kernel.h"
 #include "float_environment.h"
-#include "kernel_list.h"
+#include "passes/kernel_list.h"
 #include <math.h>
 
 typedef double vec;

@@ -1,7 +1,7 @@
 /* sphg_evaluate and the short ways to call it. */
-#include "check.h"
-#include "plan.h"
-#include "sweep.h"
+#include "core/check.h"
+#include "plan/plan.h"
+#include "sweep/sweep.h"
 
 static sphg_result evaluate(struct sphgi_checker checker, const sphg_scheme *scheme,
                             const sphg_request *request)

@@ -1,6 +1,6 @@
 #include "finish.h"
 #include "corrections.h"
-#include "kernel.h"
+#include "core/kernel.h"
 
 /* The target's own term of the direct form. */
 static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_plan *field)

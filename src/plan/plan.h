@@ -2,8 +2,8 @@
  * formed, where the results go. */
 #ifndef SPHGI_PLAN_H
 #define SPHGI_PLAN_H
-#include "check.h"
-#include "neighbors.h"
+#include "core/check.h"
+#include "search/neighbors.h"
 
 /* Up to SPHGI_ROW components of one array, read as rows. columns.count 0: zeros. */
 struct sphgi_stream {

@@ -1,5 +1,5 @@
 #include "corrections.h"
-#include "kernel.h"
+#include "core/kernel.h"
 
 /* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
  * holds, if one is wanted. */

@@ -1,6 +1,6 @@
 /* Sorting particles into the blocks and cells of a grid. */
 #include "grid.h"
-#include "parallel.h"
+#include "core/parallel.h"
 #include <string.h>
 
 enum {

@@ -1,12 +1,12 @@
 /* Pairs one by one: export as CSR, and G_ij. */
-#include "check.h"
+#include "core/check.h"
 #include "entries.h"
-#include "kernel.h"
-#include "parallel.h"
-#include "plan.h"
-#include "sweep.h"
-#include "view.h"
-#include "worker.h"
+#include "core/kernel.h"
+#include "core/parallel.h"
+#include "plan/plan.h"
+#include "sweep/sweep.h"
+#include "core/view.h"
+#include "sweep/worker.h"
 #include <math.h>
 #include <string.h>
 

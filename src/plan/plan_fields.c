@@ -1,6 +1,6 @@
 /* The fields of a request: what is read of them, and where their results go. */
 #include "making.h"
-#include "view.h"
+#include "core/view.h"
 
 /* ---- Fields --------------------------------------------------------------------------------- */
 

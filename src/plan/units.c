@@ -1,5 +1,5 @@
 #include "units.h"
-#include "kernel.h"
+#include "core/kernel.h"
 #include <math.h>
 
 /* Linearised (theory.md, section 3): KGC C; RKPM C / (mu2 H^2); MLS C H^(d - 2) / mu2, where ours

@@ -2,8 +2,8 @@
  * under way. */
 #ifndef SPHGI_ENTRIES_H
 #define SPHGI_ENTRIES_H
-#include "check.h"
-#include "neighbors.h"
+#include "core/check.h"
+#include "search/neighbors.h"
 
 /* An empty object, or NULL: no memory. */
 sphg_neighbors *sphgi_neighbors_make(sphg_context *context);

@@ -1,9 +1,9 @@
 #include "sweep.h"
-#include "digits.h"
-#include "parallel.h"
+#include "core/digits.h"
+#include "core/parallel.h"
 #include "stage.h"
 #include "traverse.h"
-#include "view.h"
+#include "core/view.h"
 #include <math.h>
 #include <string.h>
 

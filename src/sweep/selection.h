@@ -1,7 +1,7 @@
 /* Which targets of a subset, in the order in which a source set visits them. */
 #ifndef SPHGI_SELECTION_H
 #define SPHGI_SELECTION_H
-#include "neighbors.h"
+#include "search/neighbors.h"
 
 struct sphgi_selection {
     const sphg_subset *subset; /* NULL: all targets */

@@ -1,5 +1,5 @@
 #include "places.h"
-#include "parallel.h"
+#include "core/parallel.h"
 
 enum { GRAIN = 4096 }; /* targets */
 
