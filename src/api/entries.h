@@ -1,5 +1,5 @@
-/* What one entry point does for another: objects, a search and lists of pairs within a call that is
- * under way. */
+/* What one entry point does for another: objects and lists of pairs within a call that is under
+ * way. */
 #ifndef SPHGI_ENTRIES_H
 #define SPHGI_ENTRIES_H
 #include "core/check.h"
@@ -7,11 +7,6 @@
 
 /* An empty object, or NULL: no memory. */
 sphg_neighbors *sphgi_neighbors_make(sphg_context *context);
-
-/* geometry: checked. */
-sphg_result sphgi_neighbors_search(struct sphgi_checker checker, sphg_neighbors *neighbors,
-                                   const struct sphgi_scheme *scheme,
-                                   const sphg_geometry *geometry);
 
 /* CSR in memory of the context's allocator, sources ascending within a row. */
 struct sphgi_rows {

@@ -1,6 +1,7 @@
 /* Do lists hold what the positions demand? A search of the same positions tells. */
 #include "core/digits.h"
 #include "entries.h"
+#include "search/build.h"
 #include "core/parallel.h"
 #include "core/view.h"
 #include <math.h>
@@ -96,7 +97,7 @@ static sphg_result search_again(struct list_check *check, const struct sphgi_sch
     sphg_neighbors *again = sphgi_neighbors_make(check->checker.context);
     if (!again)
         return sphgi_fail_memory(check->checker.context, check->checker.function);
-    sphg_result result = sphgi_neighbors_search(check->checker, again, scheme, &geometry);
+    sphg_result result = sphgi_build_by_search(check->checker, again, scheme, &geometry);
     if (!result)
         result = sphgi_list_pairs(check->checker, scheme, again, &check->found);
     sphg_neighbors_destroy(again);

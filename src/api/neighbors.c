@@ -1,17 +1,7 @@
-#include "search/neighbors.h"
 #include "core/check.h"
 #include "entries.h"
-#include "core/kernel.h"
-#include "search/lists.h"
-#include "core/parallel.h"
-#include "search/skin.h"
-#include "core/view.h"
-#include <math.h>
+#include "search/build.h"
 #include <string.h>
-
-enum { GRAIN = 4096 }; /* particles */
-
-/* ---- Life ----------------------------------------------------------------------------------- */
 
 sphg_neighbors *sphgi_neighbors_make(sphg_context *context)
 {
@@ -64,137 +54,6 @@ void sphg_neighbors_destroy(sphg_neighbors *neighbors)
     sphgi_release(&allocator, neighbors, sizeof *neighbors);
 }
 
-/* ---- Reading positions ---------------------------------------------------------------------- */
-
-struct reading {
-    const struct sphgi_passes *passes;
-    struct sphgi_columns columns;
-    char *rows;
-    size_t row_size;
-    const struct sphgi_periods *periods; /* NULL: all axes are open */
-    bool trusted;
-    atomic_int_least64_t bad;        /* first item that is not finite, or INT64_MAX */
-    atomic_int_least64_t largest[3]; /* |coordinate|: bits of numbers >= 0 rise as these do */
-};
-
-static void take_into_box(struct reading *reading, int32_t begin, int32_t end)
-{
-    double largest[3] = {0};
-    reading->passes->take_into_box(reading->periods, end - begin,
-                                   reading->rows + (size_t)begin * reading->row_size, largest);
-    for (int32_t a = 0; a < 3; ++a) {
-        int64_t bits;
-        memcpy(&bits, &largest[a], sizeof bits);
-        int_least64_t seen = atomic_load(&reading->largest[a]);
-        while (seen < bits && !atomic_compare_exchange_weak(&reading->largest[a], &seen, bits))
-            ;
-    }
-}
-
-static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    struct reading *reading = data;
-    (void)worker;
-    const bool finite = reading->passes->read_positions(
-        &reading->columns, begin, end, reading->rows + (size_t)begin * reading->row_size);
-    if (reading->periods)
-        take_into_box(reading, begin, end);
-    if (finite || reading->trusted)
-        return;
-    const int64_t bad = reading->passes->first_not_finite(&reading->columns, begin, end);
-    int_least64_t first = atomic_load(&reading->bad);
-    while (bad < first && !atomic_compare_exchange_weak(&reading->bad, &first, bad))
-        ;
-}
-
-static sphg_result read_positions(struct sphgi_checker checker, const sphg_view *view,
-                                  const char *name, int32_t count, char *rows,
-                                  struct sphgi_geometry *g)
-{
-    struct reading reading = {.passes = sphgi_passes_of(checker.context, view->type),
-                              .columns = sphgi_columns_of(view, SPHG_VECTOR, g->dimension),
-                              .rows = rows,
-                              .row_size = SPHGI_ROW * sphgi_size_of_type(view->type),
-                              .periods = g->periodic ? &g->periods : NULL,
-                              .trusted = checker.context->config.trusted != 0};
-    atomic_store(&reading.bad, INT64_MAX);
-    for (int32_t a = 0; a < 3; ++a)
-        atomic_store(&reading.largest[a], 0);
-    sphgi_parallel_for(checker.context, reading_task, &reading, count, GRAIN);
-    for (int32_t a = 0; a < 3; ++a) {
-        const int64_t bits = atomic_load(&reading.largest[a]);
-        double largest;
-        memcpy(&largest, &bits, sizeof largest);
-        g->largest[a] = largest > g->largest[a] ? largest : g->largest[a];
-    }
-    const int64_t bad = atomic_load(&reading.bad);
-    if (bad == INT64_MAX)
-        return SPHG_OK;
-    return sphgi_fail(checker.context, SPHG_ERROR_NOT_FINITE, "%s: %s[%lld] is not finite",
-                      checker.function, name, (long long)bad);
-}
-
-static struct sphgi_geometry geometry_of(const sphg_geometry *given,
-                                         const struct sphgi_scheme *scheme)
-{
-    struct sphgi_geometry g = {.source_count = given->source_count,
-                               .target_count = given->target_count,
-                               .dimension = scheme->dimension,
-                               .part_of = !given->targets.x};
-    g.position_type = sphgi_type_of_positions(given);
-    g.type = given->precision ? given->precision : g.position_type;
-    g.row_size = SPHGI_ROW * sphgi_size_of_type(g.position_type);
-    g.periods = sphgi_periods_of(g.dimension, scheme->radius, given->period, g.position_type);
-    for (int32_t a = 0; a < 3; ++a)
-        g.periodic |= g.periods.length[a] > 0;
-    return g;
-}
-
-static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
-                                 struct sphgi_geometry *g)
-{
-    sphg_context *context = checker.context;
-    const size_t own_targets = g->part_of ? 0 : (size_t)g->target_count;
-    if (!sphgi_reserve(&context->allocator, &context->input,
-                       (size_t)g->source_count + own_targets + SPHGI_LANES_MOST, g->row_size))
-        return sphgi_fail_memory(context, checker.function);
-    g->source_rows = context->input.data;
-    g->target_rows = g->source_rows + (size_t)g->source_count * g->row_size;
-    sphg_result result = read_positions(checker, &given->sources, "geometry.sources",
-                                        g->source_count, g->source_rows, g);
-    if (!result && !g->part_of)
-        result = read_positions(checker, &given->targets, "geometry.targets", g->target_count,
-                                g->target_rows, g);
-    if (g->part_of)
-        g->target_rows = g->source_rows;
-    return result;
-}
-
-/* ---- Places --------------------------------------------------------------------------------- */
-
-struct inversion {
-    const int32_t *order;
-    int32_t *place;
-};
-
-static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    const struct inversion *inversion = data;
-    (void)worker;
-    for (int32_t k = begin; k < end; ++k)
-        inversion->place[inversion->order[k]] = k;
-}
-
-static bool invert_order(sphg_context *context, const sphg_neighbors *n,
-                         const struct sphgi_grid *grid, struct sphgi_buffer *place)
-{
-    if (!sphgi_reserve(&n->allocator, place, (size_t)grid->count, sizeof(int32_t)))
-        return false;
-    struct inversion inversion = {grid->order.data, place->data};
-    sphgi_parallel_for(context, invert_task, &inversion, grid->count, GRAIN);
-    return true;
-}
-
 static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbors *neighbors,
                                const sphg_scheme *scheme, const sphg_geometry *geometry,
                                bool searched, struct sphgi_scheme *checked)
@@ -203,87 +62,6 @@ static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbor
     if (!result)
         result = sphgi_check_scheme(checker, scheme, checked);
     return result ? result : sphgi_check_geometry(checker, geometry, checked, searched);
-}
-
-/* ---- Search --------------------------------------------------------------------------------- */
-
-static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_geometry *given,
-                  double radius)
-{
-    n->dimension = g->dimension;
-    n->position_type = g->position_type;
-    n->type = g->type;
-    n->radius = radius;
-    n->skin = given->skin;
-    n->periodic = g->periodic;
-    for (int32_t a = 0; a < 3; ++a)
-        n->period[a] = a < g->dimension ? given->period[a] : 0;
-    n->list_free = given->list_free != 0;
-    n->part_of = g->part_of;
-    n->same = g->part_of && g->target_count == g->source_count;
-    n->source_count = g->source_count;
-    n->target_count = g->target_count;
-    n->found.pairs = 0;
-    atomic_store(&n->places, 0);
-    memset(&n->lists, 0, sizeof n->lists);
-}
-
-/* What the tables of the grids can take at most; those of the lists too, which keep a number per
- * block of the targets. */
-static size_t tables_most(const sphg_neighbors *n)
-{
-    size_t bytes = sphgi_grid_tables(n->source_count) + SPHGI_ALIGNMENT;
-    if (!n->same)
-        bytes += sphgi_grid_tables(n->target_count) + SPHGI_ALIGNMENT;
-    if (!n->list_free)
-        bytes += (size_t)n->target_count * sizeof(int64_t) + SPHGI_ALIGNMENT;
-    return bytes;
-}
-
-static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
-                               const struct sphgi_geometry *g)
-{
-    const struct sphgi_lattice lattice = sphgi_lattice_of(
-        n->dimension, n->radius + n->skin, &g->periods, g->largest, n->position_type);
-    if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
-        return SPHG_ERROR_MEMORY;
-    char *tables = n->shared.data;
-    sphg_result result =
-        sphgi_grid_build(context, &n->sources, &n->allocator, &lattice, n->position_type,
-                         g->source_rows, n->source_count, tables);
-    if (!result && !n->same) {
-        tables += sphgi_round_up(sphgi_grid_tables(n->sources.block_count), SPHGI_ALIGNMENT);
-        result = sphgi_grid_build(context, &n->targets, &n->allocator, &lattice, n->position_type,
-                                  g->target_rows, n->target_count, tables);
-    }
-    if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
-        result = SPHG_ERROR_MEMORY;
-    return result;
-}
-
-sphg_result sphgi_neighbors_search(struct sphgi_checker checker, sphg_neighbors *n,
-                                   const struct sphgi_scheme *scheme, const sphg_geometry *given)
-{
-    struct sphgi_geometry g = geometry_of(given, scheme);
-    sphg_result result = read_geometry(checker, given, &g);
-    if (result)
-        return result;
-    if (sphgi_skin_asks_the_same(n, &g, given, scheme->radius) && n->type == g.type &&
-        sphgi_skin_holds(checker.context, n, &g))
-        return SPHG_OK;
-    n->kind = SPHGI_NEVER_BUILT;
-    adopt(n, &g, given, scheme->radius);
-    result = build_grids(checker.context, n, &g);
-    if (!result && !n->list_free)
-        result = sphgi_lists_build(checker.context, n);
-    n->skin_left = 0;
-    if (!result && n->skin > 0)
-        result = sphgi_skin_remember(n, &g) ? SPHG_OK : SPHG_ERROR_MEMORY;
-    if (result)
-        return sphgi_fail_memory(checker.context, checker.function);
-    n->kind = SPHGI_SEARCHED;
-    n->rebuilt = true;
-    return SPHG_OK;
 }
 
 sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
@@ -296,38 +74,8 @@ sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbo
         return result;
     result = check_build(checker, neighbors, scheme, geometry, true, &checked);
     if (!result)
-        result = sphgi_neighbors_search(checker, neighbors, &checked, geometry);
+        result = sphgi_build_by_search(checker, neighbors, &checked, geometry);
     return sphgi_leave(context, result);
-}
-
-/* ---- The host's lists ----------------------------------------------------------------------- */
-
-static sphg_result use_lists(struct sphgi_checker checker, sphg_neighbors *n,
-                             const struct sphgi_scheme *scheme, const sphg_geometry *given,
-                             const sphg_lists *lists)
-{
-    struct sphgi_geometry g = geometry_of(given, scheme);
-    sphg_result result = read_geometry(checker, given, &g);
-    if (result)
-        return result;
-    n->kind = SPHGI_NEVER_BUILT;
-    adopt(n, &g, given, scheme->radius);
-    n->same = n->part_of;
-    const size_t sources = (size_t)g.source_count, targets = (size_t)g.target_count;
-    if (!sphgi_reserve(&n->allocator, &n->sources.rows, sources + 1, g.row_size) ||
-        (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g.row_size)))
-        return sphgi_fail_memory(checker.context, checker.function);
-    memcpy(n->sources.rows.data, g.source_rows, sources * g.row_size);
-    memset((char *)n->sources.rows.data + sources * g.row_size, 0xff, g.row_size); /* NaN */
-    if (!n->part_of)
-        memcpy(n->targets.rows.data, g.target_rows, targets * g.row_size);
-    n->lists = *lists;
-    if (lists->offsets)
-        n->found.pairs = lists->offsets[n->target_count];
-    n->kind = SPHGI_HOST_LISTS;
-    n->rebuilt = true;
-    n->skin_left = 0;
-    return SPHG_OK;
 }
 
 sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
@@ -343,11 +91,9 @@ sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neig
     if (!result)
         result = sphgi_check_lists(checker, lists, geometry->target_count);
     if (!result)
-        result = use_lists(checker, neighbors, &checked, geometry, lists);
+        result = sphgi_build_on_lists(checker, neighbors, &checked, geometry, lists);
     return sphgi_leave(context, result);
 }
-
-/* ---- Questions ------------------------------------------------------------------------------ */
 
 static int64_t grid_bytes(const struct sphgi_grid *grid)
 {

@@ -1,17 +1,18 @@
 #!/bin/sh
-# layers.sh ROOT: the library's files stand in layers, and each may include its own and lower ones.
+# layers.sh ROOT: the folders of src are layers, and each file may include its own folder and those below it.
 # The public header is what all of them serve: everyone may include it, it includes the standard.
 cd "$1" || exit 1
 
-layer_of() {
-    case $1 in
-        evaluate.c | pairs.c | neighbors.c | list_check.c | entries.h | small_matrices.c) echo 4 ;;
-        plan.* | plan_fields.c | plan_views.c | plan_sums.* | units.* | making.h | selection.* | tally.* | worker.* | clean.* | group.c | corrections.* | finish.* | sums.* | stage.* | traverse.* | sweep.* | svd.*) echo 3 ;;
-        neighbors.h | places.* | skin.* | find.* | lists.* | grid.* | lattice.c | sort.c | surroundings.c) echo 3 ;;
-        context.* | check.* | view.* | kernel.* | kernel_list.h | parallel.* | memory.* | cpu.* | result.* | digits.* | float_environment.*) echo 2 ;;
-        passes/*) echo 1 ;;
-        internal.h) echo 0 ;;
-    esac
+# From the lowest; src/README.md shows them. Every folder may include those named before it.
+order="internal.h passes core search plan sweep api"
+
+# height_of PATH: the place of its folder (of internal.h: its own) in the order.
+height_of() {
+    place=0
+    for folder in $order; do
+        place=$((place + 1))
+        [ "$folder" != "${1%%/*}" ] || echo $place
+    done
 }
 
 status=0
@@ -29,31 +30,35 @@ included() {
             else
                 echo "$name"
             fi
-        done | sed 's|^\./||'
+        done
 }
 
 files=$(cd src && find . -name '*.[ch]' | sed 's|^\./||' | sort)
 [ -n "$files" ] || complain "src holds no sources"
 for file in $files; do
-    layer=$(layer_of "$file")
-    if [ -z "$layer" ]; then
+    height=$(height_of "$file")
+    if [ -z "$height" ]; then
         complain "src/$file stands in no layer"
         continue
     fi
     for name in $(included "$file"); do
-        below=$(layer_of "$name")
-        if [ -z "$below" ]; then
-            complain "src/$file includes \"$name\", which stands in no layer"
-        elif [ "$below" -gt "$layer" ]; then
-            complain "src/$file (layer $layer) includes $name (layer $below)"
+        below=$(height_of "$name")
+        if [ -z "$below" ] || [ ! -f "src/$name" ]; then
+            complain "src/$file includes \"$name\", which is no file of a layer"
+        elif [ "$below" -gt "$height" ]; then
+            complain "src/$file includes $name, which stands above it"
         fi
     done
 done
+for folder in $order; do
+    [ -e "src/$folder" ] || complain "src/$folder is named as a layer and is not there"
+    grep -q "$folder" src/README.md || complain "src/README.md does not show $folder"
+done
 
-if grep -rn --include='*.[ch]' -E 'include *<omp\.h>|pragma omp' src | grep -v '^src/parallel\.c:' >&2; then
+if grep -rn --include='*.[ch]' -E 'include *<omp\.h>|pragma omp' src | grep -v '^src/core/parallel\.c:' >&2; then
     complain "OpenMP is parallel.c's alone"
 fi
-if grep -n --include='*.[ch]' -rE '"[^"]*%[-+ #0-9.*]*l?[aefgAEFG]' src | grep -v '^src/digits\.c:' >&2; then
+if grep -n --include='*.[ch]' -rE '"[^"]*%[-+ #0-9.*]*l?[aefgAEFG]' src | grep -v '^src/core/digits\.c:' >&2; then
     complain "numbers are printed by digits.c alone"
 fi
 if grep -n '#include "' include/sphgrad/sphgrad.h >&2; then

@@ -20,6 +20,11 @@ column() {
         inside && !/^\|-/ { print $(n + 1) }' "$2"
 }
 
+# find_source NAME: where the library has a file of that name, with or without its folder.
+find_source() {
+    find src -path "src/$1" -o -path "src/*/$1" | head -n 1
+}
+
 # Of the interface: declared in the header, members after a dot.
 interface=$(column 3 docs/theory.md equation | quoted)
 [ -n "$interface" ] || complain "docs/theory.md has no table of functions"
@@ -34,9 +39,8 @@ file=
 for name in $(column 4 docs/theory.md equation | quoted); do
     case $name in
         *.[ch])
-            file=src/$name
-            [ -f "$file" ] || file=src/passes/$name
-            [ -f "$file" ] || complain "docs/theory.md: there is no $name"
+            file=$(find_source "$name")
+            [ -n "$file" ] || complain "docs/theory.md: there is no $name"
             ;;
         *) grep -qw "$name" "$file" 2>/dev/null || complain "docs/theory.md: no $name in $file" ;;
     esac
@@ -46,20 +50,18 @@ done
 layers=$(column 2 docs/design.md layer | quoted)
 [ -n "$layers" ] || complain "docs/design.md has no table of layers"
 for name in $layers; do
-    for path in "$name" "src/$name" "src/$name.c" "src/$name.h" ''; do
-        [ -n "$path" ] && [ -e "$path" ] && break
-    done
-    [ -n "$path" ] || complain "docs/design.md, layers: there is no $name"
+    [ -e "$name" ] || [ -n "$(find_source "${name%/}")$(find_source "$name.c")$(find_source "$name.h")" ] ||
+        complain "docs/design.md, layers: there is no $name"
 done
 # Elsewhere: file names in backticks.
 for name in $(quoted <docs/design.md | grep '^[a-z_0-9/.]*\.\(c\|h\|inl\.h\|sh\)$'); do
-    [ -e "$name" ] || [ -e "src/$name" ] || [ -e "src/passes/$name" ] ||
-        complain "docs/design.md: there is no $name"
+    [ -e "$name" ] || [ -n "$(find_source "$name")" ] || complain "docs/design.md: there is no $name"
 done
 
 all=" $(quoted <docs/design.md | tr '\n' ' ') "
-for path in src/*.[ch]; do
-    file=${path#src/}
+for path in src/*.[ch] src/*/*.[ch]; do
+    file=${path##*/}
+    case $path in src/passes/*) continue ;; esac
     stem=${file%.*}
     case $all in
         *" $file "* | *" $stem "*) ;;

@@ -1,0 +1,27 @@
+/* Builds: positions in, and who is near whom, found by a search or told by the host. */
+#ifndef SPHGI_BUILD_H
+#define SPHGI_BUILD_H
+#include "core/check.h"
+#include "neighbors.h"
+
+/* What a build is about; becomes the object's only when it succeeds. */
+struct sphgi_geometry {
+    int32_t source_count, target_count, dimension;
+    sphg_type position_type, type;
+    bool part_of, periodic;
+    struct sphgi_periods periods;
+    double largest[3]; /* |coordinate|, of a periodic geometry */
+    size_t row_size;
+    char *source_rows, *target_rows; /* in the order of the host, in context->input */
+};
+
+/* The two ways to build, from arguments that were checked. What fails before the old state is given
+ * up leaves it as it was (any refusal); after a failed allocation the object is to be built again.
+ */
+sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *neighbors,
+                                  const struct sphgi_scheme *scheme, const sphg_geometry *given);
+sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *neighbors,
+                                 const struct sphgi_scheme *scheme, const sphg_geometry *given,
+                                 const sphg_lists *lists);
+
+#endif
