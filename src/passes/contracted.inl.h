@@ -15,9 +15,12 @@ SPHGI_TEMPLATE int components_of(sphg_shape shape, int d)
 /* A . b: of a vector a number, of a tensor one for each of its rows. Added to sum. */
 SPHGI_TEMPLATE void add_contracted(sphg_shape shape, int d, const vec *a, const vec *b, vec *sum)
 {
-    for (int row = 0; row < (shape == SPHG_VECTOR ? 1 : d); ++row)
-        for (int k = 0; k < d; ++k)
-            sum[row] += a[shape == SPHG_VECTOR ? k : tensor_index(shape, row, k, d)] * b[k];
+    for (int row = 0; row < (shape == SPHG_VECTOR ? 1 : d); ++row) {
+        vec product = a[shape == SPHG_VECTOR ? 0 : tensor_index(shape, row, 0, d)] * b[0];
+        for (int k = 1; k < d; ++k) /* apart from the sum, which each pair would wait for d times */
+            product += a[shape == SPHG_VECTOR ? k : tensor_index(shape, row, k, d)] * b[k];
+        sum[row] += product;
+    }
 }
 
 /* A_j - A_i of the pairs from place k on. */
@@ -123,9 +126,14 @@ SPHGI_TEMPLATE void squares_as(const struct sphgi_tile *tile, enum sphgi_vectors
         const vec a = gather_rows(rows, tile->ids + k).x - off;
         vec g[3];
         vectors_at(tile, k, vectors, three, g);
-        for (int b = 0; b < d; ++b)
-            for (int c = b; c < (trace ? b + 1 : d); ++c)
-                sum[trace ? 0 : pair_index(b, c, d)] += a * g[b] * g[c];
+        vec square = g[0] * g[0];
+        for (int b = 1; b < d; ++b)
+            square += g[b] * g[b];
+        if (trace)
+            sum[0] += a * square;
+        for (int b = 0; b < d && !trace; ++b)
+            for (int c = b; c < d; ++c)
+                sum[pair_index(b, c, d)] += a * g[b] * g[c];
     }
     end_tile(tile, sum, count, sums);
 }

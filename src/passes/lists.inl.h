@@ -61,14 +61,17 @@ static void weave(const uint16_t *const *lists, const int32_t *count, int32_t la
         }
 }
 
-/* Of lists that stand side by side already. */
+/* Of lists that stand side by side already. They come from memory: those to come are asked for. */
 SPHGI_TEMPLATE void widen(const uint16_t *from, int32_t stride, struct sphgi_tile *tile)
 {
+    enum { AHEAD = 64 }; /* steps */
     uint32_t *to = tile->ids;
-    for (int32_t k = 0; k < tile->steps; ++k, from += stride, to += LANES)
+    for (int32_t k = 0; k < tile->steps; ++k, from += stride, to += LANES) {
+        __builtin_prefetch(from + AHEAD * stride);
         for (int32_t l = 0; l < LANES; l += LANES_AT_ONCE)
             *(wide_ids *)(to + l) =
                 __builtin_convertvector(*(const narrow_ids *)(from + l), wide_ids);
+    }
 }
 
 #if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 >= 8
@@ -99,28 +102,61 @@ SPHGI_TEMPLATE void interleave_narrow(const struct sphgi_lane_lists *lists, int3
                                       struct sphgi_tile *tile)
 {
     for (int32_t l = 0; l < LANES; ++l) {
-        const int32_t stride = lists->stride[l], count = lists->count[l] - begin;
+        const int32_t stride = lists->stride[l], left = lists->count[l] - begin;
+        const int32_t count = left < tile->steps ? left : tile->steps;
         const uint16_t *ids = (const uint16_t *)lists->ids[l] + (ptrdiff_t)begin * stride;
-        for (int32_t k = 0; k < tile->steps; ++k)
-            tile->ids[k * LANES + l] = k < count ? ids[k * stride] : 0;
+        uint32_t *to = tile->ids + l;
+        int32_t k = 0;
+        for (; k + 4 <= count; k += 4, ids += 4 * stride, to += 4 * LANES) {
+            to[0] = ids[0];
+            to[LANES] = ids[stride];
+            to[2 * LANES] = ids[2 * stride];
+            to[3 * LANES] = ids[3 * stride];
+        }
+        for (; k < tile->steps; ++k, ids += stride, to += LANES)
+            *to = k < count ? *ids : 0;
     }
 }
 
-SPHGI_TEMPLATE void interleave_wide(const struct sphgi_lane_lists *lists, int32_t begin,
-                                    struct sphgi_tile *tile)
+#if VECTOR_BYTES == 16 && REAL_IS_F64
+SPHGI_TEMPLATE void interleave_wide(const struct sphgi_lane_lists *lists, struct sphgi_tile *tile)
 {
-    for (int32_t l = 0; l < LANES; ++l) {
-        const uint32_t *ids = (const uint32_t *)lists->ids[l] + begin;
-        const int32_t count = lists->count[l] - begin;
+    for (int32_t l = 0; l < LANES; ++l)
         for (int32_t k = 0; k < tile->steps; ++k)
-            tile->ids[k * LANES + l] = k < count ? ids[k] : lists->dummy;
-    }
+            tile->ids[k * LANES + l] =
+                k < lists->count[l] ? ((const uint32_t *)lists->ids[l])[k] : lists->dummy;
 }
+#else
+typedef uint32_t four_ids __attribute__((vector_size(16), aligned(4), may_alias));
+
+/* Lists are padded to four with the dummy; tile->ids has room for as many steps. */
+SPHGI_TEMPLATE void interleave_wide(const struct sphgi_lane_lists *lists, struct sphgi_tile *tile)
+{
+    const four_ids none = (four_ids){0} + lists->dummy;
+    for (int32_t l = 0; l < LANES; l += 4)
+        for (int32_t k = 0; k < tile->steps; k += 4) {
+            four_ids a[4];
+            for (int32_t i = 0; i < 4; ++i) {
+                const four_ids *from = (const four_ids *)((const uint32_t *)lists->ids[l + i] + k);
+                a[i] = *(k < lists->count[l + i] ? from : &none);
+            }
+            const four_ids ac = __builtin_shufflevector(a[0], a[2], 0, 4, 1, 5);
+            const four_ids AC = __builtin_shufflevector(a[0], a[2], 2, 6, 3, 7);
+            const four_ids bd = __builtin_shufflevector(a[1], a[3], 0, 4, 1, 5);
+            const four_ids BD = __builtin_shufflevector(a[1], a[3], 2, 6, 3, 7);
+            uint32_t *to = tile->ids + k * LANES + l;
+            *(four_ids *)to = __builtin_shufflevector(ac, bd, 0, 4, 1, 5);
+            *(four_ids *)(to + LANES) = __builtin_shufflevector(ac, bd, 2, 6, 3, 7);
+            *(four_ids *)(to + 2 * LANES) = __builtin_shufflevector(AC, BD, 0, 4, 1, 5);
+            *(four_ids *)(to + 3 * LANES) = __builtin_shufflevector(AC, BD, 2, 6, 3, 7);
+        }
+}
+#endif
 
 static void interleave(const struct sphgi_lane_lists *lists, int32_t begin, struct sphgi_tile *tile)
 {
     if (lists->wide)
-        interleave_wide(lists, begin, tile);
+        interleave_wide(lists, tile);
     else if (lists->side_by_side)
         widen((const uint16_t *)lists->ids[0] + (ptrdiff_t)begin * lists->stride[0],
               lists->stride[0], tile);

@@ -222,7 +222,8 @@ struct sphgi_passes {
     /* Lists padded to a multiple of SPHGI_PAD side by side: [step][lane], 0 behind their ends. */
     void (*weave)(const uint16_t *const *lists, const int32_t *count, int32_t lanes, int32_t steps,
                   uint16_t *to);
-    /* Steps [begin, begin + tile->steps) of the lists into tile->ids. */
+    /* Steps [begin, begin + tile->steps) of the lists into tile->ids. Those of 32-bit ids begin at
+     * 0 and are padded to a multiple of four with the dummy. */
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin,
                        struct sphgi_tile *tile);
 

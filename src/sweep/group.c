@@ -71,6 +71,8 @@ static void fill_from_wide(struct sphgi_worker *w, const struct sphgi_lane_lists
             ids[k] = list[k] * SPHGI_ID_STEP;
         if (w->local && count)
             sphgi_make_local(w, ids, count, l * SPHGI_CHUNK);
+        for (int32_t k = count; k % 4; ++k)
+            ids[k] = w->gather.dummy;
         ready.ids[l] = ids;
         ready.count[l] = count;
     }

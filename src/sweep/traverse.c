@@ -25,6 +25,7 @@ static void run_rest(struct sphgi_worker *w)
     if (w->group.lanes > w->summed)
         sphgi_group_run(w);
     finish_group(w);
+    w->host_ids_used = 0;
 }
 
 /* Of 32-bit numbers, or of 16-bit ids that stand `stride` apart. */
@@ -182,37 +183,35 @@ static void ask_for_rows(const sphg_neighbors *n, const uint32_t *rows, int32_t 
     __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
 }
 
-/* So few targets that it does not pay to stage everything around them: their rows alone. */
-static void sweep_sparse_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block,
-                               const struct sphgi_finder *finder)
+/* A target whose neighbours are read row by row: it may wait for those of other blocks. */
+static void add_sparse(struct sphgi_worker *w, const struct sphgi_surroundings *around,
+                       int32_t place, const uint16_t *ids, int32_t length, int32_t stride)
 {
-    enum { ROOM = SPHGI_UNITS_MOST / 2 }; /* numbers */
-    const sphg_neighbors *n = task->sweep.set->neighbors;
-    uint32_t *rows = (uint32_t *)(void *)finder->ids;
-    int32_t used = 0;
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    if (w->host_ids_used + length > SPHGI_HOST_IDS)
+        run_rest(w);
+    uint32_t *rows = (uint32_t *)(void *)w->host_ids + w->host_ids_used;
+    unstage(around, ids, length, stride, rows);
+    ask_for_rows(n, rows, length);
+    w->host_ids_used += length;
+    add_list(w, target_at(n, place), place, sphgi_target_row(n, place), rows, length, 1);
+    if (w->group.lanes == w->summed)
+        w->host_ids_used = 0;
+}
+
+/* So few targets that it does not pay to stage everything around them: their rows alone. */
+static void sweep_sparse_block(const struct sphgi_task *task, struct sphgi_worker *w, int32_t block)
+{
     struct sphgi_surroundings around;
-    struct walk walk = walk_block(n, block, &around);
-    sphgi_use_local_rows(w);
-    w->lists.wide = true;
+    struct walk walk = walk_block(task->sweep.set->neighbors, block, &around);
     while (walk.begin < walk.end) {
         const uint16_t *ids[SPHGI_LANES_MOST], *lengths = walk.lengths;
         int32_t stride;
         const int32_t first = walk.begin, count = next_lists(&walk, ids, &stride);
-        for (int32_t k = 0; k < count; ++k) {
-            const int32_t t = first + k, length = lengths[k];
-            if (!is_active(task, t))
-                continue;
-            if (used + length > ROOM) {
-                run_rest(w);
-                used = 0;
-            }
-            unstage(&around, ids[k], length, stride, rows + used);
-            ask_for_rows(n, rows + used, length);
-            add_list(w, target_at(n, t), t, sphgi_target_row(n, t), rows + used, length, 1);
-            used += length;
-        }
+        for (int32_t k = 0; k < count; ++k)
+            if (is_active(task, first + k))
+                add_sparse(w, &around, first + k, ids[k], lengths[k], stride);
     }
-    run_rest(w);
 }
 
 /* Nothing is kept: pairs are found cell by cell and used at once; they only have to stay until the
@@ -316,15 +315,26 @@ static void sweep_block(const struct sphgi_task *task, struct sphgi_worker *w, i
                         const struct sphgi_finder *finder)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    const bool sparse = number < 0;
-    const int32_t block = sparse ? ~number : number;
-    if (!sphgi_is_kept(n, block)) {
+    const struct sphgi_block *blocks = sphgi_target_grid(n)->blocks;
+    const int32_t block = number < 0 ? ~number : number;
+    const bool kept = sphgi_is_kept(n, block), wide = kept && sphgi_is_kept_wide(n, block);
+    /* few targets, or few of them selected: they would leave most lanes empty */
+    const bool few = number < 0 || blocks[block + 1].first - blocks[block].first < w->passes->lanes;
+    const bool sparse = kept && !wide && few;
+    if (sparse != w->sparse) {
+        run_rest(w);
+        if (sparse)
+            sphgi_use_local_rows(w);
+        w->lists.wide = w->sparse = sparse;
+        w->lists.side_by_side = false;
+    }
+    if (sparse) {
+        sweep_sparse_block(task, w, block);
+    } else if (!kept) {
         sweep_unkept_block(task, w, block, finder);
-    } else if (sphgi_is_kept_wide(n, block)) {
+    } else if (wide) {
         sphgi_use_local_rows(w);
         sweep_kept_wide_block(task, w, block);
-    } else if (sparse) {
-        sweep_sparse_block(task, w, block, finder);
     } else {
         sweep_kept_block(task, w, block);
     }
@@ -340,6 +350,7 @@ void sphgi_block_task(void *data, int32_t begin, int32_t end, int32_t number)
         sphgi_finder_at(task->sweep.context, n, sphgi_finder_room(n), w.finder_memory);
     for (int32_t k = begin; k < end; ++k)
         sweep_block(task, &w, task->selection->blocks ? task->selection->blocks[k] : k, &finder);
+    run_rest(&w);
 }
 
 /* ---- The host's lists ----------------------------------------------------------------------- */
@@ -353,25 +364,24 @@ static void note_bad_length(struct sphgi_tally *tally, int32_t target)
 }
 
 /* A function of the host may reuse its array: lists are copied until a vector of targets is there.
- * What is too long for that is summed at once. used: numbers that wait. */
-static void add_copied(struct sphgi_worker *w, int32_t target, const int32_t *ids, int32_t count,
-                       int32_t *used)
+ * What is too long for that is summed at once. */
+static void add_copied(struct sphgi_worker *w, int32_t target, const int32_t *ids, int32_t count)
 {
-    int32_t *copies = (int32_t *)(void *)w->host_ids;
     const char *row = sphgi_target_row(w->sweep->set->neighbors, target);
-    if (*used + (int64_t)count > SPHGI_HOST_IDS) {
+    if (w->host_ids_used + (int64_t)count > SPHGI_HOST_IDS)
         run_rest(w);
-        *used = 0;
-    }
     if (count > SPHGI_HOST_IDS) {
         add_list(w, target, target, row, ids, count, 1);
         run_rest(w);
         return;
     }
+    int32_t *copy = (int32_t *)(void *)w->host_ids + w->host_ids_used;
     if (count)
-        memcpy(copies + *used, ids, (size_t)count * sizeof *ids);
-    add_list(w, target, target, row, copies + *used, count, 1);
-    *used = w->group.lanes > w->summed ? *used + count : 0;
+        memcpy(copy, ids, (size_t)count * sizeof *ids);
+    w->host_ids_used += count;
+    add_list(w, target, target, row, copy, count, 1);
+    if (w->group.lanes == w->summed)
+        w->host_ids_used = 0;
 }
 
 void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
@@ -379,7 +389,6 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
     const struct sphgi_task *task = data;
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_worker w;
-    int32_t used = 0;
     sphgi_worker_open(&w, &task->sweep, number);
     w.lists.wide = true;
     if (task->sweep.packed)
@@ -395,7 +404,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         if (!sphgi_is_host_row(ids, count))
             note_bad_length(w.tally, target);
         else if (n->lists.row)
-            add_copied(&w, target, ids, (int32_t)count, &used);
+            add_copied(&w, target, ids, (int32_t)count);
         else
             add_list(&w, target, target, sphgi_target_row(n, target), ids, (int32_t)count, 1);
     }

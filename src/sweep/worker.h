@@ -74,8 +74,10 @@ struct sphgi_worker {
     int32_t longest;                 /* pairs of a list, of the lanes at work */
     int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
     int32_t spread_pairs;            /* of a tile that holds one list */
+    int32_t host_ids_used;           /* by lists that wait for a vector of targets */
     int32_t streamed, waiting;    /* pairs of a list that comes bit by bit: summed, and yet to be */
     bool local;                   /* rows are copied pair by pair */
+    bool sparse;                  /* ... and targets of several blocks wait together */
     const int32_t *items;         /* sources behind the ids; NULL: the ids are their numbers */
     int64_t written[SPHGI_WIDTH]; /* pairs of each target so far */
 
