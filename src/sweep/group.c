@@ -81,8 +81,9 @@ static void fill_from_wide(struct sphgi_worker *w, const struct sphgi_lane_lists
 
 static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
-    for (int32_t l = 0; l < w->passes->lanes; ++l)
-        w->pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
+    if (lists->wide || w->sweep->pairs)
+        for (int32_t l = 0; l < w->passes->lanes; ++l)
+            w->pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
     if (lists->wide)
         fill_from_wide(w, lists, begin);
     else
@@ -211,7 +212,6 @@ void sphgi_group_run(struct sphgi_worker *w)
         w->lists.count[l] = 0;
         w->lists.stride[l] = 1;
     }
-    w->lists.side_by_side &= w->targets == w->passes->lanes;
     const bool spread = w->targets == 1 && w->longest > SPHGI_CHUNK;
     do
         if (spread)

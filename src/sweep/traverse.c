@@ -85,7 +85,31 @@ static int32_t next_lists(struct walk *walk, const uint16_t **ids, int32_t *stri
     return group.count;
 }
 
-/* Whole groups: their lanes stand as the tiles want them. */
+/* As many targets as a vector has lanes, whose lists stand side by side from ids on. */
+static void add_vector(struct sphgi_worker *w, const int32_t *order, int32_t place,
+                       const uint16_t *ids, const uint16_t *lengths, int32_t stride)
+{
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    const size_t size = SPHGI_ROW * sphgi_size_of_type(n->position_type);
+    const char *row = sphgi_target_row(n, place);
+    const int32_t lanes = w->passes->lanes, first = w->group.lanes;
+    for (int32_t l = 0; l < lanes; ++l) {
+        w->group.target[first + l] = order[place + l];
+        w->group.place[first + l] = place + l;
+        w->group.x[first + l] = row + (size_t)l * size;
+        w->lists.count[l] = lengths[l];
+    }
+    w->group.lanes += lanes;
+    w->lists.ids[0] = ids;
+    w->lists.stride[0] = stride;
+    w->lists.side_by_side = true;
+    sphgi_group_run(w);
+    if (w->summed == SPHGI_WIDTH)
+        finish_group(w);
+}
+
+/* Whole groups: their lanes stand as the tiles want them. What is left of a group does not fill the
+ * lanes. */
 static void sweep_all_of(const struct sphgi_task *task, struct sphgi_worker *w, struct walk walk)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
@@ -94,11 +118,13 @@ static void sweep_all_of(const struct sphgi_task *task, struct sphgi_worker *w, 
         const uint16_t *ids[SPHGI_LANES_MOST], *lengths = walk.lengths;
         int32_t stride;
         const int32_t first = walk.begin, count = next_lists(&walk, ids, &stride);
-        for (int32_t k = 0; k < count; ++k) {
-            w->lists.side_by_side = stride > 1;
+        int32_t k = 0;
+        for (; stride > 1 && k + w->passes->lanes <= count; k += w->passes->lanes)
+            add_vector(w, order, first + k, ids[k], lengths + k, stride);
+        w->lists.side_by_side = false;
+        for (; k < count; ++k)
             add_list(w, order[first + k], first + k, sphgi_target_row(n, first + k), ids[k],
                      lengths[k], stride);
-        }
     }
 }
 
