@@ -171,7 +171,8 @@ typedef void sphg_task(void *data, int32_t begin, int32_t end, int32_t worker);
 typedef struct sphg_config {
     int32_t threads; /* 0: as many as OpenMP has; 1: the calling thread alone, no OpenMP region;
                         with parallel_for: the number of its workers */
-    sphg_isa isa;    /* BEST, or for tests; BASE: same bits on every x86-64 machine */
+    sphg_isa isa;    /* BEST, or for tests; BASE: same bits on every x86-64 machine; X86_V3 and
+                        X86_V4: the same bits as one another */
     int32_t trusted; /* 1: do not look for bad numbers in positions, volumes and lists, nor compare
                         the targets of source sets; arguments are always checked */
     void *(*allocate)(size_t size, size_t alignment, void *user); /* both or neither */

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""documented_figures.py ROOT SPHGRAD_BENCH TEST_HOSTILE_ARGUMENTS PUBLIC_NAMES [SEED...]: figures of the documents
-beside what their commands print today: the tables of docs/stability.md, and the counts of docs/reliability.md.
+"""documented_figures.py ROOT SPHGRAD_BENCH TEST_HOSTILE_ARGUMENTS PUBLIC_NAMES EXAMPLE [SEED...]: figures of the
+documents beside what their commands print today: the tables of docs/stability.md, the counts of
+docs/reliability.md, the errors in the README.
 "a to b" is a range, and each number stands for all that round to it. The commands that take minutes are left
 out."""
 import csv
@@ -118,11 +119,28 @@ def check_counts(root, hostile, names):
             complain(f"docs/reliability.md does not say '{figure} {words}', which is what there is")
 
 
+def check_readme(root, program, example):
+    """The error of plain SPH on the rotating square, and what the example prints."""
+    document = read(root, "README.md")
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([program, "fields", "--output", folder], check=True, stdout=subprocess.DEVNULL)
+        with open(os.path.join(folder, "fields_rotation_square.csv"), encoding="utf-8", newline="") as file:
+            worst = max(float(row["gradient_error_SPH"]) for row in csv.DictReader(file))
+    said = re.search(r"off by up to ([\d.]+) at the border", document)
+    if not said or f"{worst:.2f}" != said.group(1):
+        complain(f"README.md: plain SPH is off by {worst:.2f} at the border of the rotating square")
+    printed = subprocess.run([example], check=True, stdout=subprocess.PIPE, text=True).stdout
+    exact = re.search(r"dvx/dy at its corner is (-?[\d.]+)\.", document)
+    if not exact or abs(float(printed.split()[2]) - float(exact.group(1))) > 1e-6:
+        complain(f"README.md: its example prints {printed.strip()}")
+
+
 def main():
-    root, program, hostile, names = sys.argv[1:5]
-    seeds = sys.argv[5:] or ["0"]
+    root, program, hostile, names, example = sys.argv[1:6]
+    seeds = sys.argv[6:] or ["0"]
     text = read(root, "docs", "stability.md")
     check_counts(root, hostile, names)
+    check_readme(root, program, example)
     by_head = {table[0][0]: table for table in tables(text)}
     commands = re.findall(r"--sweep (\w+) --repetitions (\d+) --compare 1", text)
     sweeps = [(sweep, count) for sweep, count in commands if sweep not in LONG | DROPPED]
