@@ -58,13 +58,14 @@ typedef struct pair_rows {
 } pair_rows;
 
 /* The count first, then what is wanted. */
-static pair_rows pairs_of(const targets *own, const sphg_subset *subset, int with_gradients)
+static pair_rows pairs_in_order(const targets *own, const sphg_subset *subset, int with_gradients,
+                                int any_order)
 {
     const stage *on = &own->on;
     sphg_sources sources = stage_sources(on);
     sources.neighbors = own->neighbors;
     pair_rows found = {{own->count, test_memory(((size_t)own->count + 1) * 8), NULL}, {0}};
-    sphg_pairs pairs = {.offsets = found.listed.offsets};
+    sphg_pairs pairs = {.offsets = found.listed.offsets, .any_order = any_order};
     const sphg_view table = stage_table_view(on, &own->table);
     FIXTURE_OK(on->context,
                sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
@@ -78,6 +79,11 @@ static pair_rows pairs_of(const targets *own, const sphg_subset *subset, int wit
     FIXTURE_OK(on->context,
                sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
     return found;
+}
+
+static pair_rows pairs_of(const targets *own, const sphg_subset *subset, int with_gradients)
+{
+    return pairs_in_order(own, subset, with_gradients, 0);
 }
 
 /* A target stands among its own pairs where the method has a gradient for it. */
@@ -123,6 +129,42 @@ static void require_row(const pair_rows *all, int target, const pair_rows *some,
     }
 }
 
+static int64_t place_of(const pair_rows *all, int row, int32_t source)
+{
+    for (int64_t k = all->listed.offsets[row]; k < all->listed.offsets[row + 1]; k++)
+        if (all->listed.indices[k] == source)
+            return k;
+    return -1;
+}
+
+/* The same pairs with the same gradients, in an order that stays. */
+static void pairs_in_any_order_are_those_in_order(const test_case *test)
+{
+    int64_t moved = 0;
+    for (int are_sources = 0; are_sources < 2; are_sources++) {
+        const targets own = targets_of(test, are_sources);
+        const pair_rows sorted = pairs_of(&own, NULL, 1), any = pairs_in_order(&own, NULL, 1, 1);
+        const pair_rows again = pairs_in_order(&own, NULL, 1, 1),
+                        bare = pairs_in_order(&own, NULL, 0, 1);
+        for (int i = 0; i < own.count; i++) {
+            assert_int_equal(any.listed.offsets[i + 1], sorted.listed.offsets[i + 1]);
+            for (int64_t k = any.listed.offsets[i]; k < any.listed.offsets[i + 1]; k++) {
+                const int64_t at = place_of(&sorted, i, any.listed.indices[k]);
+                TEST_REQUIRE(at >= 0 && place_of(&any, i, any.listed.indices[k]) == k,
+                             "row %d: %d is no pair, or twice", i, any.listed.indices[k]);
+                moved += at != k;
+                for (int c = 0; c < any.gradient.width; c++)
+                    TEST_REQUIRE(fixture_get(&any.gradient, (int)k, c) ==
+                                     fixture_get(&sorted.gradient, (int)at, c),
+                                 "row %d: other bits", i);
+            }
+        }
+        rows_require_equal(&again.listed, &any.listed, "again");
+        rows_require_equal(&bare.listed, &any.listed, "without gradients");
+    }
+    TEST_REQUIRE(moved > 0, "the library's order is that of the host");
+}
+
 static void masked_targets_have_the_pairs_they_have_among_all(const test_case *test)
 {
     for (int are_sources = 0; are_sources < 2; are_sources++) {
@@ -155,6 +197,8 @@ static void single_pairs_have_as_many_components_as_the_scheme(const test_case *
 
 static const test_entry entries[] = {
     TEST_ENTRY(pairs_are_those_of_the_search, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(pairs_in_any_order_are_those_in_order, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(masked_targets_have_the_pairs_they_have_among_all, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),

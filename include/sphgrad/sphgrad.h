@@ -544,10 +544,12 @@ SPHG_API sphg_result sphg_force(sphg_context *context, const sphg_scheme *scheme
 /* Your arrays; what is NULL or absent is not wanted. */
 typedef struct sphg_pairs {
     int64_t *offsets;   /* selected targets + 1 items, from 0 */
-    int32_t *indices;   /* j, ascending within a row */
+    int32_t *indices;   /* j, ascending within a row, unless any_order */
     sphg_view gradient; /* G_ij [1/L], a vector per pair */
     int64_t capacity;   /* pairs that indices and gradient can hold */
     int64_t count;      /* out: pairs there are */
+    int32_t any_order;  /* 1: rows keep the order that the library sums in, the same each time;
+                           nothing is sorted */
 } sphg_pairs;
 
 /* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: of everything (first

@@ -4,6 +4,7 @@
 #include "core/kernel.h"
 #include "core/parallel.h"
 #include "plan/plan.h"
+#include "sweep/selection.h"
 #include "sweep/sweep.h"
 #include "core/view.h"
 #include "sweep/worker.h"
@@ -169,6 +170,43 @@ static sphg_result check_pairs(struct exporting *e)
     return check_pair_overlap(e);
 }
 
+/* Lists that are kept for this very radius hold nothing else. */
+static bool are_lengths_counts(const struct exporting *e)
+{
+    const sphg_neighbors *n = e->plan->sets[0].neighbors;
+    if (n->kind != SPHGI_SEARCHED || n->list_free || n->skin > 0 ||
+        e->plan->scheme.radius != n->radius)
+        return false;
+    for (int32_t b = 0; b < sphgi_target_grid(n)->block_count; ++b)
+        if (!sphgi_is_kept(n, b) || sphgi_is_kept_wide(n, b))
+            return false;
+    return true;
+}
+
+static void count_by_lengths(struct exporting *e)
+{
+    const sphg_neighbors *n = e->plan->sets[0].neighbors;
+    const struct sphgi_selection selection = sphgi_selection_of(e->subset, e->plan->target_count);
+    const int32_t *place = n->target_place.data;
+    const uint16_t *lengths = n->found.lengths.data;
+    const int32_t self = e->plan->classic && e->plan->own_set >= 0;
+    for (int32_t k = selection.begin; k < selection.end; ++k) {
+        const int32_t target = sphgi_selected(&selection, k);
+        if (target >= 0)
+            e->offsets[e->row_of_target[target] + 1] = lengths[place[target]] + self;
+    }
+}
+
+static sphg_result count_by_sweep(struct exporting *e)
+{
+    struct sphgi_plan counting = *e->plan; /* only pairs are looked at */
+    counting.computes = counting.corrects = counting.differentiates = false;
+    counting.sums = 0;
+    const struct sphgi_pair_sink sink = {.row_of_target = e->row_of_target,
+                                         .counts = e->offsets + 1};
+    return sphgi_sweep_run(e->checker, &counting, e->subset, &sink);
+}
+
 static sphg_result count_pairs(struct exporting *e)
 {
     sphg_context *context = e->checker.context;
@@ -180,12 +218,11 @@ static sphg_result count_pairs(struct exporting *e)
     e->row_of_target = context->sums.data;
     e->offsets = (int64_t *)(void *)((char *)context->sums.data + map_size);
     e->rows = sphgi_selected_rows(e->subset, e->plan->target_count, e->row_of_target);
-    struct sphgi_plan counting = *e->plan; /* only pairs are looked at */
-    counting.computes = counting.corrects = counting.differentiates = false;
-    counting.sums = 0;
-    const struct sphgi_pair_sink sink = {.row_of_target = e->row_of_target,
-                                         .counts = e->offsets + 1};
-    const sphg_result result = sphgi_sweep_run(e->checker, &counting, e->subset, &sink);
+    sphg_result result = SPHG_OK;
+    if (are_lengths_counts(e))
+        count_by_lengths(e);
+    else
+        result = count_by_sweep(e);
     e->offsets[0] = 0;
     for (int32_t k = 0; k < e->rows && !result; ++k)
         e->offsets[k + 1] += e->offsets[k];
@@ -200,7 +237,7 @@ static sphg_result fill_pairs(struct exporting *e)
                                    .offsets = e->offsets,
                                    .indices = e->pairs->indices,
                                    .gradient = e->gradient};
-    if (!sink.indices) { /* gradients alone: still in ascending order */
+    if (!sink.indices) { /* gradients alone: still in that order */
         if (!sphgi_reserve(&context->allocator, &context->coefficients, count, sizeof(int32_t)))
             return sphgi_fail_memory(context, e->checker.function);
         sink.indices = context->coefficients.data;
@@ -208,7 +245,7 @@ static sphg_result fill_pairs(struct exporting *e)
     const sphg_result result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
     struct sorting sorting = {e->offsets, sink.indices, e->gradient,
                               sphgi_size_of_type(e->plan->type)};
-    if (!result)
+    if (!result && !e->pairs->any_order)
         sphgi_parallel_for(context, sort_task, &sorting, e->rows, SORT_GRAIN);
     return result;
 }

@@ -152,32 +152,55 @@ static void sum_fields(struct sphgi_worker *w)
             sum_transposed(w, symmetric);
 }
 
-static void put_pair(const struct sphgi_worker *w, int64_t place, int32_t source, int32_t at)
+/* The pairs of one lane of the tile, without what lies beyond the cutoff: their places in the
+ * arrays. Returns how many. */
+static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at)
 {
-    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const size_t size = sphgi_size_of_type(w->sweep->plan->type);
-    pairs->indices[place] = source;
-    for (int32_t a = 0; a < pairs->gradient.count; ++a)
-        memcpy((char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
-               w->arrays + ((size_t)(SPHGI_GX + a) * SPHGI_TILE + (size_t)at) * size, size);
+    const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
+    int32_t kept = 0;
+    for (int32_t k = 0; k < count; ++k) {
+        at[kept] = k * lanes + lane;
+        kept += !w->gather.guarded || w->tile.ids[at[kept]] != w->gather.dummy;
+    }
+    return kept;
 }
 
-/* The pairs of one lane of the tile inside the cutoff, for the target of lane `of`. */
+#define COPY_NUMBERS(type)                                                                         \
+    for (int32_t k = 0; k < count; ++k, to += stride)                                              \
+    *(type *)(void *)to = ((const type *)(const void *)from)[at[k]]
+
+static void copy_numbers(const char *from, const int32_t *at, int32_t count, char *to,
+                         ptrdiff_t stride, sphg_type type)
+{
+    if (type == SPHG_F64)
+        COPY_NUMBERS(double);
+    else
+        COPY_NUMBERS(float);
+}
+
+#undef COPY_NUMBERS
+
+/* The pairs of one lane for the target of lane `of`. */
 static void write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
 {
     const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const int32_t row = pairs->row_of_target[w->group.target[of]], lanes = w->passes->lanes;
-    for (int32_t k = 0; k < w->pairs[lane]; ++k) {
-        const int32_t at = k * lanes + lane;
-        const uint32_t id = w->tile.ids[at];
-        if (w->gather.guarded && id == w->gather.dummy)
-            continue;
-        const uint32_t number = id / SPHGI_ID_STEP;
-        if (pairs->offsets)
-            put_pair(w, pairs->offsets[row] + w->written[of],
-                     w->items ? w->items[number] : (int32_t)number, at);
-        ++w->written[of];
+    const sphg_type type = w->sweep->plan->type;
+    const int32_t row = pairs->row_of_target[w->group.target[of]];
+    int32_t at[SPHGI_CHUNK + 1];
+    const int32_t count = pairs_of_lane(w, lane, at);
+    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->written[of] : 0;
+    w->written[of] += count;
+    if (!pairs->offsets)
+        return;
+    for (int32_t k = 0; k < count; ++k) {
+        const uint32_t number = w->tile.ids[at[k]] / SPHGI_ID_STEP;
+        pairs->indices[place + k] = w->items ? w->items[number] : (int32_t)number;
     }
+    for (int32_t a = 0; a < pairs->gradient.count; ++a)
+        copy_numbers(w->arrays + (size_t)(SPHGI_GX + a) * SPHGI_TILE * sphgi_size_of_type(type), at,
+                     count,
+                     (char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
+                     pairs->gradient.stride, type);
 }
 
 /* Hands on the pairs inside the cutoff; counts them in any case. */

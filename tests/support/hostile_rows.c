@@ -357,6 +357,7 @@ static const argument of_pair_gradients[] = {
     VIEW("target_correction", target_correction, 0),
     ROW("pairs", POINTER, pairs_given),
     SPECIAL("pairs.capacity", spoil_capacity),
+    FREE("pairs.any_order"),
     VIEW("pairs.gradient", pairs.gradient, OUTPUT | VECTOR),
     FREE("pairs.offsets"),
     FREE("pairs.indices"),
