@@ -12,7 +12,7 @@ int32_t sphgi_finder_room(const sphg_neighbors *neighbors)
 }
 
 struct layout {
-    size_t coordinates, scratch, ids, lengths, total;
+    size_t coordinates, scratch, ids, lengths, woven, total;
 };
 
 static struct layout layout_of(const sphg_neighbors *neighbors, int32_t room)
@@ -28,7 +28,9 @@ static struct layout layout_of(const sphg_neighbors *neighbors, int32_t room)
     const size_t wide = padded * sizeof(uint32_t), narrow = units * sizeof(uint16_t);
     layout.ids = sphgi_round_up(wide > narrow ? wide : narrow, SPHGI_ALIGNMENT);
     layout.lengths = SPHGI_ALIGNMENT;
-    layout.total = 3 * layout.coordinates + layout.scratch + layout.ids + layout.lengths;
+    layout.woven = SPHGI_WOVEN_MOST * sizeof(uint16_t);
+    layout.total =
+        3 * layout.coordinates + layout.scratch + layout.ids + layout.lengths + layout.woven;
     return layout;
 }
 
@@ -59,7 +61,8 @@ struct sphgi_finder sphgi_finder_at(const sphg_context *context, const sphg_neig
                                       .pack_bytes = context->pack_bytes};
     memcpy(finder.find.period, neighbors->period, sizeof finder.find.period);
     finder.ids = (uint16_t *)(void *)(next += layout.scratch);
-    finder.lengths = (uint16_t *)(void *)(next + layout.ids);
+    finder.lengths = (uint16_t *)(void *)(next += layout.ids);
+    finder.woven = (uint16_t *)(void *)(next + layout.lengths);
     return finder;
 }
 

@@ -4,8 +4,9 @@
 #include "neighbors.h"
 
 enum {
-    SPHGI_STAGED_MOST = 32000, /* what 16-bit ids can tell apart; more take the wide way */
-    SPHGI_UNITS_MOST = 1 << 19 /* ids of a block that are collected before they are stored */
+    SPHGI_STAGED_MOST = 32000,  /* what 16-bit ids can tell apart; more take the wide way */
+    SPHGI_UNITS_MOST = 1 << 19, /* ids of a block that are collected before they are stored */
+    SPHGI_WOVEN_MOST = 1 << 15  /* ... and laid side by side in the cache */
 };
 
 /* Scratch of one worker. */
@@ -15,7 +16,8 @@ struct sphgi_finder {
     void *x, *y, *z; /* staged coordinates */
     uint16_t *ids;   /* SPHGI_UNITS_MOST + room for one more batch */
     uint16_t *lengths;
-    int32_t room; /* staged numbers that fit */
+    uint16_t *woven; /* SPHGI_WOVEN_MOST */
+    int32_t room;    /* staged numbers that fit */
 };
 
 /* Bytes of scratch per worker, and its parts; room as sphgi_finder_room(). */

@@ -116,7 +116,13 @@ static bool build_block(struct build *build, const struct sphgi_finder *finder,
     if (place < 0)
         return true;
     write_head(around, n->found.ids + place);
-    weave_block(finder, lengths + first, targets, n->found.ids + place + head);
+    uint16_t *to = n->found.ids + place + head;
+    if (units > SPHGI_WOVEN_MOST) {
+        weave_block(finder, lengths + first, targets, to);
+    } else { /* a copy at once does not read first what it overwrites */
+        weave_block(finder, lengths + first, targets, finder->woven);
+        memcpy(to, finder->woven, (size_t)units * sizeof *to);
+    }
     return true;
 }
 
