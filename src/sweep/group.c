@@ -97,11 +97,11 @@ static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *list
 static void run_lanes(struct sphgi_worker *w)
 {
     w->tile.spread = false;
-    int32_t at = 0;
+    int64_t at = 0; /* lists may be as long as int32_t can tell */
     do {
-        w->tile.chunk = at / SPHGI_CHUNK;
-        w->tile.steps = sphgi_min32(SPHGI_CHUNK, w->longest - at);
-        run_tile(w, &w->lists, at);
+        w->tile.chunk = (int32_t)(at / SPHGI_CHUNK);
+        w->tile.steps = sphgi_min32(SPHGI_CHUNK, w->longest - (int32_t)at);
+        run_tile(w, &w->lists, (int32_t)at);
         at += SPHGI_CHUNK;
     } while (at < w->longest);
 }
