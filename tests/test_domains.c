@@ -8,22 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static scene empty_scene(const test_case *test, int count)
-{
-    scene particles = {0};
-    particles.dimension = test->dimension;
-    particles.is_double = test->precision != TEST_F32;
-    particles.precision = test_field_type(test);
-    particles.source_count = particles.target_count = count;
-    particles.sources = test_memory((size_t)count * 3 * sizeof(double));
-    return particles;
-}
-
-static double rounded(const scene *particles, double x)
-{
-    return particles->is_double ? x : (double)(float)x;
-}
-
 /* ---- Periodic ----------------------------------------------------------------------------- */
 
 /* In units of H, with few bits: multiples are exact in f32. */
@@ -38,7 +22,7 @@ static void scatter_in_box(const scene *particles, double H, double periods_out,
         const double away = nearbyint(random_between(random, -periods_out, periods_out));
         const double x = random_between(random, 0, length) + away * length;
         particles->sources[k] =
-            rounded(particles, random_index(random, 8) ? x : length * nearbyint(x / length));
+            scene_rounded(particles, random_index(random, 8) ? x : length * nearbyint(x / length));
     }
 }
 
@@ -53,7 +37,7 @@ static void check_periods(const test_case *test, double periods_out, int list_fr
     for (int axes = 1; axes < 1 << test->dimension; axes++)
         for (int k = 0; k < 8; k++) {
             const double H = k % 2 ? 1 : 0.6875;
-            scene particles = empty_scene(test, 110);
+            scene particles = scene_empty(test, 110);
             particles.list_free = list_free;
             for (int axis = 0; axis < test->dimension; axis++)
                 particles.period[axis] = axes >> axis & 1 ? LENGTHS[(k + 3 * axis) % 8] * H : 0;
@@ -87,9 +71,9 @@ static void lengths_of_any_bits_have_the_pairs_of_brute_force(const test_case *t
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(67);
     for (int k = 0; k < 40; k++) {
-        scene particles = empty_scene(test, 110);
+        scene particles = scene_empty(test, 110);
         for (int axis = 0; axis < test->dimension; axis++)
-            particles.period[axis] = rounded(&particles, random_between(&random, 2, 5));
+            particles.period[axis] = scene_rounded(&particles, random_between(&random, 2, 5));
         scatter_in_box(&particles, 1, 0, &random);
         rows_require_search_exact(context, neighbors, &particles, 1, test_text("box %d", k));
     }
@@ -103,7 +87,7 @@ static void halves_of_the_smallest_box_meet_through_its_side(const test_case *te
     sphg_context *context = fixture_context();
     sphg_neighbors *neighbors = pairs_neighbors(context);
     for (int k = 0; k < 200; k++) {
-        scene particles = empty_scene(test, 2);
+        scene particles = scene_empty(test, 2);
         const double given = 1.5 + 0.5 * k / 200 + 0x1p-30;
         const double reach = particles.is_double ? given : (double)(float)given;
         memset(particles.sources, 0, 2 * (size_t)test->dimension * sizeof(double));
@@ -122,7 +106,7 @@ static void positions_just_outside_the_box_have_a_cell(const test_case *test)
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(71);
     for (int k = 0; k < 8; k++) {
-        scene particles = empty_scene(test, 110);
+        scene particles = scene_empty(test, 110);
         particles.list_free = k % 2;
         for (int axis = 0; axis < test->dimension; axis++)
             particles.period[axis] = LENGTHS[(k + axis) % 8];
@@ -156,7 +140,7 @@ static void periodic_targets_need_not_be_sources(const test_case *test)
 {
     sphg_context *context = fixture_context();
     random_state random = random_seeded(71);
-    scene particles = empty_scene(test, 200), others = empty_scene(test, 90);
+    scene particles = scene_empty(test, 200), others = scene_empty(test, 90);
     for (int axis = 0; axis < test->dimension; axis++)
         particles.period[axis] = others.period[axis] = 4;
     scatter_in_box(&particles, 1, 2, &random);
@@ -170,7 +154,7 @@ static void periodic_targets_need_not_be_sources(const test_case *test)
 static void periods_shorter_than_twice_the_reach_are_refused(const test_case *test)
 {
     sphg_context *context = fixture_context();
-    scene particles = empty_scene(test, 4);
+    scene particles = scene_empty(test, 4);
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
     scheme.support_radius = 1;
@@ -202,7 +186,7 @@ static void periods_of_twice_the_reach_may_be_rounded(const test_case *test)
     const double H = narrow ? (double)nextafterf(0.1f * 3, 1) : 0.1 * 3;
     const double period = narrow ? (double)0.6f : 0.6;
     assert_true(period < 2 * H);
-    scene particles = empty_scene(test, 110);
+    scene particles = scene_empty(test, 110);
     for (int axis = 0; axis < test->dimension; axis++)
         particles.period[axis] = period;
     scatter_in_box(&particles, H, 1, &random);
@@ -250,7 +234,7 @@ static int64_t peak_of(const scene *particles, double support_radius)
 /* Two particles side by side: what every search takes. */
 static int64_t least_peak(const test_case *test)
 {
-    scene pair = empty_scene(test, 2);
+    scene pair = scene_empty(test, 2);
     pair.sources[0] = 0.5;
     return peak_of(&pair, 1);
 }
@@ -270,8 +254,8 @@ static void two_particles_may_be_as_far_apart_as_numbers_reach(const test_case *
     const double full[] = {1e3, 1e30, 1e150, 1e300, DBL_MAX};
     for (int k = 0; k < 5; k++)
         for (int axis = 0; axis < test->dimension; axis++) {
-            scene pair = empty_scene(test, 2);
-            const double far = rounded(&pair, pair.is_double ? full[k] : single[k]);
+            scene pair = scene_empty(test, 2);
+            const double far = scene_rounded(&pair, pair.is_double ? full[k] : single[k]);
             pair.sources[axis] = far;
             require_linear(test, &pair, "one far away");
             pair.sources[test->dimension + axis] = -far;
@@ -282,7 +266,7 @@ static void two_particles_may_be_as_far_apart_as_numbers_reach(const test_case *
 /* A box around these would have 10^10 cells in 3D. */
 static void diagonal_line_takes_linear_memory(const test_case *test)
 {
-    scene line = empty_scene(test, 3000);
+    scene line = scene_empty(test, 3000);
     for (int k = 0; k < 3000 * test->dimension; k++)
         line.sources[k] = 10.0 * (k / test->dimension);
     require_linear(test, &line, "diagonal");
@@ -292,11 +276,12 @@ static void diagonal_line_takes_linear_memory(const test_case *test)
 static void scattered_magnitudes_take_linear_memory(const test_case *test)
 {
     random_state random = random_seeded(73);
-    scene particles = empty_scene(test, 2000);
+    scene particles = scene_empty(test, 2000);
     const double top = particles.is_double ? 300 : 37;
     for (int k = 0; k < 2000 * test->dimension; k++)
-        particles.sources[k] = rounded(&particles, (random_index(&random, 2) ? 1 : -1) *
-                                                       pow(10, random_between(&random, 1, top)));
+        particles.sources[k] =
+            scene_rounded(&particles, (random_index(&random, 2) ? 1 : -1) *
+                                          pow(10, random_between(&random, 1, top)));
     require_linear(test, &particles, "magnitudes");
 }
 
@@ -307,10 +292,10 @@ static void coincident_particles_are_neighbours_at_any_distance(const test_case 
     sphg_neighbors *neighbors = pairs_neighbors(context);
     const int top = test->precision == TEST_F32 ? 38 : 308;
     for (int decade = 1; decade <= top; decade++) {
-        scene particles = empty_scene(test, 12);
+        scene particles = scene_empty(test, 12);
         for (int k = 0; k < 12 * test->dimension; k++) {
             const int i = k / test->dimension, axis = k % test->dimension;
-            const double x = rounded(&particles, (axis ? -1 : 1) * pow(10, decade));
+            const double x = scene_rounded(&particles, (axis ? -1 : 1) * pow(10, decade));
             const double far = particles.is_double ? nextafter(x, 0) : nextafterf((float)x, 0);
             particles.sources[k] = i % 4 == 1 + axis % 3 ? far : x;
         }
@@ -322,9 +307,9 @@ static void coincident_particles_are_neighbours_at_any_distance(const test_case 
 static void escapee_disturbs_nobody(const test_case *test)
 {
     random_state random = random_seeded(79);
-    scene particles = empty_scene(test, 2001);
+    scene particles = scene_empty(test, 2001);
     for (int k = 0; k < 2001 * test->dimension; k++)
-        particles.sources[k] = rounded(&particles, random_between(&random, 0, 12));
+        particles.sources[k] = scene_rounded(&particles, random_between(&random, 0, 12));
     const double far[] = {1e30, particles.is_double ? DBL_MAX : (double)FLT_MAX};
     const int64_t before = peak_of(&particles, 1);
     for (int k = 0; k < 2; k++) {
@@ -341,9 +326,9 @@ static void crowds_have_the_pairs_of_brute_force(const test_case *test)
     sphg_context *context = fixture_context();
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(83);
-    scene particles = empty_scene(test, CROWD), others = empty_scene(test, TARGETS);
+    scene particles = scene_empty(test, CROWD), others = scene_empty(test, TARGETS);
     for (int k = 0; k < CROWD * test->dimension; k++)
-        particles.sources[k] = rounded(&particles, random_between(&random, 0, 3));
+        particles.sources[k] = scene_rounded(&particles, random_between(&random, 0, 3));
     memcpy(others.sources, particles.sources + 9 * test->dimension,
            (size_t)(TARGETS * test->dimension) * sizeof(double));
     particles.target_count = TARGETS;

@@ -57,14 +57,6 @@ static stage listed_stage(const test_case *test, cloud points, double support)
 /* ---- Scaling by powers of two
  * ----------------------------------------------------------------------- */
 
-static cloud copy_of(const cloud *points)
-{
-    cloud copy = *points;
-    size_t bytes = (size_t)(points->count * points->dimension) * sizeof *points->x;
-    copy.x = memcpy(test_memory(bytes), points->x, bytes);
-    return copy;
-}
-
 static double *scaled(const double *numbers, int count, int exponent)
 {
     double *result = test_memory((size_t)count * sizeof *result);
@@ -87,7 +79,7 @@ static void require_scaled(const fixture_array *expected, const fixture_array *f
 
 static stage scaled_stage(const stage *made, int k)
 {
-    cloud points = copy_of(&made->points);
+    cloud points = cloud_copy(&made->points);
     int d = points.dimension;
     for (int n = 0; n < points.count * d; n++)
         points.x[n] = ldexp(points.x[n], k);
@@ -188,7 +180,7 @@ static void exact_translation_keeps_every_bit(const test_case *test)
 {
     static const double vector[] = {1024, -512, 2048};
     stage here = listed_stage(test, unit_block(test->dimension), 2.25);
-    cloud moved = copy_of(&here.points);
+    cloud moved = cloud_copy(&here.points);
     cloud_shift(&moved, vector);
     stage there = listed_stage(test, moved, 2.25);
     require_same_bits(&here, &there, SPHG_DIFFERENCE);
@@ -217,7 +209,7 @@ static void mirror_images_have_mirrored_bits(const test_case *test)
 {
     int d = test->dimension;
     stage here = listed_stage(test, unit_block(d), 2.25);
-    cloud mirrored = copy_of(&here.points);
+    cloud mirrored = cloud_copy(&here.points);
     for (int i = 0; i < mirrored.count; i++)
         mirrored.x[i * d] = -mirrored.x[i * d];
     stage there = listed_stage(test, mirrored, 2.25);
@@ -363,7 +355,7 @@ static void axes_may_be_swapped_within_the_bound(const test_case *test)
 {
     int d = test->dimension, next[] = {1, d == 2 ? 0 : 2, 0};
     stage on = stage_of(test, "block", unit_block(d), 2.25);
-    cloud turned = copy_of(&on.points);
+    cloud turned = cloud_copy(&on.points);
     for (int k = 0; k < turned.count * d; k++)
         turned.x[k / d * d + next[k % d]] = on.points.x[k];
     stage other = stage_of(test, "axes swapped", turned, 2.25);
@@ -380,7 +372,7 @@ static void rotations_turn_gradients_within_the_bound(const test_case *test)
     for (int k = 0; k < points.count * d; k++)
         points.x[k] *= 5;
     stage on = stage_of(test, "block", points, 11.25);
-    cloud turned = copy_of(&points);
+    cloud turned = cloud_copy(&points);
     for (int i = 0; i < points.count; i++) {
         const double *x = points.x + i * d;
         turned.x[i * d] = (3 * x[0] - 4 * x[1]) / 5;
@@ -403,7 +395,7 @@ static void far_translation_stays_within_the_bound(const test_case *test)
 {
     static const double vector[] = {-37, 91, 13.5};
     stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
-    cloud moved = copy_of(&on.points);
+    cloud moved = cloud_copy(&on.points);
     cloud_shift(&moved, vector);
     stage other = stage_of(test, "moved", moved, 2.25);
     stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 9)};

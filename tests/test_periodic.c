@@ -7,27 +7,11 @@
 #include <stdio.h>
 #include <string.h>
 
-static scene empty_scene(const test_case *test, int count)
-{
-    scene particles = {0};
-    particles.dimension = test->dimension;
-    particles.is_double = test->precision != TEST_F32;
-    particles.precision = test_field_type(test);
-    particles.source_count = particles.target_count = count;
-    particles.sources = test_memory((size_t)count * 3 * sizeof(double));
-    return particles;
-}
-
-static double rounded(const scene *particles, double x)
-{
-    return particles->is_double ? x : (double)(float)x;
-}
-
 static void scatter(const scene *particles, double *x, int count, double length,
                     random_state *random)
 {
     for (int k = 0; k < count * particles->dimension; k++)
-        x[k] = rounded(particles, random_between(random, 0, length));
+        x[k] = scene_rounded(particles, random_between(random, 0, length));
 }
 
 /* ---- Escapees ------------------------------------------------------------------------------- */
@@ -46,7 +30,7 @@ static void let_escape(const scene *particles, double *x, double periods, int ax
             const double length = particles->period[a], sign = i % 4 < 2 ? 1 : -1;
             double *own = &x[(i * 7) * particles->dimension + a];
             if (axes >> a & 1 && periods < largest / 1e4)
-                *own = rounded(particles, *own + sign * length * nearbyint(periods));
+                *own = scene_rounded(particles, *own + sign * length * nearbyint(periods));
             else if (axes >> a & 1)
                 *own = sign * largest;
             if (i % 2)
@@ -103,11 +87,11 @@ static void check_supplies(sphg_context *context, scene particles, double *targe
 static void check_escapees(const test_case *test, sphg_context *context, int far, int axes)
 {
     random_state random = random_seeded(89 + (uint64_t)far);
-    scene particles = empty_scene(test, MANY);
+    scene particles = scene_empty(test, MANY);
     double *targets = test_memory(MANY * 3 * sizeof *targets);
     for (int a = 0; a < test->dimension; a++)
         particles.period[a] =
-            axes >> a & 1 ? rounded(&particles, random_between(&random, 2.6, 7)) : 0;
+            axes >> a & 1 ? scene_rounded(&particles, random_between(&random, 2.6, 7)) : 0;
     scatter(&particles, particles.sources, MANY, 4, &random);
     scatter(&particles, targets, MANY, 4, &random);
     const double periods = particles.is_double ? FAR_DOUBLE[far] : FAR_SINGLE[far];
@@ -137,7 +121,7 @@ static void escapees_leave_the_grid_as_it_is(const test_case *test)
     enum { COUNT = 3000 };
     sphg_context *context = fixture_context();
     random_state random = random_seeded(97);
-    scene particles = empty_scene(test, COUNT);
+    scene particles = scene_empty(test, COUNT);
     static int32_t before[COUNT], after[COUNT];
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
@@ -169,9 +153,9 @@ static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(101);
     for (int round = 0; round < 60; round++) {
-        scene particles = empty_scene(test, MANY);
+        scene particles = scene_empty(test, MANY);
         const int d = test->dimension, most = round % 3 == 0 ? 0 : round % 3 == 1 ? 5 : 6000;
-        const double length = rounded(&particles, random_between(&random, 3.02, 9));
+        const double length = scene_rounded(&particles, random_between(&random, 3.02, 9));
         const double cells = floor(length / (1 + 0x1p-9));
         scatter(&particles, particles.sources, MANY, length, &random);
         for (int a = 0; a < d; a++)
@@ -184,8 +168,8 @@ static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test
             x[i % d] = border + step * ((int)random_index(&random, 5) - 2);
             x[d + i % d] = x[i % d] + (i % 4 ? 1 : -1) + step * ((int)random_index(&random, 3) - 1);
             for (int k = 0; k < 2 * d; k++)
-                x[k] = rounded(&particles,
-                               x[k] + length * (random_index(&random, 2 * most + 1) - most));
+                x[k] = scene_rounded(&particles,
+                                     x[k] + length * (random_index(&random, 2 * most + 1) - most));
         }
         particles.list_free = round % 2;
         rows_require_search_exact(context, neighbors, &particles, 1, test_text("round %d", round));
@@ -196,7 +180,7 @@ static void periods_without_room_for_differences_are_refused(const test_case *te
 {
     sphg_context *context = fixture_context();
     sphg_neighbors *neighbors = pairs_neighbors(context);
-    scene particles = empty_scene(test, 4);
+    scene particles = scene_empty(test, 4);
     const double most = (particles.is_double ? DBL_MAX : (double)FLT_MAX) / 4;
     particles.sources[0] = most;
     particles.sources[test->dimension] = -most;
@@ -231,7 +215,7 @@ static int rebuilds_of(const test_case *test, enum host host, int axes, int own_
     sphg_context *context = fixture_context_of(1);
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(103);
-    scene particles = empty_scene(test, WALKERS);
+    scene particles = scene_empty(test, WALKERS);
     const int d = test->dimension;
     double speed[WALKERS * 3], place[WALKERS * 3];
     int rebuilt = 0;
@@ -245,10 +229,11 @@ static int rebuilds_of(const test_case *test, enum host host, int axes, int own_
     for (int step = 0; step < STEPS; step++) {
         for (int k = 0; k < WALKERS * d; k++) {
             const double length = particles.period[k % d], x = place[k] + speed[k] * step;
-            const double put = rounded(&particles, length > 0 ? wrapped_by(host, x, length) : x);
+            const double put =
+                scene_rounded(&particles, length > 0 ? wrapped_by(host, x, length) : x);
             (particles.targets ? particles.targets : particles.sources)[k] = put;
             if (particles.targets)
-                particles.sources[k] = rounded(&particles, place[WALKERS * d - 1 - k]);
+                particles.sources[k] = scene_rounded(&particles, place[WALKERS * d - 1 - k]);
         }
         rows_require_search_exact(context, neighbors, &particles, 1,
                                   test_text("host %d, axes %d, step %d", host, axes, step));
@@ -275,12 +260,12 @@ static void skins_leave_room_for_rounding(const test_case *test)
     int kept = 0;
     for (int round = 0; round < 120; round++) {
         sphg_neighbors *neighbors = pairs_neighbors(context);
-        scene particles = empty_scene(test, MANY);
+        scene particles = scene_empty(test, MANY);
         const int d = test->dimension;
         const double unit = particles.is_double ? 0x1p-53 : 0x1p-24;
         const double away = ldexp(1, -(int)random_index(&random, 6)) * 0x1p-9 / unit;
         for (int a = 0; a < d; a++)
-            particles.period[a] = rounded(&particles, random_between(&random, 3, 4));
+            particles.period[a] = scene_rounded(&particles, random_between(&random, 3, 4));
         particles.skin = 16 * unit * away * random_between(&random, 0.25, 4);
         scatter(&particles, particles.sources, MANY, 3, &random);
         for (int i = 1; i < MANY; i += 2) { /* pairs just beyond H + skin */
@@ -292,7 +277,7 @@ static void skins_leave_room_for_rounding(const test_case *test)
             for (int a = 0; a < d; a++) {
                 const double turns = nearbyint(away / particles.period[a]) * (i % 2 ? -1 : 1);
                 double *x = &particles.sources[i * d + a];
-                *x = rounded(&particles, *x + turns * particles.period[a]);
+                *x = scene_rounded(&particles, *x + turns * particles.period[a]);
             }
         for (int step = 0; step < 4; step++) {
             sphg_neighbors_info info = {0};
@@ -300,7 +285,7 @@ static void skins_leave_room_for_rounding(const test_case *test)
             FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
             kept += !info.rebuilt;
             for (int i = 0; i < MANY; i++) /* towards each other */
-                particles.sources[i * d] = rounded(
+                particles.sources[i * d] = scene_rounded(
                     &particles, particles.sources[i * d] + (i % 2 ? -0.16 : 0.16) * particles.skin);
         }
     }

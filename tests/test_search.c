@@ -14,17 +14,6 @@ static double rounded(const scene *particles, double x)
     return particles->is_double ? x : (double)(float)x;
 }
 
-static scene empty_scene(const test_case *test, int count)
-{
-    scene particles = {0};
-    particles.dimension = test->dimension;
-    particles.is_double = test->precision != TEST_F32;
-    particles.precision = test_field_type(test);
-    particles.source_count = particles.target_count = count;
-    particles.sources = test_memory((size_t)count * 3 * sizeof(double));
-    return particles;
-}
-
 static void scatter(const scene *particles, int count, double *x, double low, double side,
                     random_state *random)
 {
@@ -53,7 +42,7 @@ static scene random_scene(const test_case *test, random_state *random, double *s
 {
     const int counts[] = {0, 1, 2, 3, 17, 64, 100, 129, 200};
     const double sides[] = {0.3, 1, 2.5, 6, 30, 1e4};
-    scene particles = empty_scene(test, counts[random_index(random, 9)]);
+    scene particles = scene_empty(test, counts[random_index(random, 9)]);
     const double H = (1 + random_index(random, 4095)) / 1024.0;
     const double low = choose_offset(&particles, random) * H;
     const double side = sides[random_index(random, 6)] * H;
@@ -92,7 +81,7 @@ static void large_cloud_has_the_pairs_of_brute_force(const test_case *test)
 {
     sphg_context *context = fixture_context();
     random_state random = random_seeded(5);
-    scene particles = empty_scene(test, 4000);
+    scene particles = scene_empty(test, 4000);
     scatter(&particles, particles.source_count, particles.sources, -1, 2, &random);
     const double H = test->dimension == 2 ? 0.0625 : 0.25;
     assert_true(rows_require_search_exact(context, pairs_neighbors(context), &particles, H,
@@ -113,7 +102,7 @@ static void lattices_at_the_support_radius_have_the_pairs_of_brute_force(const t
 {
     sphg_context *context = fixture_context_of(1);
     sphg_neighbors *neighbors = pairs_neighbors(context);
-    const scene any = empty_scene(test, 0);
+    const scene any = scene_empty(test, 0);
     int64_t pairs = 0;
     const double radii[] = {1, 0.6875, 3}, origins[] = {0, -2, 17.3, -1000};
     const int parts[] = {1, 2, 3, 5}; /* (1, 2, 2) / 3 and (3, 4, 0) / 5 are ties as well */
@@ -136,7 +125,7 @@ static void near_ties_are_rounded_as_the_predicate_says(const test_case *test)
     random_state random = random_seeded(19);
     const int d = test->dimension;
     for (int k = 0; k < 30; k++) {
-        scene sources = empty_scene(test, 1000), targets = empty_scene(test, 10);
+        scene sources = scene_empty(test, 1000), targets = scene_empty(test, 10);
         const double H = 0.6875, unit = test_position_type(test) == SPHG_F32 ? 0x1p-24 : 0x1p-53;
         scatter(&targets, 10, targets.sources, -1, 2, &random);
         for (int i = 0; i < 1000; i++) {
@@ -164,7 +153,7 @@ static void positions_at_cell_borders_have_the_pairs_of_brute_force(const test_c
     const double radii[] = {1, 0.6875, 0.34375}, bases[] = {-1, 1 << 20, -(1 << 20)};
     int64_t pairs = 0;
     for (int k = 0; k < 60; k++) {
-        scene particles = empty_scene(test, 150);
+        scene particles = scene_empty(test, 150);
         const double H = radii[k % 3];
         const double base = k % 4 ? random_index(&random, 2000) - 1000 : bases[k / 4 % 3];
         for (int n = 0; n < 150 * test->dimension; n++)
@@ -182,7 +171,7 @@ static void signs_do_not_matter(const test_case *test)
 {
     sphg_context *context = fixture_context();
     random_state random = random_seeded(29);
-    scene particles = empty_scene(test, 200);
+    scene particles = scene_empty(test, 200);
     scatter(&particles, 200, particles.sources, -2, 4, &random);
     for (int k = 0; k < 200; k += 3)
         particles.sources[k] = k % 2 ? -0.0 : 0.0;
@@ -201,7 +190,7 @@ static void far_offsets_have_the_pairs_of_brute_force(const test_case *test)
     const int top = test->precision == TEST_F32 ? 23 : 52;
     for (int k = 10; k <= top; k += k + 3 > top && k < top ? top - k : 3)
         for (int sign = -1; sign <= 1; sign += 2) {
-            scene particles = empty_scene(test, 120);
+            scene particles = scene_empty(test, 120);
             scatter(&particles, 120, particles.sources, sign * ldexp(1, k), 4, &random);
             rows_require_search_exact(context, neighbors, &particles, 1,
                                       test_text("offset %d 2^%d", sign, k));
@@ -213,7 +202,7 @@ static void require_crowd(const test_case *test, sphg_context *context, int coun
 {
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(37);
-    scene particles = empty_scene(test, count);
+    scene particles = scene_empty(test, count);
     const int64_t all = (int64_t)count * (count - 1);
     scatter(&particles, count, particles.sources, 0.4, 0.01, &random);
     assert_int_equal(rows_require_search_exact(context, neighbors, &particles, 1, "one cell"), all);
@@ -265,7 +254,7 @@ static void relation_is_symmetric_and_rows_ascend(const test_case *test)
 {
     sphg_context *context = fixture_context();
     random_state random = random_seeded(41);
-    scene particles = empty_scene(test, 20000);
+    scene particles = scene_empty(test, 20000);
     scatter(&particles, 20000, particles.sources, -7, 14, &random);
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
@@ -287,7 +276,7 @@ static void smaller_radius_and_subsets_select_from_the_same_pairs(const test_cas
     sphg_context *context = fixture_context();
     random_state random = random_seeded(43);
     for (int list_free = 0; list_free < 2; list_free++) {
-        scene particles = empty_scene(test, 500);
+        scene particles = scene_empty(test, 500);
         particles.list_free = list_free;
         scatter(&particles, 500, particles.sources, 0, 4, &random);
         sphg_scheme scheme = {0};
@@ -354,7 +343,7 @@ static void skin_keeps_lists_and_exactness(const test_case *test)
     for (int periodic = 0; periodic < 2; periodic++) {
         sphg_neighbors *neighbors = pairs_neighbors(context);
         random_state random = random_seeded(47);
-        scene particles = empty_scene(test, 200);
+        scene particles = scene_empty(test, 200);
         double *old = test_memory(200 * 3 * sizeof *old);
         int kept = 0, steps = 60;
         particles.skin = 0.25;
@@ -383,7 +372,7 @@ static void moves_of_either_side_use_up_the_skin(const test_case *test)
     random_state random = random_seeded(59);
     for (int side = 0; side < 2; side++) {
         sphg_neighbors *neighbors = pairs_neighbors(context);
-        scene particles = empty_scene(test, 200);
+        scene particles = scene_empty(test, 200);
         particles.skin = 0.25;
         particles.target_count = 90;
         particles.targets = test_memory(90 * 3 * sizeof(double));
@@ -408,7 +397,7 @@ static void changed_arguments_rebuild(const test_case *test)
     sphg_context *context = fixture_context_of(1);
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(53);
-    scene particles = empty_scene(test, 200);
+    scene particles = scene_empty(test, 200);
     particles.skin = 0.25;
     scatter(&particles, 200, particles.sources, 0, 4, &random);
     rows_require_search_exact(context, neighbors, &particles, 0.75, "first");
@@ -454,7 +443,7 @@ static void another_precision_rebuilds(const test_case *test)
     sphg_context *context = fixture_context_of(1);
     sphg_neighbors *neighbors = pairs_neighbors(context);
     random_state random = random_seeded(61);
-    scene particles = empty_scene(test, 200);
+    scene particles = scene_empty(test, 200);
     scatter(&particles, 200, particles.sources, 0, 4, &random);
     particles.skin = 0.25;
     for (int step = 0; step < 6; step++) {

@@ -83,14 +83,6 @@ static void require_elsewhere(const scene *on, const sphg_neighbors *wall, int t
         TEST_REQUIRE(fixture_is_canary(&on->result, i), "target %d was written", i);
 }
 
-static cloud copy_of(const cloud *points)
-{
-    cloud copy = *points;
-    const size_t bytes = (size_t)(points->count * points->dimension) * sizeof *points->x;
-    copy.x = memcpy(test_memory(bytes), points->x, bytes);
-    return copy;
-}
-
 /* The next number of the type that positions have. */
 static double next(const test_case *test, double x)
 {
@@ -103,12 +95,12 @@ static void targets_that_differ_are_refused(const test_case *test)
     for (int threads = 1; threads < 4; threads += 2) {
         const scene on = scene_of(test, 0, threads);
         for (int target = 0; target < TARGETS; target += 149) {
-            cloud moved = copy_of(&on.fluid);
+            cloud moved = cloud_copy(&on.fluid);
             double *x = moved.x + target * d + d - 1;
             *x = next(test, *x);
             require_elsewhere(&on, wall_from(&on, &moved), target);
         }
-        cloud swapped = copy_of(&on.fluid);
+        cloud swapped = cloud_copy(&on.fluid);
         memcpy(swapped.x + 7 * d, on.fluid.x + 8 * d, (size_t)d * sizeof *on.fluid.x);
         memcpy(swapped.x + 8 * d, on.fluid.x + 7 * d, (size_t)d * sizeof *on.fluid.x);
         require_elsewhere(&on, wall_from(&on, &swapped), 7);
@@ -119,7 +111,7 @@ static void targets_that_differ_are_refused(const test_case *test)
 static void hosts_that_are_trusted_may_differ(const test_case *test)
 {
     const scene on = scene_of(test, 1, 2);
-    cloud moved = copy_of(&on.fluid);
+    cloud moved = cloud_copy(&on.fluid);
     moved.x[5] += .01;
     FIXTURE_OK(on.context, evaluate(&on, wall_from(&on, &moved)));
 }
@@ -134,7 +126,7 @@ static void moves_are_noticed(const test_case *test)
         geometry.skin = skin ? .1 : 0;
         sphg_neighbors *wall = fixture_search(on.context, &on.scheme, &geometry);
         FIXTURE_OK(on.context, evaluate(&on, wall));
-        cloud moved = copy_of(&on.fluid);
+        cloud moved = cloud_copy(&on.fluid);
         moved.x[test->dimension] += .01;
         on.result = fixture_output(test_field_type(test), TARGETS, test->dimension);
         geometry.targets = fixture_view(&at);
@@ -155,7 +147,7 @@ static void moves_are_noticed(const test_case *test)
 static void the_same_targets_in_other_words_are_accepted(const test_case *test)
 {
     scene on = scene_of(test, 0, 2);
-    cloud zero = copy_of(&on.fluid), minus = copy_of(&on.fluid);
+    cloud zero = cloud_copy(&on.fluid), minus = cloud_copy(&on.fluid);
     zero.x[0] = 0;
     minus.x[0] = -0.;
     fixture_array at = fixture_positions(test, &zero);
@@ -170,7 +162,7 @@ static void the_same_targets_in_other_words_are_accepted(const test_case *test)
     const sphg_lists lists = {.rows = rows, .lengths = lengths};
     FIXTURE_OK(on.context, evaluate(&on, fixture_lists(on.context, &on.scheme, &geometry, &lists)));
 
-    cloud few = copy_of(&zero);
+    cloud few = cloud_copy(&zero);
     few.count = TARGETS / 3;
     sphg_geometry part = fixture_geometry(test, &zero, &at);
     part.target_count = few.count;

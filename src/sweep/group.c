@@ -230,7 +230,7 @@ void sphgi_stream_begin(struct sphgi_worker *w)
 
 static void run_waiting(struct sphgi_worker *w)
 {
-    run_spread(w, w->host_ids, w->waiting, sizeof(uint32_t), w->streamed, true);
+    run_spread(w, w->waiting_ids, w->waiting, sizeof(uint32_t), w->streamed, true);
     w->streamed += w->waiting;
     w->waiting = 0;
 }
@@ -239,7 +239,7 @@ void sphgi_stream_add(struct sphgi_worker *w, const uint32_t *rows, int32_t coun
 {
     while (count > 0) {
         const int32_t part = sphgi_min32(count, spread_most(w) - w->waiting);
-        memcpy((uint32_t *)(void *)w->host_ids + w->waiting, rows, (size_t)part * sizeof *rows);
+        memcpy((uint32_t *)(void *)w->waiting_ids + w->waiting, rows, (size_t)part * sizeof *rows);
         w->waiting += part;
         rows += part;
         count -= part;

@@ -25,7 +25,7 @@ static void run_rest(struct sphgi_worker *w)
     if (w->group.lanes > w->summed)
         sphgi_group_run(w);
     finish_group(w);
-    w->host_ids_used = 0;
+    w->waiting_ids_used = 0;
 }
 
 /* Of 32-bit numbers, or of 16-bit ids that stand `stride` apart. */
@@ -214,15 +214,15 @@ static void add_sparse(struct sphgi_worker *w, const struct sphgi_surroundings *
                        int32_t place, const uint16_t *ids, int32_t length, int32_t stride)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    if (w->host_ids_used + length > SPHGI_HOST_IDS)
+    if (w->waiting_ids_used + length > SPHGI_WAITING_IDS)
         run_rest(w);
-    uint32_t *rows = (uint32_t *)(void *)w->host_ids + w->host_ids_used;
+    uint32_t *rows = (uint32_t *)(void *)w->waiting_ids + w->waiting_ids_used;
     unstage(around, ids, length, stride, rows);
     ask_for_rows(n, rows, length);
-    w->host_ids_used += length;
+    w->waiting_ids_used += length;
     add_list(w, target_at(n, place), place, sphgi_target_row(n, place), rows, length, 1);
     if (w->group.lanes == w->summed)
-        w->host_ids_used = 0;
+        w->waiting_ids_used = 0;
 }
 
 /* So few targets that it does not pay to stage everything around them: their rows alone. */
@@ -394,20 +394,20 @@ static void note_bad_length(struct sphgi_tally *tally, int32_t target)
 static void add_copied(struct sphgi_worker *w, int32_t target, const int32_t *ids, int32_t count)
 {
     const char *row = sphgi_target_row(w->sweep->set->neighbors, target);
-    if (w->host_ids_used + (int64_t)count > SPHGI_HOST_IDS)
+    if (w->waiting_ids_used + (int64_t)count > SPHGI_WAITING_IDS)
         run_rest(w);
-    if (count > SPHGI_HOST_IDS) {
+    if (count > SPHGI_WAITING_IDS) {
         add_list(w, target, target, row, ids, count, 1);
         run_rest(w);
         return;
     }
-    int32_t *copy = (int32_t *)(void *)w->host_ids + w->host_ids_used;
+    int32_t *copy = (int32_t *)(void *)w->waiting_ids + w->waiting_ids_used;
     if (count)
         memcpy(copy, ids, (size_t)count * sizeof *ids);
-    w->host_ids_used += count;
+    w->waiting_ids_used += count;
     add_list(w, target, target, row, copy, count, 1);
     if (w->group.lanes == w->summed)
-        w->host_ids_used = 0;
+        w->waiting_ids_used = 0;
 }
 
 void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)

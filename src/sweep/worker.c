@@ -38,7 +38,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(ids, SPHGI_TILE, sizeof(uint32_t));
     CARVE(clean_ids, SPHGI_TILE, sizeof(uint32_t));
     CARVE(local_items, SPHGI_TILE, sizeof(uint32_t));
-    CARVE(host_ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_HOST_IDS,
+    CARVE(waiting_ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_WAITING_IDS,
           sizeof(uint32_t));
     CARVE(reduced, SPHGI_SECTIONS * (size_t)plan->sums * SPHGI_WIDTH, size);
     CARVE(at_target, (size_t)plan->target_lanes * SPHGI_WIDTH, size);

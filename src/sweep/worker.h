@@ -74,7 +74,7 @@ struct sphgi_worker {
     int32_t longest;                 /* pairs of a list, of the lanes at work */
     int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
     int32_t spread_pairs;            /* of a tile that holds one list */
-    int32_t host_ids_used;           /* by lists that wait for a vector of targets */
+    int32_t waiting_ids_used;        /* by lists that wait for a vector of targets */
     int32_t streamed, waiting;    /* pairs of a list that comes bit by bit: summed, and yet to be */
     bool local;                   /* rows are copied pair by pair */
     bool sparse;                  /* ... and targets of several blocks wait together */
@@ -83,13 +83,13 @@ struct sphgi_worker {
 
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
-    char *staged_positions, *staged_rows, *arrays, *ids, *clean_ids, *local_items, *host_ids;
+    char *staged_positions, *staged_rows, *arrays, *ids, *clean_ids, *local_items, *waiting_ids;
     char *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume, *density;
     char *self, *zeros, *jacobian, *contracted, *extra, *staged_items;
     char *finder_memory;
 };
 
-enum { SPHGI_HOST_IDS = 1 << 15 }; /* copied of lists that a function of the host makes */
+enum { SPHGI_WAITING_IDS = 1 << 15 }; /* of lists that wait until the lanes are full */
 
 /* Bytes of memory of one worker; 0 on overflow. */
 size_t sphgi_worker_size(const struct sphgi_sweep *sweep);

@@ -1,6 +1,7 @@
 #include "clouds.h"
 #include "test.h"
 #include <math.h>
+#include <string.h>
 
 static cloud cloud_make(int dimension, int count, double spacing)
 {
@@ -28,6 +29,14 @@ static void jitter_by(cloud *points, double reach, random_state *random)
 {
     for (int k = 0; k < points->count * points->dimension; k++)
         points->x[k] += random_between(random, -reach, reach);
+}
+
+cloud cloud_copy(const cloud *points)
+{
+    cloud copy = *points;
+    const size_t bytes = (size_t)(points->count * points->dimension) * sizeof *points->x;
+    copy.x = memcpy(test_memory(bytes), points->x, bytes);
+    return copy;
 }
 
 cloud cloud_lattice(int dimension, int per_axis, double spacing)

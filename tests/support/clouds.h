@@ -10,6 +10,8 @@ typedef struct cloud {
     double *x;      /* count * dimension numbers, released after the test case */
 } cloud;
 
+/* The same points in memory of their own. */
+cloud cloud_copy(const cloud *points);
 /* per_axis^d points, the first at the origin. */
 cloud cloud_lattice(int dimension, int per_axis, double spacing);
 /* The lattice with each coordinate moved by up to jitter * spacing. */

@@ -4,6 +4,22 @@
 #include <math.h>
 #include <string.h>
 
+scene scene_empty(const test_case *test, int count)
+{
+    scene particles = {0};
+    particles.dimension = test->dimension;
+    particles.is_double = test->precision != TEST_F32;
+    particles.precision = test_field_type(test);
+    particles.source_count = particles.target_count = count;
+    particles.sources = test_memory((size_t)count * 3 * sizeof(double));
+    return particles;
+}
+
+double scene_rounded(const scene *particles, double x)
+{
+    return particles->is_double ? x : (double)(float)x;
+}
+
 scene scene_of_cloud(const test_case *test, const cloud *points)
 {
     scene particles = {0};

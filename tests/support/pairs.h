@@ -17,6 +17,9 @@ typedef struct scene {
     sphg_type precision; /* of the fields; 0: as the positions */
 } scene;
 
+/* So many particles at the origin, in the case's precision; and x as its positions hold it. */
+scene scene_empty(const test_case *test, int count);
+double scene_rounded(const scene *particles, double x);
 scene scene_of_cloud(const test_case *test, const cloud *points);
 
 /* Copies the positions into fresh arrays of the right type. */
