@@ -41,6 +41,7 @@ probe_clang_tidy() { command -v clang-tidy >/dev/null; }
 probe_cppcheck() { command -v cppcheck >/dev/null; }
 probe_valgrind() { valgrind -q true 2>/dev/null; }
 probe_python3() { python3 -c '' 2>/dev/null; }
+probe_eigen() { pkg-config --exists eigen3 2>/dev/null; }
 # Of the Python package and its wheel, in the Python of the path or the system's.
 probe_numpy() {
     local python
@@ -69,6 +70,7 @@ package_of() {
         cppcheck) echo cppcheck ;;
         valgrind) printf '%s\n' valgrind libc6-dbg ;;
         python3) echo python3 ;;
+        eigen) echo libeigen3-dev ;;
         numpy) printf '%s\n' python3-numpy python3-scipy python3-pip python3-setuptools python3-wheel ;;
     esac
 }

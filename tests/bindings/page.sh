@@ -1,0 +1,8 @@
+#!/bin/sh
+# page.sh PAGE LANGUAGE PROGRAM: the first block of that language on the page is the program.
+set -eu
+work=$(mktemp)
+trap 'rm -f "$work"' EXIT
+awk -v fence="\`\`\`$2" '$0 == fence && !shown { inside = shown = 1; next } /^```/ { inside = 0 } inside' "$1" >"$work"
+[ -s "$work" ]
+diff "$3" "$work"
