@@ -47,7 +47,7 @@ probe_fortran() { printf 'end\n' | gfortran -x f95 - -o /dev/null 2>/dev/null; }
 probe_numpy() {
     local python
     for python in python3 /usr/bin/python3; do
-        "$python" -c 'import numpy, scipy, pip, setuptools, wheel' 2>/dev/null && return 0
+        "$python" -c 'import numpy, scipy, setuptools, wheel, pip' 2>/dev/null && return 0
     done
     return 1
 }
