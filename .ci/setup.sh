@@ -12,6 +12,7 @@ probe_compiler() {
 }
 probe_build_essential() { probe_compiler gcc c && probe_compiler g++ c++ && command -v make >/dev/null; }
 probe_cmake() { command -v cmake >/dev/null; }
+probe_ninja() { command -v ninja >/dev/null; }
 probe_pkg_config() { command -v pkg-config >/dev/null; }
 probe_cmocka() { pkg-config --exists cmocka 2>/dev/null; }
 probe_lapacke() { pkg-config --exists lapacke 2>/dev/null; }
@@ -56,6 +57,7 @@ package_of() {
     case $1 in
         build_essential) echo build-essential ;;
         cmake) echo cmake ;;
+        ninja) echo ninja-build ;;
         pkg_config) echo pkg-config ;;
         cmocka) echo libcmocka-dev ;;
         lapacke) echo liblapacke-dev ;;
@@ -145,16 +147,20 @@ quietly() {
         rm -f "$log"
         return 0
     fi
-    grep -v '^\[ *[0-9]*%\] ' "$log" >&2 # less make's progress
+    grep -vE '^\[ *[0-9]+(%|/[0-9]+)\] ' "$log" >&2 # less the progress
     rm -f "$log"
     echo "failed: $*" >&2
     return 1
 }
 
-# build_preset PRESET [CONFIGURE OPTION...] [-- BUILD OPTION...], from the root of the sources.
+# build_preset PRESET [CONFIGURE OPTION...] [-- BUILD OPTION...], from the root of the sources. Where Ninja is
+# installed, a new build uses it: it compiles the tests while the library is compiled, and takes no time itself.
 build_preset() {
     local preset=$1 configure=()
     shift
+    if [ ! -f "build/$preset/CMakeCache.txt" ] && probe_ninja; then
+        configure+=(-G Ninja)
+    fi
     while [ $# -gt 0 ] && [ "$1" != -- ]; do
         configure+=("$1")
         shift

@@ -25,7 +25,7 @@ static const struct argp_option option_list[] = {
      0},
     {"kernel", OPTION_KERNEL, "NAME", 0, "one of the seven smoothing functions (cubic)", 0},
     {"compare", OPTION_COMPARE, "N", 0,
-     "targets of a case that stand beside the reference (32, quick 2)", 0},
+     "targets of a case that stand beside the reference (32, quick 2); 0: none", 0},
     {"seed", OPTION_SEED, "N", 0, "other random numbers (0)", 0},
     {0}};
 
@@ -49,7 +49,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
         stability->kernel = (sphg_kernel)option_choice("kernel", text, kernel_names);
         return 0;
     case OPTION_COMPARE:
-        stability->compared = option_integer("compare", text, 1, 1 << 20);
+        stability->compared = option_integer("compare", text, 0, 1 << 20);
         return 0;
     case OPTION_SEED:
         stability->seed = option_integer("seed", text, 0, 9999);
@@ -67,7 +67,8 @@ int command_stability(int argc, char **argv)
                                                .support = 2,
                                                .jitter = 0.2},
                                   .output = "stability",
-                                  .last = SWEEPS - 1};
+                                  .last = SWEEPS - 1,
+                                  .compared = -1};
     const struct argp_child children[] = {{&settings_argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
     const struct argp argp = {
         .options = option_list,
@@ -79,7 +80,7 @@ int command_stability(int argc, char **argv)
                "exit status tells whether every promise held."};
     options_parse(&argp, argc, argv, &stability);
     option_folder("output", stability.output);
-    if (stability.compared == 0)
+    if (stability.compared < 0)
         stability.compared = stability.quick ? 2 : 32;
     stability_create_cases(&stability);
     stability_measure(&stability);

@@ -6,50 +6,38 @@ cd "$1" || exit 1
 # From the lowest; src/README.md shows them. Every folder may include those named before it.
 order="internal.h passes core search plan sweep api"
 
-# height_of PATH: the place of its folder (of internal.h: its own) in the order.
-height_of() {
-    place=0
-    for folder in $order; do
-        place=$((place + 1))
-        [ "$folder" != "${1%%/*}" ] || echo $place
-    done
-}
-
 status=0
 complain() {
     echo "$*" >&2
     status=1
 }
 
-# included FILE: what FILE includes in quotes, as paths from src/.
-included() {
-    sed -n 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*"\([^"]*\)".*/\1/p' "src/$1" |
-        while read -r name; do
-            if [ -f "src/$(dirname "$1")/$name" ]; then
-                echo "$(dirname "$1")/$name"
-            else
-                echo "$name"
-            fi
-        done
-}
-
 files=$(cd src && find . -name '*.[ch]' | sed 's|^\./||' | sort)
 [ -n "$files" ] || complain "src holds no sources"
-for file in $files; do
-    height=$(height_of "$file")
-    if [ -z "$height" ]; then
-        complain "src/$file stands in no layer"
-        continue
-    fi
-    for name in $(included "$file"); do
-        below=$(height_of "$name")
-        if [ -z "$below" ] || [ ! -f "src/$name" ]; then
-            complain "src/$file includes \"$name\", which is no file of a layer"
-        elif [ "$below" -gt "$height" ]; then
-            complain "src/$file includes $name, which stands above it"
-        fi
-    done
-done
+
+# What a file includes in quotes stands beside it, or is named from src.
+# shellcheck disable=SC2086 # the files are words
+(cd src && awk -v order="$order" -v files="$(echo $files)" '
+    function complain(text) { print text; failed = 1 }
+    function layer_of(path) { sub(/\/.*/, "", path); return path }
+    BEGIN {
+        for (k = split(order, names, " "); k > 0; k--) height[names[k]] = k
+        for (k = split(files, names, " "); k > 0; k--) {
+            is_there[names[k]] = 1
+            if (!(layer_of(names[k]) in height)) complain("src/" names[k] " stands in no layer")
+        }
+    }
+    /^[ \t]*#[ \t]*include[ \t]*"/ {
+        split($0, parts, "\"")
+        beside = FILENAME
+        if (!sub(/\/[^\/]*$/, "/", beside)) beside = ""
+        name = (beside parts[2]) in is_there ? beside parts[2] : parts[2]
+        if (!(name in is_there) || !(layer_of(name) in height))
+            complain("src/" FILENAME " includes \"" name "\", which is no file of a layer")
+        else if (height[layer_of(name)] > height[layer_of(FILENAME)])
+            complain("src/" FILENAME " includes " name ", which stands above it")
+    }
+    END { exit failed }' $files) >&2 || status=1
 for folder in $order; do
     [ -e "src/$folder" ] || complain "src/$folder is named as a layer and is not there"
     grep -q "$folder" src/README.md || complain "src/README.md does not show $folder"

@@ -20,18 +20,25 @@ column() {
         inside && !/^\|-/ { print $(n + 1) }' "$2"
 }
 
-# find_source NAME: where the library has a file of that name, with or without its folder.
+# find_source NAME: where the library has a file or folder of that name, with or without the folder it stands in.
+sources=$(find src | sort)
 find_source() {
-    find src -path "src/$1" -o -path "src/*/$1" | head -n 1
+    for source in $sources; do
+        case $source in "src/$1" | src/*/"$1") return 0 ;; esac
+    done
+    source=
+    return 1
 }
 
 # Of the interface: declared in the header, members after a dot.
-interface=$(column 3 docs/theory.md equation | quoted)
+interface=$(column 3 docs/theory.md equation | quoted | tr -d '()' | tr . ' ')
 [ -n "$interface" ] || complain "docs/theory.md has no table of functions"
+declared=" $(tr -cs 'A-Za-z0-9_' ' ' <include/sphgrad/sphgrad.h) "
 for name in $interface; do
-    for part in $(echo "$name" | tr -d '()' | tr . ' '); do
-        grep -qw "$part" include/sphgrad/sphgrad.h || complain "docs/theory.md: $name, not in the header"
-    done
+    case $declared in
+        *" $name "*) ;;
+        *) complain "docs/theory.md: $name, not in the header" ;;
+    esac
 done
 
 # In the code: a file, then functions that stand in it.
@@ -39,8 +46,8 @@ file=
 for name in $(column 4 docs/theory.md equation | quoted); do
     case $name in
         *.[ch])
-            file=$(find_source "$name")
-            [ -n "$file" ] || complain "docs/theory.md: there is no $name"
+            find_source "$name" || complain "docs/theory.md: there is no $name"
+            file=$source
             ;;
         *) grep -qw "$name" "$file" 2>/dev/null || complain "docs/theory.md: no $name in $file" ;;
     esac
@@ -50,12 +57,12 @@ done
 layers=$(column 2 docs/design.md layer | quoted)
 [ -n "$layers" ] || complain "docs/design.md has no table of layers"
 for name in $layers; do
-    [ -e "$name" ] || [ -n "$(find_source "${name%/}")$(find_source "$name.c")$(find_source "$name.h")" ] ||
+    [ -e "$name" ] || find_source "${name%/}" || find_source "$name.c" || find_source "$name.h" ||
         complain "docs/design.md, layers: there is no $name"
 done
 # Elsewhere: file names in backticks.
 for name in $(quoted <docs/design.md | grep '^[a-z_0-9/.]*\.\(c\|h\|inl\.h\|sh\)$'); do
-    [ -e "$name" ] || [ -n "$(find_source "$name")" ] || complain "docs/design.md: there is no $name"
+    [ -e "$name" ] || find_source "$name" || complain "docs/design.md: there is no $name"
 done
 
 all=" $(quoted <docs/design.md | tr '\n' ' ') "
