@@ -19,6 +19,8 @@ static const struct command commands[] = {
     {"fields", "error of plain and corrected derivatives on a square: tables, CSV, pictures",
      command_fields},
     {"limit", "how near the library comes to the arithmetic limit of this machine", command_limit},
+    {"lists", "time a pair of sums over a host's own lists, and of pairs written out",
+     command_lists},
     {"skip", "what it saves not to compute what a scene does not need", command_skip},
     {"frontier", "run time against error of every way to a gradient: tables, CSV, picture",
      command_frontier},

@@ -51,6 +51,29 @@ void plot_palette(FILE *script, double knee, double share)
     fprintf(script, ")\n");
 }
 
+static void copy_script(FILE *to, const char *script)
+{
+    char path[4096], line[1024];
+    snprintf(path, sizeof path, "%s/%s", BENCH_PLOTS, script);
+    FILE *from = fopen(path, "r");
+    if (!from) {
+        fprintf(stderr, "sphgrad-bench: cannot read %s: %s\n", path, strerror(errno));
+        exit(EXIT_FAILURE);
+    }
+    while (fgets(line, sizeof line, from))
+        fputs(line, to);
+    fclose(from);
+}
+
+bool plot_draw(const char *directory, const char *script, const char *assignments)
+{
+    FILE *file = plot_file(directory, script);
+    fputs(assignments, file);
+    copy_script(file, script);
+    plot_close(file, script);
+    return plot_run(directory, script);
+}
+
 static void become_gnuplot(const char *directory, const char *script)
 {
     if (chdir(directory) == 0)

@@ -31,6 +31,15 @@ case $command in
         "$checker" "$work/report.json" probe/matrices error_max 0 1e-5 \
             probe/matrices matrix_deviation 0 1e-5
         ;;
+    lists)
+        measure --particles 4096 --repetitions 2 --threads 1
+        "$checker" "$work/report.json" lists/ ns_per_pair 0.01 1e6 lists/sums/ error_max 0 1e-5 \
+            "lists/sums/host's row function/fused" pairs 9e4 2e5 \
+            'lists/pairs/indices and gradients' error_max 0 1e-5 'lists/pairs/the same' error_max 0 1e-5
+        measure --particles 1000 --repetitions 1 --precision f64
+        "$checker" "$work/report.json" lists/sums/ error_max 0 1e-13 \
+            'lists/pairs/indices and gradients' error_max 0 1e-13
+        ;;
     skip)
         measure --particles 4096 --repetitions 2
         "$checker" "$work/report.json" skip/ saved_percent -1e6 100 full/ real_time 0 1e6 \
