@@ -65,10 +65,13 @@ static void copy_script(FILE *to, const char *script)
     fclose(from);
 }
 
-bool plot_draw(const char *directory, const char *script, const char *assignments)
+bool plot_draw(const char *directory, const char *script, const char *common,
+               const char *assignments)
 {
     FILE *file = plot_file(directory, script);
     fputs(assignments, file);
+    if (common)
+        copy_script(file, common);
     copy_script(file, script);
     plot_close(file, script);
     return plot_run(directory, script);
