@@ -33,28 +33,10 @@ void plot_close(FILE *file, const char *name)
     exit(EXIT_FAILURE);
 }
 
-/* Viridis (van der Walt, Smith 2015, matplotlib, CC0) at equal steps. */
-static const char *const viridis[] = {"#440154", "#482878", "#3e4a89", "#31688e", "#26828e",
-                                      "#1f9e89", "#35b779", "#6dcd59", "#b4de2c", "#fde725"};
-
-void plot_palette(FILE *script, double knee, double share)
-{
-    const int last = (int)(sizeof viridis / sizeof viridis[0]) - 1;
-    fprintf(script, "set palette defined (");
-    for (int k = 0; k <= last; k++) {
-        const double colour = (double)k / last;
-        const double position = colour <= share
-                                    ? knee * colour / share
-                                    : knee + (1 - knee) * (colour - share) / (1 - share);
-        fprintf(script, "%s%.4f '%s'", k ? ", " : "", position, viridis[k]);
-    }
-    fprintf(script, ")\n");
-}
-
-static void copy_script(FILE *to, const char *script)
+static void copy_part(FILE *to, const char *name)
 {
     char path[4096], line[1024];
-    snprintf(path, sizeof path, "%s/%s", BENCH_PLOTS, script);
+    snprintf(path, sizeof path, "%s/%s", BENCH_PLOTS, name);
     FILE *from = fopen(path, "r");
     if (!from) {
         fprintf(stderr, "sphgrad-bench: cannot read %s: %s\n", path, strerror(errno));
@@ -65,14 +47,13 @@ static void copy_script(FILE *to, const char *script)
     fclose(from);
 }
 
-bool plot_draw(const char *directory, const char *script, const char *common,
-               const char *assignments)
+bool plot_draw(const char *directory, const char *script, const char *assignments,
+               const char *const parts[])
 {
     FILE *file = plot_file(directory, script);
     fputs(assignments, file);
-    if (common)
-        copy_script(file, common);
-    copy_script(file, script);
+    for (; *parts; parts++)
+        copy_part(file, *parts);
     plot_close(file, script);
     return plot_run(directory, script);
 }

@@ -8,14 +8,10 @@
 FILE *plot_file(const char *directory, const char *name);
 void plot_close(FILE *file, const char *name); /* the same where the disk is full */
 
-/* Colour-blind-safe: viridis over colour-bar positions 0 to 1 (gnuplot: gray values). The lower
- * `share` of its colours is spread over positions 0 to knee, the rest over knee to 1. */
-void plot_palette(FILE *script, double knee, double share);
-
-/* Writes directory/script and runs it as plot_run does: the assignments, then bench/plots/common,
- * unless that is NULL, and bench/plots/script. These read the CSV by the names of its columns. */
-bool plot_draw(const char *directory, const char *script, const char *common,
-               const char *assignments);
+/* Writes directory/script and runs it as plot_run does: assignments, then files of bench/plots, up
+ * to NULL. These read the CSV by the names of its columns. */
+bool plot_draw(const char *directory, const char *script, const char *assignments,
+               const char *const parts[]);
 
 /* Runs directory/script there. false: one line on stderr says why there is no picture. */
 bool plot_run(const char *directory, const char *script);

@@ -14,5 +14,6 @@ bool scaling_draw(const struct scaling *scaling)
              "changes\"\nthreads = %d\n",
              settings->particles, settings->support, settings->threads,
              settings->threads > 1 ? "s" : "", machine_cpu(), settings->threads);
-    return plot_draw(scaling->output, "scaling.gp", NULL, given);
+    static const char *const parts[] = {"scaling.gp", NULL};
+    return plot_draw(scaling->output, "scaling.gp", given, parts);
 }

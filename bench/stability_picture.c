@@ -13,8 +13,10 @@ bool stability_draw(const struct stability *stability)
     char given[256];
     snprintf(given, sizeof given, "support = '%g'\nmachine = \"%s\"\n", stability->settings.support,
              machine_cpu());
-    for (int k = 0; k < 3; k++)
-        if (!plot_draw(stability->output, scripts[k], "stability_common.gp", given))
+    for (int k = 0; k < 3; k++) {
+        const char *const parts[] = {"stability_common.gp", scripts[k], NULL};
+        if (!plot_draw(stability->output, scripts[k], given, parts))
             return false;
+    }
     return true;
 }

@@ -6,6 +6,16 @@
 
 static const int32_t boundary_layers = 2;
 
+const char *study_field_name(enum study_field field)
+{
+    return field == FIELD_ROTATION ? "rotation" : "trigonometric";
+}
+
+const char *study_field_formula(enum study_field field)
+{
+    return field == FIELD_ROTATION ? "v = (-y, x)" : "v = (cos 2x, cos y - sin 3x)";
+}
+
 static sphg_scheme scheme_of(const struct study *study, sphg_method method)
 {
     return (sphg_scheme){.dimension = 2,

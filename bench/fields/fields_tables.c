@@ -5,6 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+const sphg_method fields_order[FIELDS_METHODS] = {SPHG_PLAIN, SPHG_KGC,  SPHG_MLS,
+                                                  SPHG_RKPM,  SPHG_CMLS, SPHG_CRKPM};
+
 static void write_header(FILE *file)
 {
     fprintf(file, "x,y,vx,vy");
@@ -40,7 +43,7 @@ void fields_write_particles(const char *directory, const struct study *study,
             study_measure(study, field, method, gradient_errors, curl_errors);
     }
     char name[64];
-    snprintf(name, sizeof name, "fields_%s_%s.csv", fields_kind_name(field), results->name);
+    snprintf(name, sizeof name, "fields_%s_%s.csv", study_field_name(field), results->name);
     FILE *file = plot_file(directory, name);
     write_header(file);
     for (int32_t i = 0; i < study->count; i++)
@@ -56,7 +59,7 @@ static void write_series(FILE *file, const struct lattice_results *results, enum
         const struct study_errors *errors = &results->errors[field][method][size];
         const int32_t side = results->setting.side << size;
         fprintf(file, "%s,%s,%s,%d,%.9g,%.4e,%.4e,%.4e,%.4e,%.4e\n", results->name,
-                fields_kind_name(field), method_names[method], side, 2.0 / side,
+                study_field_name(field), method_names[method], side, 2.0 / side,
                 errors->boundary_max, errors->boundary_mean, errors->inside_max,
                 errors->inside_mean, errors->curl_max);
     }

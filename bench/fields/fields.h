@@ -17,8 +17,6 @@ struct lattice_results {
 };
 
 extern const sphg_method fields_order[FIELDS_METHODS]; /* rows of all tables */
-const char *fields_kind_name(enum study_field field);
-const char *fields_kind_formula(enum study_field field);
 
 /* One row per particle: where, which velocity, all errors. The numbers go into results too. */
 void fields_write_particles(const char *directory, const struct study *study,

@@ -13,6 +13,9 @@ enum study_field {
     FIELD_TRIGONOMETRIC /* v = (cos 2x, cos y - sin 3x) */
 };
 
+const char *study_field_name(enum study_field field);
+const char *study_field_formula(enum study_field field);
+
 struct study_setting {
     int32_t side;   /* N: N x N particles in the centres of as many square cells */
     double support; /* H in spacings d = 2 / N */

@@ -8,19 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-const sphg_method fields_order[FIELDS_METHODS] = {SPHG_PLAIN, SPHG_KGC,  SPHG_MLS,
-                                                  SPHG_RKPM,  SPHG_CMLS, SPHG_CRKPM};
-
-const char *fields_kind_name(enum study_field field)
-{
-    return field == FIELD_ROTATION ? "rotation" : "trigonometric";
-}
-
-const char *fields_kind_formula(enum study_field field)
-{
-    return field == FIELD_ROTATION ? "v = (-y, x)" : "v = (cos 2x, cos y - sin 3x)";
-}
-
 struct options {
     struct study_setting setting;
     const char *output;
@@ -95,7 +82,7 @@ static void measure(const char *directory, struct lattice_results *results)
 
 static void print_field(const struct lattice_results *results, enum study_field field)
 {
-    printf("\n  %-34s %21s %21s %10s\n", fields_kind_formula(field), "boundary      ",
+    printf("\n  %-34s %21s %21s %10s\n", study_field_formula(field), "boundary      ",
            "inside        ", "curl   ");
     printf("  %-34s %10s %10s %10s %10s %10s\n", "error |J_i - J|_F", "max", "mean", "max", "mean",
            "max");
@@ -118,7 +105,7 @@ static void print_convergence(const struct lattice_results *results)
     const int32_t side = results->setting.side;
     printf("\n  %-12s %39s   %39s\n", "convergence", "boundary max          ",
            "inside max           ");
-    printf("  %-12s", fields_kind_name(FIELD_TRIGONOMETRIC));
+    printf("  %-12s", study_field_name(FIELD_TRIGONOMETRIC));
     for (int half = 0; half < 2; half++)
         printf(" %9s%-4d %6d %9d %7s  ", "N = ", side, 2 * side, 4 * side, "order");
     printf("\n");
