@@ -108,6 +108,67 @@ static void every_form_matches_the_oracle(const test_case *test)
         }
 }
 
+/* ---- Few particles, thin, some of which outweigh all others ---------------------------------- */
+
+enum { FEW = 7, KINDS = 5 };
+
+/* The first in the middle, each two of the others opposite one another. */
+static cloud mirrored_cloud(int d, random_state *random)
+{
+    cloud points = cloud_random(d, FEW, .5, random);
+    for (int k = 0; k < FEW * d; k++)
+        if (k / d % 2 == 0)
+            points.x[k] = k < d ? 0 : -points.x[k - d];
+    return points;
+}
+
+/* On a line, at one place but for one, in two layers, anywhere, all with a thickness from a
+ * millionth of the spacing on; or mirrored up to rounding. */
+static cloud few_particles(int d, int kind, random_state *random)
+{
+    cloud points = kind == 0   ? cloud_line(d, FEW, .125)
+                   : kind == 1 ? cloud_coincident(d, FEW - 1, 1, .25)
+                   : kind == 2 ? cloud_sheets(d, d == 2 ? FEW / 2 : 2, .25, .001)
+                   : kind == 3 ? cloud_random(d, FEW, .5, random)
+                               : mirrored_cloud(d, random);
+    const double thick = kind == 4 ? 0 : .25 * pow(10, random_between(random, -6, -1));
+    for (int k = 0; k < points.count * d; k++)
+        points.x[k] += thick * random_between(random, -1, 1);
+    cloud_rotate(&points, random);
+    return points;
+}
+
+/* 1 at the first, 0 at the others: all that is seen is w_0 z_k, in which mirror images cancel. */
+static void compare_first(const stage *on, const fixture_array *table)
+{
+    double *numbers = test_memory((size_t)on->points.count * sizeof *numbers);
+    numbers[0] = 1;
+    const stage_field field = {SPHG_SCALAR, SPHG_DIRECT, numbers};
+    const stage_result found = stage_apply(on, &field, table);
+    stage_compare(on, &field, &found, 0);
+}
+
+/* y, z_k and gradients of terms that cancel are far smaller than what rounding does to the terms:
+ * bounds from their size alone are passed by a factor of thousands. */
+static void few_particles_stay_within_their_bounds(const test_case *test)
+{
+    random_state random = random_seeded(80);
+    for (int k = 0; k < 2 * KINDS; k++) {
+        const stage even =
+            uneven_stage(test, "few particles", few_particles(test->dimension, k % KINDS, &random),
+                         k % 3 * 6, random_bits(&random));
+        const stage on = stage_under(&even, k < KINDS ? SPHG_BLEND : SPHG_IDENTITY,
+                                     pow(10, random_between(&random, -4, -.7)));
+        const fixture_array table = stage_table(&on);
+        const int all = on.points.count;
+        compare_first(&on, &table);
+        compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table, all);
+        compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table, all);
+        compare(&on, SPHG_SCALAR, SPHG_ADJOINT, &table, all);
+        compare(&on, SPHG_SYM_TENSOR, SPHG_SYMMETRIC, &table, all);
+    }
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(smallest_moments_are_never_negative, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
@@ -116,5 +177,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(every_form_matches_the_oracle, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS,
                TEST_BIT(SPHG_CUBIC_SPLINE) | TEST_BIT(SPHG_QUINTIC_SPLINE) | TEST_BIT(SPHG_POLY6)),
+    TEST_ENTRY(few_particles_stay_within_their_bounds, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED,
+               TEST_BIT(SPHG_CUBIC_SPLINE) | TEST_BIT(SPHG_WENDLAND_C6) | TEST_BIT(SPHG_POLY6)),
 };
 TEST_MAIN(entries)

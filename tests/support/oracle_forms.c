@@ -262,10 +262,11 @@ static void add_square(const oracle_scene *scene, quad a, const quad *gradient, 
 {
     const quad norm = quad_norm(gradient, scene->scheme.dimension);
     result->square += a * norm * norm;
-    result->square_bound += 2 * quad_abs(a) * size * bound;
+    result->square_bound += quad_abs(a) * bound * (2 * size + bound);
 }
 
-/* size: of what C_i is multiplied with, however much of it C_i takes away. */
+/* size: of what C_i is multiplied with, however much of it C_i takes away. The second order counts:
+ * a G_ij of terms that cancel may be smaller than its own bound. */
 static void sum_squares(const oracle_scene *scene, const oracle_field *field, int i,
                         const oracle_point *point, oracle_result *result)
 {

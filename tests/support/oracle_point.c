@@ -431,10 +431,11 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
         point->z_norm = quad_max(point->z_norm, quad_norm(point->z[k], d + 1));
         point->self_gradient[k] = point->self_weight * point->z[k][0];
     }
-    point->y_bound = point->condition * point->y_norm;
-    point->z_bound =
-        point->condition * (point->z_norm + blur_of_y(d, inverse, &sums) * point->y_norm) +
-        blur_of_slopes(scene, inverse, point);
+    /* 1: the weight that y and z are multiplied with is as uncertain as those they come from. */
+    point->y_bound = (1 + point->condition) * point->y_norm;
+    point->z_bound = (1 + point->condition) * point->z_norm +
+                     point->condition * blur_of_y(d, inverse, &sums) * point->y_norm +
+                     blur_of_slopes(scene, inverse, point);
     if (point->rank < d)
         add_blur_of_filter(scene, inverse, &sums, centre, point);
     point->self_bound = scene->unit * point->self_weight * point->z_bound;
