@@ -162,16 +162,6 @@ static side_weights two_weights(const oracle_scene *scene, sphg_form form, int i
     return weights;
 }
 
-/* Bound of one A G with |A| = size, seen from the particle with this point. */
-static quad side_bound(const oracle_scene *scene, const oracle_point *point,
-                       const oracle_pair *pair, quad size)
-{
-    if (oracle_is_classic(scene->scheme.method))
-        return size * pair->bound;
-    return scene->unit * size * pair->spread * pair->r * point->correction_norm *
-           (1 + point->correction_norm * point->spread);
-}
-
 static oracle_pair seen_from(const oracle_scene *scene, const oracle_point *other,
                              const oracle_pair *pair, int i)
 {
@@ -202,8 +192,8 @@ static void two_sided(oracle *reference, const oracle_field *field, int i, oracl
         item away = scaled_sum(-weights.other, &other, 0, &none);
         contract(d, field->shape, &here, pair->gradient, result);
         contract(d, field->shape, &away, back.gradient, result);
-        result->bound += side_bound(scene, point, pair, quad_norm(here.a, here.count)) +
-                         side_bound(scene, there, &back, quad_norm(away.a, away.count));
+        result->bound += quad_norm(here.a, here.count) * pair->bound +
+                         quad_norm(away.a, away.count) * back.bound;
         result->touched |= there->rank < d;
         result->undecided |= there->undecided;
     }
