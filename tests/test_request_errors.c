@@ -134,9 +134,12 @@ static void evaluate_refuses_subsets_without_an_end(const test_case *test)
     subject *own = subject_create(test);
     static const uint8_t mask[SUBJECT_COUNT] = {1};
     static const int32_t some[] = {3};
-    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset.mask is set, but subset.end is 0",
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT,
+            "subset.mask is set, but subset.end is 0; sphg_masked(mask, target_count) sets both",
             own->subset = (sphg_subset){.mask = mask});
-    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "subset.indices is set, but subset.end is 0",
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT,
+            "subset.indices is set, but subset.end is 0; if nobody is meant, indices is NULL, as "
+            "sphg_listed(indices, 0) makes it",
             own->subset = (sphg_subset){.indices = some});
     const sphg_subset empty[] = {sphg_listed(some, 0),
                                  sphg_range(0, 0),

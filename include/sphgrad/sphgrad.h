@@ -414,7 +414,8 @@ typedef struct sphg_subset {
     int32_t begin, end;     /* targets [begin, end), or the items [begin, end) of indices */
     const int32_t *indices; /* NULL, or target indices without duplicates */
     const uint8_t *mask;    /* NULL, or target_count bytes: 0 leaves a target out */
-} sphg_subset;              /* indices or mask with end = 0: refused, unless there are no targets */
+} sphg_subset; /* indices or mask with end = 0: refused as forgotten, unless there are no targets; a
+                  list that may be empty has indices = NULL then, as sphg_listed gives it */
 
 static inline sphg_subset sphg_range(int32_t begin, int32_t end)
 {

@@ -381,8 +381,12 @@ sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset is [%d, %d) of %d targets", f, (int)subset->begin,
                (int)subset->end, (int)target_count);
     if ((subset->indices || subset->mask) && !subset->end && target_count > 0)
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset.%s is set, but subset.end is 0; sphg_%s sets both",
-               f, subset->indices ? "indices" : "mask", subset->indices ? "listed" : "masked");
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               subset->indices ? "%s: subset.indices is set, but subset.end is 0; if nobody is "
+                                 "meant, indices is NULL, as sphg_listed(indices, 0) makes it"
+                               : "%s: subset.mask is set, but subset.end is 0; "
+                                 "sphg_masked(mask, target_count) sets both",
+               f);
     for (int32_t k = subset->begin; subset->indices && k < subset->end; ++k)
         if (subset->indices[k] < 0 || subset->indices[k] >= target_count)
             REFUSE(SPHG_ERROR_ARGUMENT, "%s: subset.indices[%d] is %d of %d targets", f, (int)k,
