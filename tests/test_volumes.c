@@ -3,6 +3,7 @@
 #include "support/random.h"
 #include "support/stage.h"
 #include <math.h>
+#include <string.h>
 
 /* Volumes between a particle's share and 10^decades times that; each twentieth 10^12 times. */
 static stage uneven_stage(const test_case *test, const char *name, cloud points, double decades,
@@ -169,6 +170,19 @@ static void few_particles_stay_within_their_bounds(const test_case *test)
     }
 }
 
+/* The worst found by climbing: W alone is off by nearly its limit, and A_j V_j by more. */
+static void a_value_of_one_pair_stays_within_its_bound(const test_case *test)
+{
+    cloud pair = cloud_pair(test->dimension, .25);
+    const double place[] = {0x1.9e58e6p-7, 0x1.93a78p-7, 0}, volume[] = {.25, 0x1.2f1ca8p-2};
+    double numbers[] = {0, 0x1.0b6d0cp-1};
+    memcpy(pair.x + test->dimension, place, (size_t)test->dimension * sizeof *place);
+    const stage even = stage_of(test, "pair", pair, 1), on = stage_with_volumes(&even, volume);
+    const stage_field field = {SPHG_SCALAR, SPHG_DIRECT, numbers};
+    const stage_result found = stage_apply(&on, &field, NULL);
+    stage_compare(&on, &field, &found, 0);
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(smallest_moments_are_never_negative, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
@@ -177,6 +191,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(every_form_matches_the_oracle, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS,
                TEST_BIT(SPHG_CUBIC_SPLINE) | TEST_BIT(SPHG_QUINTIC_SPLINE) | TEST_BIT(SPHG_POLY6)),
+    TEST_ENTRY(a_value_of_one_pair_stays_within_its_bound, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, TEST_BIT(SPHG_WENDLAND_C6)),
     TEST_ENTRY(few_particles_stay_within_their_bounds, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED,
                TEST_BIT(SPHG_CUBIC_SPLINE) | TEST_BIT(SPHG_WENDLAND_C6) | TEST_BIT(SPHG_POLY6)),

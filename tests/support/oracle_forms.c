@@ -217,7 +217,7 @@ static quad interpolation_weight(const oracle_scene *scene, const oracle_point *
         return pair->s * sum;
     }
     oracle_weights at = oracle_weights_at(scheme->kernel, d, scheme->support_radius, pair->r);
-    *bound = scene->volume[pair->j] * (at.w + pair->r * pair->r * quad_abs(at.slope));
+    *bound = scene->volume[pair->j] * (2 * at.w + pair->r * pair->r * quad_abs(at.slope));
     return scene->volume[pair->j] * at.w;
 }
 
