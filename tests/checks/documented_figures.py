@@ -94,6 +94,26 @@ def check_ranks(table, sweep, rows):
     return checked
 
 
+def check_kernels(table, program):
+    """The worst of a few cases is no worse than what stands there of all."""
+    for row in table[1:]:
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([program, "stability", "--quick", "--sweep", "jitter", "--repetitions", "4",
+                            "--compare", "8", "--kernel", row[0], "--threads", "2", "--output", folder],
+                           check=True, stdout=subprocess.DEVNULL)
+            with open(os.path.join(folder, "stability.csv"), encoding="utf-8") as file:
+                next(file)
+                cases = list(csv.DictReader(file))
+        for cell, column, methods in ((row[1], "ratio_full", METHODS[:3]), (row[2], "ratio_full", ["SPH"]),
+                                      (row[3], "ratio_touched", METHODS)):
+            worst = max(float(case[column]) for case in cases if case["method"] in methods)
+            most = cell.split(" to ")[-1]
+            if not 0 < worst <= float(most) + half_of_last_digit(most):
+                complain(f"docs/stability.md, {row[0]}, {column}: '{cell}', but measured {worst:.5g}")
+    if len(table) != 8:
+        complain("docs/stability.md does not speak of seven kernels")
+
+
 def read(*path):
     with open(os.path.join(*path), encoding="utf-8") as file:
         return file.read()
@@ -143,6 +163,7 @@ def main():
     check_counts(root, hostile, names)
     check_readme(root, program, example)
     by_head = {table[0][0]: table for table in tables(text)}
+    check_kernels(by_head["kernel"], program)
     commands = re.findall(r"--sweep (\w+) --repetitions (\d+) --compare 1", text)
     sweeps = [(sweep, count) for sweep, count in commands if sweep not in LONG | DROPPED]
     if sorted(sweep for sweep, _ in sweeps) != ["jitter", "slab", "threshold", "volumes"]:
