@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """documented_figures.py ROOT SPHGRAD_BENCH TEST_HOSTILE_ARGUMENTS PUBLIC_NAMES EXAMPLE [SEED...]: figures of the
 documents beside what their commands print today: the tables of docs/stability.md, the counts of
-docs/reliability.md, the errors in the README.
+docs/reliability.md, the errors in the README, the angles of normals in docs/applications.md.
 "a to b" is a range, and each number stands for all that round to it. The commands that take minutes are left
 out."""
 import csv
+import json
 import os
 import re
 import subprocess
@@ -94,6 +95,26 @@ def check_ranks(table, sweep, rows):
     return checked
 
 
+def check_normals(root, folder, seed):
+    """Angles of a scene that takes half a second."""
+    scene = os.path.join(folder, "normals")
+    if not os.path.exists(scene):
+        return
+    printed = subprocess.run([scene, "--seed", seed], check=True, stdout=subprocess.PIPE, text=True).stdout
+    found = {line["method"]: line for line in map(json.loads, re.findall(r"^{.*}$", printed, re.M))}
+    rows = next(t for t in tables(read(root, "docs", "applications.md")) if "[degrees]" in t[0][0])
+    keys = {"plane, mean": "plane_mean_degrees", "plane, worst": "plane_max_degrees",
+            "sphere of 12 r, mean": "sphere_mean_degrees", "sphere, worst": "sphere_max_degrees"}
+    checked = [row for row in rows if row[0] in keys]
+    for row in checked:
+        for cell, method in zip(row[1:3], ("sph", "kgc"), strict=True):
+            value = found[method][keys[row[0]]]
+            if not agrees(cell, value, False):
+                complain(f"docs/applications.md, {row[0]}, {method}, seed {seed}: '{cell}', but measured {value:.5g}")
+    if len(checked) != len(keys):
+        complain("docs/applications.md has other rows of normals")
+
+
 def check_kernels(table, program):
     """The worst of a few cases is no worse than what stands there of all."""
     for row in table[1:]:
@@ -163,6 +184,8 @@ def main():
     check_counts(root, hostile, names)
     check_readme(root, program, example)
     by_head = {table[0][0]: table for table in tables(text)}
+    for seed in ("2", "6"):
+        check_normals(root, os.path.dirname(example), seed)
     check_kernels(by_head["kernel"], program)
     commands = re.findall(r"--sweep (\w+) --repetitions (\d+) --compare 1", text)
     sweeps = [(sweep, count) for sweep, count in commands if sweep not in LONG | DROPPED]
