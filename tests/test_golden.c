@@ -310,18 +310,18 @@ static void baseline_results_are_those_of_any_compiler(const test_case *test)
 #ifdef __x86_64__
     /* [precision][method][lists of ours, the host's] */
     static const uint64_t pinned[2][6][2] = {
-        {{UINT64_C(0x40afc95cf77cf070), UINT64_C(0xa5f1ae7d644d2872)},
-         {UINT64_C(0xfeebf79bc799139b), UINT64_C(0x8f581b815be35529)},
-         {UINT64_C(0xda88aa1ede652630), UINT64_C(0x3222d41cfa08d669)},
-         {UINT64_C(0xd726e9502eb416a5), UINT64_C(0xb8626801bee53dbe)},
-         {UINT64_C(0x3e75091e6a198fd8), UINT64_C(0x6623772a7c267d05)},
-         {UINT64_C(0xf717396b97534b39), UINT64_C(0xe67862ac8b6701c5)}},
-        {{UINT64_C(0x2e64262984312c5f), UINT64_C(0x6c51264e77595de3)},
-         {UINT64_C(0xadfc3d1cb433ac66), UINT64_C(0x3ac3e9bc8c7891bb)},
-         {UINT64_C(0xc793bd88e7ac6f45), UINT64_C(0x55d2eb9442618261)},
-         {UINT64_C(0x0bedbe517e36ca5d), UINT64_C(0x279e397761adcd84)},
-         {UINT64_C(0x0414d01e8039a287), UINT64_C(0x6ce10fe1dad04ac3)},
-         {UINT64_C(0x589b8994f805f1c5), UINT64_C(0x30b2a4d6b9e394e2)}}};
+        {{UINT64_C(0x9cbf625bcc2bfc2d), UINT64_C(0xa5f1ae7d644d2872)},
+         {UINT64_C(0xd286912a5112ae51), UINT64_C(0x8f581b815be35529)},
+         {UINT64_C(0xd39e914b20c55d8a), UINT64_C(0x3222d41cfa08d669)},
+         {UINT64_C(0x311f9203658d756b), UINT64_C(0xb8626801bee53dbe)},
+         {UINT64_C(0xa4cc358b37920427), UINT64_C(0x6623772a7c267d05)},
+         {UINT64_C(0x999ce37f9ea84ec0), UINT64_C(0xe67862ac8b6701c5)}},
+        {{UINT64_C(0xd65497b8f3e1f324), UINT64_C(0x6c51264e77595de3)},
+         {UINT64_C(0xe3c41028b725c18e), UINT64_C(0x3ac3e9bc8c7891bb)},
+         {UINT64_C(0x20ee274d9fde8ed6), UINT64_C(0x55d2eb9442618261)},
+         {UINT64_C(0xf1fac6d6666f869d), UINT64_C(0x279e397761adcd84)},
+         {UINT64_C(0xf5c6243d533d7572), UINT64_C(0x6ce10fe1dad04ac3)},
+         {UINT64_C(0x1dd3ced0fd2c8e8c), UINT64_C(0x30b2a4d6b9e394e2)}}};
     const setting own = setting_of(test);
     const sphg_config serial = {.isa = SPHG_ISA_BASE, .threads = 1};
     const hashes found = run_under(&own, &serial, NULL);

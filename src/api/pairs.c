@@ -174,13 +174,8 @@ static sphg_result check_pairs(struct exporting *e)
 static bool are_lengths_counts(const struct exporting *e)
 {
     const sphg_neighbors *n = e->plan->sets[0].neighbors;
-    if (n->kind != SPHGI_SEARCHED || n->list_free || n->skin > 0 ||
-        e->plan->scheme.radius != n->radius)
-        return false;
-    for (int32_t b = 0; b < sphgi_target_grid(n)->block_count; ++b)
-        if (!sphgi_is_kept(n, b) || sphgi_is_kept_wide(n, b))
-            return false;
-    return true;
+    return n->kind == SPHGI_SEARCHED && !n->list_free && !n->found.crowded && n->skin == 0 &&
+           e->plan->scheme.radius == n->radius;
 }
 
 static void count_by_lengths(struct exporting *e)

@@ -125,7 +125,7 @@ SPHGI_TEMPLATE void transposed_classic_as(const struct sphgi_tile *tile, const v
                           three ? from(tile, SPHGI_Z, k) : splat(R(0))};
         vec polynomial[4];
         for (int32_t m = 0; m <= d; ++m) {
-            const struct four c = gather_rows(rows[m], tile->ids + k);
+            const struct four c = gather_rows(rows[m], ids_at(tile, k));
             polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
             if (three)
                 polynomial[m] += c.w * x[2];

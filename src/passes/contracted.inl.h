@@ -28,7 +28,7 @@ SPHGI_TEMPLATE void differences(const struct sphgi_tile *tile, int32_t k, const 
                                 const vec *own, int count, vec *difference)
 {
     for (int c = 0; c < count; c += SPHGI_ROW) {
-        const struct four row = gather_rows(rows[c / SPHGI_ROW], tile->ids + k);
+        const struct four row = gather_rows(rows[c / SPHGI_ROW], ids_at(tile, k));
         const vec value[4] = {row.x, row.y, row.z, row.w};
         for (int n = 0; n < SPHGI_ROW && c + n < count; ++n)
             difference[c + n] = value[n] - own[c + n];
@@ -123,7 +123,7 @@ SPHGI_TEMPLATE void squares_as(const struct sphgi_tile *tile, enum sphgi_vectors
     vec sum[6];
     clear(sum, count);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const vec a = gather_rows(rows, tile->ids + k).x - off;
+        const vec a = gather_rows(rows, ids_at(tile, k)).x - off;
         vec g[3];
         vectors_at(tile, k, vectors, three, g);
         vec square = g[0] * g[0];

@@ -45,19 +45,21 @@ SPHGI_TEMPLATE vec square_of(double length)
     return rounded(splat(R(length)) * splat(R(length)));
 }
 
+enum { AHEAD = 64 /* steps: ids come from memory, those to come are asked for */ };
+
 /* LANES ids: those of what is no pair become the dummy's, for a field that is not finite must not
  * enter through 0 * NaN. */
-SPHGI_TEMPLATE void keep_ids(mask inside, uint32_t dummy, uint32_t *ids)
+SPHGI_TEMPLATE void keep_ids(mask inside, uint32_t dummy, const uint32_t *ids, uint32_t *to)
 {
 #if VECTOR_BYTES == 64 && REAL_IS_F64
     _mm256_storeu_epi32(
-        ids, _mm256_mask_loadu_epi32(_mm256_set1_epi32((int)dummy), (__mmask8)inside, ids));
+        to, _mm256_mask_loadu_epi32(_mm256_set1_epi32((int)dummy), (__mmask8)inside, ids));
 #elif VECTOR_BYTES == 64
     _mm512_storeu_epi32(
-        ids, _mm512_mask_loadu_epi32(_mm512_set1_epi32((int)dummy), (__mmask16)inside, ids));
+        to, _mm512_mask_loadu_epi32(_mm512_set1_epi32((int)dummy), (__mmask16)inside, ids));
 #else
     typedef uint32_t lane_ids __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
     const lane_ids keep = __builtin_convertvector(inside, lane_ids);
-    *(lane_ids *)ids = (*(const lane_ids *)ids & keep) | (((lane_ids){0} + dummy) & ~keep);
+    *(lane_ids *)to = (*(const lane_ids *)ids & keep) | (((lane_ids){0} + dummy) & ~keep);
 #endif
 }

@@ -28,9 +28,12 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const v
     const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
     const vec far = splat(R(2 * g->cutoff));
     const struct wraps w = wraps_of(g->period);
-    uint32_t *ids = tile->ids + first;
+    const uint32_t *ids = tile->ids + first;
+    const ptrdiff_t stride = tile->id_stride;
+    uint32_t *kept = tile->own_ids + first;
     OUT *at = (OUT *)tile->arrays + first;
-    for (int32_t k = 0; k < tile->steps; ++k, at += lanes, ids += lanes) {
+    for (int32_t k = 0; k < tile->steps; ++k, at += lanes, ids += stride, kept += lanes) {
+        __builtin_prefetch(ids + AHEAD * stride);
         const struct four row = gather_rows(g->rows, ids);
         vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         mask inside = first_lanes(0);
@@ -41,7 +44,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const v
         }
         if (how.guarded) {
             inside = less(square_distance(dx, dy, dz), cutoff);
-            keep_ids(inside, g->dummy, ids);
+            keep_ids(inside, g->dummy, ids, kept);
             dx = where(inside, dx);
             dy = where(inside, dy);
             dz = where(inside, dz);
@@ -74,6 +77,10 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void
 {
     for (int32_t first = 0; first < lanes; first += LANES)
         OUT_NAME(gather_lanes)(g, x, lanes, first, tile, how);
+    if (how.guarded) {
+        tile->ids = tile->own_ids;
+        tile->id_stride = lanes;
+    }
 }
 
 /* Every combination; periodic ones are always guarded. */

@@ -2,114 +2,62 @@
 
 /* ---- Side by side --------------------------------------------------------------------------- */
 
-typedef uint16_t eight_ids __attribute__((vector_size(16), aligned(2), may_alias));
-typedef uint32_t eight_wide_ids __attribute__((vector_size(32), aligned(4), may_alias));
-#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 >= 8
-enum { LANES_AT_ONCE = 8 };
+typedef uint32_t four_ids __attribute__((vector_size(16), aligned(4), may_alias));
+
+SPHGI_TEMPLATE const uint32_t *four_from(const uint32_t *list, int32_t count, int32_t k,
+                                         const four_ids *none)
+{
+    return k < count ? list + k : (const uint32_t *)none;
+}
+
+/* Four steps of four lists from step k on. */
+SPHGI_TEMPLATE void turn_four(const uint32_t *const *lists, const int32_t *count, int32_t k,
+                              const four_ids *none, ptrdiff_t stride, uint32_t *to)
+{
+    four_ids a[4];
+    for (int32_t i = 0; i < 4; ++i)
+        a[i] = *(const four_ids *)four_from(lists[i], count[i], k, none);
+    const four_ids ac = __builtin_shufflevector(a[0], a[2], 0, 4, 1, 5);
+    const four_ids AC = __builtin_shufflevector(a[0], a[2], 2, 6, 3, 7);
+    const four_ids bd = __builtin_shufflevector(a[1], a[3], 0, 4, 1, 5);
+    const four_ids BD = __builtin_shufflevector(a[1], a[3], 2, 6, 3, 7);
+    *(four_ids *)to = __builtin_shufflevector(ac, bd, 0, 4, 1, 5);
+    *(four_ids *)(to + stride) = __builtin_shufflevector(ac, bd, 2, 6, 3, 7);
+    *(four_ids *)(to + 2 * stride) = __builtin_shufflevector(AC, BD, 0, 4, 1, 5);
+    *(four_ids *)(to + 3 * stride) = __builtin_shufflevector(AC, BD, 2, 6, 3, 7);
+}
+
+#if VECTOR_BYTES >= 32 && !REAL_IS_F64
+/* Ids are as long as numbers, and travel like rows of four: no arithmetic touches them. */
+SPHGI_TEMPLATE void turn_lanes(const uint32_t *const *lists, const int32_t *count, int32_t k,
+                               const four_ids *none, ptrdiff_t stride, uint32_t *to)
+{
+    const real *row[LANES];
+    for (int32_t l = 0; l < LANES; ++l)
+        row[l] = (const real *)(const void *)four_from(lists[l], count[l], k, none);
+    const struct four v = transpose(row);
+    real *out = (real *)(void *)to;
+    store(out, v.x);
+    store(out + stride, v.y);
+    store(out + 2 * stride, v.z);
+    store(out + 3 * stride, v.w);
+}
+enum { TURNED = LANES };
 #else
-enum { LANES_AT_ONCE = LANES };
-#endif
-typedef uint16_t narrow_ids __attribute__((vector_size(2 * LANES_AT_ONCE), aligned(2), may_alias));
-typedef uint32_t wide_ids __attribute__((vector_size(4 * LANES_AT_ONCE), aligned(4), may_alias));
-
-/* Eight ids each of eight lists, turned. */
-SPHGI_TEMPLATE void turn_ids(const eight_ids *a, eight_ids *out)
-{
-    eight_ids b[8], c[8];
-    for (int k = 0; k < 4; ++k) { /* lists k, k + 4 */
-        b[2 * k] = __builtin_shufflevector(a[k], a[k + 4], 0, 8, 1, 9, 2, 10, 3, 11);
-        b[2 * k + 1] = __builtin_shufflevector(a[k], a[k + 4], 4, 12, 5, 13, 6, 14, 7, 15);
-    }
-    for (int k = 0; k < 2; ++k) /* lists k, k + 2, k + 4, k + 6 */
-        for (int h = 0; h < 2; ++h) {
-            const eight_ids x = b[2 * k + h], y = b[2 * (k + 2) + h];
-            c[4 * k + 2 * h] = __builtin_shufflevector(x, y, 0, 8, 1, 9, 2, 10, 3, 11);
-            c[4 * k + 2 * h + 1] = __builtin_shufflevector(x, y, 4, 12, 5, 13, 6, 14, 7, 15);
-        }
-    for (int h = 0; h < 4; ++h) {
-        out[2 * h] = __builtin_shufflevector(c[h], c[4 + h], 0, 8, 1, 9, 2, 10, 3, 11);
-        out[2 * h + 1] = __builtin_shufflevector(c[h], c[4 + h], 4, 12, 5, 13, 6, 14, 7, 15);
-    }
-}
-
-/* Eight steps of eight lists from step k on; a list is padded to eight, behind that are dummies. */
-SPHGI_TEMPLATE void take_eight(const uint16_t *const *lists, const int32_t *count, int32_t k,
-                               eight_ids *out)
-{
-    static const eight_ids none = {0};
-    eight_ids in[8];
-    for (int32_t i = 0; i < 8; ++i)
-        in[i] = *(k < count[i] ? (const eight_ids *)(lists[i] + k) : &none);
-    turn_ids(in, out);
-}
-
-static void weave(const uint16_t *const *lists, const int32_t *count, int32_t lanes, int32_t steps,
-                  uint16_t *to)
-{
-    if (lanes % 8) {
-        for (int32_t l = 0; l < lanes; ++l)
-            for (int32_t k = 0; k < steps; ++k)
-                to[k * lanes + l] = k < count[l] ? lists[l][k] : 0;
-        return;
-    }
-    for (int32_t k = 0; k < steps; k += 8)
-        for (int32_t l = 0; l < lanes; l += 8) {
-            eight_ids out[8];
-            take_eight(lists + l, count + l, k, out);
-            for (int32_t i = 0; i < 8 && k + i < steps; ++i)
-                *(eight_ids *)(to + (k + i) * lanes + l) = out[i];
-        }
-}
-
-/* A step of lists that stand side by side already. (GCC makes five instructions of what is one.) */
-SPHGI_TEMPLATE void widen_step(const uint16_t *from, uint32_t *to)
-{
-#if VECTOR_BYTES == 64 && !REAL_IS_F64
-    _mm512_storeu_si512(to, _mm512_cvtepu16_epi32(_mm256_loadu_si256((const void *)from)));
-#elif VECTOR_BYTES == 64 || (VECTOR_BYTES == 32 && !REAL_IS_F64)
-    _mm256_storeu_si256((void *)to, _mm256_cvtepu16_epi32(_mm_loadu_si128((const void *)from)));
-#else
-    for (int32_t l = 0; l < LANES; l += LANES_AT_ONCE)
-        *(wide_ids *)(to + l) = __builtin_convertvector(*(const narrow_ids *)(from + l), wide_ids);
-#endif
-}
-
-/* They come from memory: those to come are asked for. */
-SPHGI_TEMPLATE void widen(const uint16_t *from, ptrdiff_t stride, struct sphgi_tile *tile)
-{
-    enum { AHEAD = 64 }; /* steps */
-    const int32_t steps = tile->steps;
-    uint32_t *to = tile->ids;
-    int32_t k = 0;
-    for (; k + 4 <= steps; k += 4, from += 4 * stride, to += 4 * LANES) {
-        __builtin_prefetch(from + AHEAD * stride);
-        __builtin_prefetch(from + (AHEAD + 2) * stride);
-        widen_step(from, to);
-        widen_step(from + stride, to + LANES);
-        widen_step(from + 2 * stride, to + 2 * LANES);
-        widen_step(from + 3 * stride, to + 3 * LANES);
-    }
-    for (; k < steps; ++k, from += stride, to += LANES)
-        widen_step(from, to);
-}
-
-#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 >= 8
-/* Each padded to SPHGI_PAD; tile->ids has room for as many steps. */
-SPHGI_TEMPLATE void interleave_padded(const struct sphgi_lane_lists *lists, int32_t begin,
-                                      struct sphgi_tile *tile)
-{
-    for (int32_t k = 0; k < tile->steps; k += 8)
-        for (int32_t l = 0; l < LANES; l += 8) {
-            eight_ids out[8];
-            take_eight((const uint16_t *const *)(lists->ids + l), lists->count + l, begin + k, out);
-            for (int32_t i = 0; i < 8; ++i)
-                *(eight_wide_ids *)(tile->ids + (k + i) * LANES + l) =
-                    __builtin_convertvector(out[i], eight_wide_ids);
-        }
-}
+enum { TURNED = 4 };
+#define turn_lanes turn_four
 #endif
 
-SPHGI_TEMPLATE bool are_padded(const struct sphgi_lane_lists *lists)
+static void weave(const uint32_t *const *lists, const int32_t *count, int32_t steps, uint32_t dummy,
+                  uint32_t *to)
+{
+    const four_ids none = (four_ids){0} + dummy;
+    for (int32_t k = 0; k < steps; k += 4, to += 4 * SPHGI_GROUP)
+        for (int32_t l = 0; l < SPHGI_GROUP; l += TURNED)
+            turn_lanes(lists + l, count + l, k, &none, SPHGI_GROUP, to + l);
+}
+
+SPHGI_TEMPLATE bool follow_one_another(const struct sphgi_lane_lists *lists)
 {
     int32_t far = 0;
     for (int32_t l = 0; l < LANES; ++l)
@@ -117,14 +65,33 @@ SPHGI_TEMPLATE bool are_padded(const struct sphgi_lane_lists *lists)
     return !far;
 }
 
-SPHGI_TEMPLATE void interleave_narrow(const struct sphgi_lane_lists *lists, int32_t begin,
-                                      struct sphgi_tile *tile)
+SPHGI_TEMPLATE void interleave_padded(const struct sphgi_lane_lists *lists, int32_t begin,
+                                      uint32_t dummy, struct sphgi_tile *tile)
+{
+    const four_ids none = (four_ids){0} + dummy;
+    uint32_t *to = tile->own_ids;
+    for (int32_t k = 0; k < tile->steps; k += 4, to += 4 * LANES) {
+#if VECTOR_BYTES == 16 && REAL_IS_F64
+        for (int32_t l = 0; l < LANES; ++l)
+            for (int32_t i = 0; i < 4; ++i)
+                to[i * LANES + l] =
+                    begin + k < lists->count[l] ? lists->ids[l][begin + k + i] : none[0];
+#else
+        for (int32_t l = 0; l < LANES; l += TURNED)
+            turn_lanes(lists->ids + l, lists->count + l, begin + k, &none, LANES, to + l);
+#endif
+    }
+}
+
+SPHGI_TEMPLATE void interleave_apart(const struct sphgi_lane_lists *lists, int32_t begin,
+                                     uint32_t dummy, struct sphgi_tile *tile)
 {
     for (int32_t l = 0; l < LANES; ++l) {
-        const int32_t stride = lists->stride[l], left = lists->count[l] - begin;
+        const ptrdiff_t stride = lists->stride[l];
+        const int32_t left = lists->count[l] - begin;
         const int32_t count = left < tile->steps ? left : tile->steps;
-        const uint16_t *ids = (const uint16_t *)lists->ids[l] + (ptrdiff_t)begin * stride;
-        uint32_t *to = tile->ids + l;
+        const uint32_t *ids = lists->ids[l] + begin * stride;
+        uint32_t *to = tile->own_ids + l;
         int32_t k = 0;
         for (; k + 4 <= count; k += 4, ids += 4 * stride, to += 4 * LANES) {
             to[0] = ids[0];
@@ -132,59 +99,26 @@ SPHGI_TEMPLATE void interleave_narrow(const struct sphgi_lane_lists *lists, int3
             to[2 * LANES] = ids[2 * stride];
             to[3 * LANES] = ids[3 * stride];
         }
-        for (; k < tile->steps; ++k, ids += stride, to += LANES)
-            *to = k < count ? *ids : 0;
+        for (; k < count; ++k, ids += stride, to += LANES)
+            *to = *ids;
+        for (; k < tile->steps; ++k, to += LANES)
+            *to = dummy;
     }
 }
 
-#if VECTOR_BYTES == 16 && REAL_IS_F64
-SPHGI_TEMPLATE void interleave_wide(const struct sphgi_lane_lists *lists, struct sphgi_tile *tile)
+static void interleave(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,
+                       struct sphgi_tile *tile)
 {
-    for (int32_t l = 0; l < LANES; ++l)
-        for (int32_t k = 0; k < tile->steps; ++k)
-            tile->ids[k * LANES + l] =
-                k < lists->count[l] ? ((const uint32_t *)lists->ids[l])[k] : lists->dummy;
-}
-#else
-typedef uint32_t four_ids __attribute__((vector_size(16), aligned(4), may_alias));
-
-/* Lists are padded to four with the dummy; tile->ids has room for as many steps. */
-SPHGI_TEMPLATE void interleave_wide(const struct sphgi_lane_lists *lists, struct sphgi_tile *tile)
-{
-    const four_ids none = (four_ids){0} + lists->dummy;
-    for (int32_t l = 0; l < LANES; l += 4)
-        for (int32_t k = 0; k < tile->steps; k += 4) {
-            four_ids a[4];
-            for (int32_t i = 0; i < 4; ++i) {
-                const four_ids *from = (const four_ids *)((const uint32_t *)lists->ids[l + i] + k);
-                a[i] = *(k < lists->count[l + i] ? from : &none);
-            }
-            const four_ids ac = __builtin_shufflevector(a[0], a[2], 0, 4, 1, 5);
-            const four_ids AC = __builtin_shufflevector(a[0], a[2], 2, 6, 3, 7);
-            const four_ids bd = __builtin_shufflevector(a[1], a[3], 0, 4, 1, 5);
-            const four_ids BD = __builtin_shufflevector(a[1], a[3], 2, 6, 3, 7);
-            uint32_t *to = tile->ids + k * LANES + l;
-            *(four_ids *)to = __builtin_shufflevector(ac, bd, 0, 4, 1, 5);
-            *(four_ids *)(to + LANES) = __builtin_shufflevector(ac, bd, 2, 6, 3, 7);
-            *(four_ids *)(to + 2 * LANES) = __builtin_shufflevector(AC, BD, 0, 4, 1, 5);
-            *(four_ids *)(to + 3 * LANES) = __builtin_shufflevector(AC, BD, 2, 6, 3, 7);
-        }
-}
-#endif
-
-static void interleave(const struct sphgi_lane_lists *lists, int32_t begin, struct sphgi_tile *tile)
-{
-    if (lists->wide)
-        interleave_wide(lists, tile);
-    else if (lists->side_by_side)
-        widen((const uint16_t *)lists->ids[0] + (ptrdiff_t)begin * lists->stride[0],
-              lists->stride[0], tile);
-#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 >= 8
-    else if (are_padded(lists))
-        interleave_padded(lists, begin, tile);
-#endif
-    else
-        interleave_narrow(lists, begin, tile);
+    tile->ids = tile->own_ids;
+    tile->id_stride = LANES;
+    if (lists->side_by_side) {
+        tile->ids = lists->ids[0] + (ptrdiff_t)begin * lists->stride[0];
+        tile->id_stride = lists->stride[0];
+    } else if (follow_one_another(lists)) {
+        interleave_padded(lists, begin, dummy, tile);
+    } else {
+        interleave_apart(lists, begin, dummy, tile);
+    }
 }
 
 /* ---- The host's numbers --------------------------------------------------------------------- */

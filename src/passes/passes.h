@@ -19,7 +19,7 @@
 enum {
     SPHGI_ROW = 4,         /* numbers in a row */
     SPHGI_PAD = 8,         /* lists are padded to a multiple of this */
-    SPHGI_ID_STEP = 2,     /* 16-bit ids are staged numbers times this: a row of f32 then stands at
+    SPHGI_ID_STEP = 2,     /* ids are numbers of rows times this: a row of f32 then stands at
                               base + 8 * id [byte], which needs no shift */
     SPHGI_LANES_MOST = 16, /* of any scalar type and instruction set */
     SPHGI_CHUNK = 64,      /* pairs: twice the usual number of neighbours. A sum is rounded like one
@@ -29,6 +29,7 @@ enum {
     SPHGI_TILE = SPHGI_CHUNK * SPHGI_LANES_MOST + 16, /* numbers in an array: no power of two, lest
                                                          the arrays share lines of the cache */
     SPHGI_WIDTH = 32,                                 /* targets that are finished together */
+    SPHGI_GROUP = 16,                                 /* targets whose lists stand side by side */
     SPHGI_FIND_MOST = 16                              /* targets that share one set of candidates */
 };
 
@@ -70,7 +71,9 @@ enum sphgi_vectors {
 
 struct sphgi_tile {
     void *arrays;
-    uint32_t *ids;     /* [step][lane]: of rows; the dummy where there is no pair */
+    const uint32_t *ids; /* of rows: [step][lane]; the dummy's where there is no pair */
+    ptrdiff_t id_stride; /* from step to step */
+    uint32_t *own_ids;   /* SPHGI_TILE: room for ids that do not stand like this in memory */
     int32_t steps;     /* SPHGI_CHUNK at most */
     int32_t chunk;     /* of the lists, that the tile holds: 0 starts the sums */
     bool spread;       /* the lanes hold one list, a chunk each */
@@ -79,16 +82,14 @@ struct sphgi_tile {
 
 /* Lists to be laid side by side, one for each lane. */
 struct sphgi_lane_lists {
-    const void *ids[SPHGI_LANES_MOST];
+    const uint32_t *ids[SPHGI_LANES_MOST];
     int32_t count[SPHGI_LANES_MOST];
-    int32_t stride[SPHGI_LANES_MOST]; /* of 16-bit ids */
-    bool wide;                        /* ids are uint32_t, else uint16_t */
+    int32_t stride[SPHGI_LANES_MOST]; /* from one id to the next */
     bool side_by_side;                /* they stand as the tile wants them, dummies included */
-    uint32_t dummy;
 };
 
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
- * its weight is 0, and with fields of 0. Guarded ones test each pair; their dummy is NaN. */
+ * its weight is 0, and with fields of 0. Guarded ones test each pair; their dummy may be NaN. */
 struct sphgi_gather {
     const void *rows; /* x y z V of the sources */
     double unit;      /* what x_ij is multiplied with: 1, classic 1 / H */
@@ -161,21 +162,23 @@ struct sphgi_periods {
     double limit[3];  /* coordinates beyond it are taken into the box; open: infinite */
 };
 
-/* Staged runs that hold the candidates of a cell; the first one holds the cell itself, from staged
- * number `own` on. */
+/* Runs of rows that hold the candidates of a cell; the first one holds the cell itself, from row
+ * `own` on. */
+enum { SPHGI_RUNS_MOST = 27 };
 struct sphgi_runs {
     int32_t count, candidates, own;
-    int32_t begin[9], length[9];
+    int32_t begin[SPHGI_RUNS_MOST], length[SPHGI_RUNS_MOST];
 };
 
-/* A search among staged sources. */
+/* A search among sources. */
 struct sphgi_find {
-    const void *x, *y, *z; /* staged coordinates, readable 8 items past each run */
+    const void *rows; /* x y z of the sources; SPHGI_LANES_MOST - 1 rows past each run are read */
     double reach;
     double slack; /* rounding of differences between images far apart [L] */
     double period[3];
     bool periodic;
-    void *scratch;                   /* 64 + 27 bytes per candidate */
+    uint32_t dummy;                  /* id that lists are padded with */
+    void *scratch;                   /* for the candidates, see find.c */
     const uint64_t *pack_order;      /* [256]: the positions of the set bits, a byte each */
     const uint8_t (*pack_bytes)[16]; /* [256]: the same for items of two bytes */
 };
@@ -202,29 +205,29 @@ struct sphgi_passes {
      * number. [0]: volumes are f32, [1]: f64. False: a volume is negative or not finite. */
     bool (*stage[2])(const void *positions, const struct sphgi_columns *volume, double factor,
                      const int32_t *order, int64_t begin, int64_t count, void *rows);
-    /* x, y, z of rows; up to SPHGI_LANES_MOST - 1 items more are read and written. */
-    void (*transpose_rows)(const void *rows, int32_t count, void *x, void *y, void *z);
     double (*largest_move)(const struct sphgi_periods *periods, const void *then, const void *now,
                            int64_t begin, int64_t end);
 
-    /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: staged number
-     * of the first, if it is a source, those of the others follow; else -1. Returns the number of
-     * ids written, padding included. */
+    /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: row of the
+     * first, if it is a source of the first run, those of the others follow; else -1. Lists stand one
+     * after the other, each in the order of the runs and padded to SPHGI_PAD. Returns the number of
+     * ids written. */
     int64_t (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                    const void *targets, int32_t count, int32_t self, uint16_t *ids,
-                    uint16_t *lengths);
+                    const void *targets, int32_t count, int32_t self, uint32_t *ids,
+                    int32_t *lengths);
 
     /* Pairs behind tile->ids into the arrays; x: row of each lane's target; lanes: of the tile.
      * [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const void *const *x, int32_t lanes,
                       struct sphgi_tile *tile);
 
-    /* Lists padded to a multiple of SPHGI_PAD side by side: [step][lane], 0 behind their ends. */
-    void (*weave)(const uint16_t *const *lists, const int32_t *count, int32_t lanes, int32_t steps,
-                  uint16_t *to);
-    /* Steps [begin, begin + tile->steps) of the lists into tile->ids. Those of 32-bit ids begin at
-     * 0 and are padded to a multiple of four with the dummy. */
-    void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin,
+    /* SPHGI_GROUP lists padded to four with the dummy, side by side: [step][list]. Steps are rounded
+     * up to four. */
+    void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, uint32_t dummy,
+                  uint32_t *to);
+    /* Steps [begin, begin + tile->steps) of the lists become the ids of the tile. Lists with a stride
+     * of 1 are padded to a multiple of four with the dummy. */
+    void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,
                        struct sphgi_tile *tile);
 
     bool (*clean_ids)(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,

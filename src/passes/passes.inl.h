@@ -51,7 +51,6 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .stage = {stage_f32},
     .gather = {gather_f32},
 #endif
-    .transpose_rows = transpose_rows,
     .largest_move = largest_move,
     .find = find,
     .weave = weave,

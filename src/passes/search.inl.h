@@ -1,48 +1,38 @@
-/* Search: which staged sources are neighbours of a few targets that lie close together. Candidates
+/* Search: which sources are neighbours of a few targets that lie close together. Candidates
  * within reach of the targets' bounding box are packed once; each target then tests the packed ones
  * with the exact predicate. Testing first and packing in a second loop over the stored bits is a
  * fifth faster than both in one loop (docs/design.md). */
 
-/* Coordinates of rows; whole vectors are read and written. */
-static void transpose_rows(const void *rows, int32_t count, void *x, void *y, void *z)
+/* ---- Coordinates ----------------------------------------------------------------------------- */
+
+struct three {
+    vec x, y, z;
+};
+
+/* Of LANES rows that follow one another. */
+SPHGI_TEMPLATE struct three coordinates_of(const real *rows)
 {
-    const real *from = rows;
-    real *to[3] = {x, y, z};
-    for (int32_t k = 0; k < count; k += LANES) {
-        const real *row[LANES];
-        for (int l = 0; l < LANES; ++l)
-            row[l] = from + SPHGI_ROW * (ptrdiff_t)(k + l);
-        const struct four four = transpose(row);
-        store(to[0] + k, four.x);
-        store(to[1] + k, four.y);
-        store(to[2] + k, four.z);
-    }
+    const real *row[LANES];
+    for (int l = 0; l < LANES; ++l)
+        row[l] = rows + SPHGI_ROW * l;
+    const struct four v = transpose(row);
+    return (struct three){v.x, v.y, v.z};
 }
 
 /* ---- Packing -------------------------------------------------------------------------------- */
 
 /* Each of these moves what belongs to the set bits of LANES to the front, and writes a whole
  * vector. A packing is made of the bits: pack_numbers moves numbers, number_ids makes the ids of
- * staged numbers, of which `first` holds the first one's. pack_tested moves TESTED ids, and returns
- * where the next ones go. */
+ * LANES rows, of which `first` is the first one's. pack_tested moves TESTED ids, and returns where
+ * the next ones go. */
 enum { TESTED = 2 * SPHGI_PAD }; /* candidates that are tested at a time */
 
 #if defined(__AVX512F__)
 typedef __mmask16 packing;
-typedef __m512i id_base; /* the ids of LANES numbers; the rest goes on */
 SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
 {
     (void)find;
     return (__mmask16)bits_of(lanes);
-}
-SPHGI_TEMPLATE id_base ids_from(int32_t number)
-{
-    const __m512i lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    return SPHGI_ID_STEP * _mm512_add_epi32(lanes, _mm512_set1_epi32(number));
-}
-SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
-{
-    return _mm512_add_epi32(first, _mm512_set1_epi32(SPHGI_ID_STEP * numbers));
 }
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing lanes)
 {
@@ -52,25 +42,23 @@ SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing lanes)
     store(to, (vec)_mm512_maskz_compress_ps(lanes, (__m512)v));
 #endif
 }
-SPHGI_TEMPLATE void write_ids(uint16_t *to, __m512i ids)
+SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing lanes)
 {
-    _mm256_storeu_si256((__m256i *)(void *)to, _mm512_cvtepi32_epi16(ids));
+    const __m512i numbers =
+        _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const __m512i ids =
+        _mm512_add_epi32(_mm512_set1_epi32((int)first), SPHGI_ID_STEP * numbers);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, ids));
 }
-SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing lanes)
-{
-    write_ids(to, _mm512_maskz_compress_epi32(lanes, first));
-}
-SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to,
-                                     const uint16_t *ids, uint16_t bits)
+SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
+                                     const uint32_t *ids, uint16_t bits)
 {
     (void)find;
-    const __m256i narrow = _mm256_loadu_si256((const __m256i *)(const void *)ids);
-    write_ids(to, _mm512_maskz_compress_epi32(bits, _mm512_cvtepu16_epi32(narrow)));
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bits, _mm512_loadu_si512(ids)));
     return to + __builtin_popcount(bits);
 }
 #elif defined(__aarch64__)
-typedef uint8x16_t packing;  /* where the bytes of a vector come from */
-typedef bit_pattern id_base; /* the ids of LANES numbers */
+typedef uint8x16_t packing; /* where the bytes of a vector come from */
 /* The table is for items of two bytes: a lane is as many of them. */
 SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
 {
@@ -81,38 +69,66 @@ SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
 #endif
     return vld1q_u8(find->pack_bytes[items]);
 }
-SPHGI_TEMPLATE id_base ids_from(int32_t number)
-{
-    return SPHGI_ID_STEP * (lane_numbers() + (lane_int)number);
-}
-SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
-{
-    return first + (lane_int)(SPHGI_ID_STEP * numbers);
-}
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing moved)
 {
     store(to, (vec)vqtbl1q_u8((uint8x16_t)v, moved));
 }
-SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing moved)
+SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing moved)
 {
-    const uint8x16_t ids = vqtbl1q_u8((uint8x16_t)first, moved);
+    const bit_pattern ids = (lane_int)first + SPHGI_ID_STEP * lane_numbers();
+    const uint32x4_t packed = (uint32x4_t)vqtbl1q_u8((uint8x16_t)ids, moved);
 #if REAL_IS_F64
-    vst1q_lane_u16(to, (uint16x8_t)ids, 0);
-    vst1q_lane_u16(to + 1, (uint16x8_t)ids, 4);
+    to[0] = vgetq_lane_u32(packed, 0);
+    to[1] = vgetq_lane_u32(packed, 2);
 #else
-    vst1_u16(to, vmovn_u32((uint32x4_t)ids));
+    vst1q_u32(to, packed);
 #endif
 }
-SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to,
-                                     const uint16_t *ids, uint16_t bits)
+SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
+                                     const uint32_t *ids, uint16_t bits)
 {
-    const uint8x8_t count = vcnt_u8((uint8x8_t)vdup_n_u16(bits));
-    const uint8x16_t low = vld1q_u8(find->pack_bytes[bits & 255]);
-    const uint8x16_t high = vld1q_u8(find->pack_bytes[bits >> SPHGI_PAD]);
-    vst1q_u8((uint8_t *)to, vqtbl1q_u8((uint8x16_t)vld1q_u16(ids), low));
-    to += vget_lane_u8(count, 0);
-    vst1q_u8((uint8_t *)to, vqtbl1q_u8((uint8x16_t)vld1q_u16(ids + SPHGI_PAD), high));
-    return to + vget_lane_u8(count, 1);
+    static const uint8_t items[16] = {0,   3,   12,  15,  48,  51,  60,  63,
+                                      192, 195, 204, 207, 240, 243, 252, 255};
+    for (int k = 0; k < TESTED; k += 4, ids += 4, bits >>= 4) {
+        const uint8x16_t moved = vld1q_u8(find->pack_bytes[items[bits & 15]]);
+        vst1q_u32(to, (uint32x4_t)vqtbl1q_u8((uint8x16_t)vld1q_u32(ids), moved));
+        to += __builtin_popcount(bits & 15u);
+    }
+    return to;
+}
+#elif defined(__AVX2__)
+typedef __m256i packing; /* where the lanes of four bytes come from */
+SPHGI_TEMPLATE __m256i lanes_of(uint64_t order)
+{
+    return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)order));
+}
+SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
+{
+    return lanes_of(find->pack_order[bits_of(lanes)]);
+}
+SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing order)
+{
+#if REAL_IS_F64
+    const __m256i wide = _mm256_cvtepu32_epi64(_mm256_castsi256_si128(order));
+    const __m256i pairs = _mm256_add_epi64(wide, wide);
+    const __m256i halves = _mm256_or_si256(pairs, _mm256_slli_epi64(pairs, 32));
+    order = _mm256_add_epi32(halves, _mm256_set1_epi64x((long long)1 << 32));
+#endif
+    store(to, (vec)_mm256_permutevar8x32_ps((__m256)v, order));
+}
+SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing order)
+{
+    _mm256_storeu_si256((__m256i *)(void *)to,
+                        _mm256_add_epi32(_mm256_set1_epi32((int)first),
+                                         _mm256_add_epi32(order, order)));
+}
+SPHGI_TEMPLATE uint32_t *pack_ids(const struct sphgi_find *find, uint32_t *to, const uint32_t *ids,
+                                  unsigned bits)
+{
+    const __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)ids);
+    _mm256_storeu_si256((__m256i *)(void *)to,
+                        _mm256_permutevar8x32_epi32(eight, lanes_of(find->pack_order[bits])));
+    return to + __builtin_popcount(bits);
 }
 #else
 typedef uint64_t packing; /* the positions of the set bits, a byte each */
@@ -120,61 +136,17 @@ SPHGI_TEMPLATE packing packing_of(const struct sphgi_find *find, mask lanes)
 {
     return find->pack_order[bits_of(lanes)];
 }
-#if defined(__AVX2__)
-typedef __m128i id_base;
-SPHGI_TEMPLATE id_base ids_from(int32_t number)
-{
-    return _mm_set1_epi16((short)(SPHGI_ID_STEP * number));
-}
-SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
-{
-    return _mm_add_epi16(first, ids_from(numbers));
-}
-SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing order)
-{
-#if REAL_IS_F64
-    const __m256i pairs = _mm256_cvtepu8_epi64(_mm_cvtsi64_si128((long long)(order + order)));
-    const __m256i halves = _mm256_or_si256(pairs, _mm256_slli_epi64(pairs, 32));
-    const __m256i lanes = _mm256_add_epi32(halves, _mm256_set1_epi64x((long long)1 << 32));
-#else
-    const __m256i lanes = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)order));
-#endif
-    store(to, (vec)_mm256_permutevar8x32_ps((__m256)v, lanes));
-}
-SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing order)
-{
-    const __m128i places = _mm_cvtepu8_epi16(_mm_cvtsi64_si128((long long)order));
-    _mm_storeu_si128((__m128i *)(void *)to, _mm_add_epi16(first, _mm_add_epi16(places, places)));
-}
-SPHGI_TEMPLATE uint16_t *pack_ids(const struct sphgi_find *find, uint16_t *to, const uint16_t *ids,
-                                  unsigned bits)
-{
-    const __m128i eight = _mm_loadu_si128((const __m128i *)(const void *)ids);
-    const __m128i order = _mm_load_si128((const __m128i *)(const void *)find->pack_bytes[bits]);
-    _mm_storeu_si128((__m128i *)(void *)to, _mm_shuffle_epi8(eight, order));
-    return to + __builtin_popcount(bits);
-}
-#else
-typedef int32_t id_base;
-SPHGI_TEMPLATE id_base ids_from(int32_t number)
-{
-    return SPHGI_ID_STEP * number;
-}
-SPHGI_TEMPLATE id_base ids_after(id_base first, int32_t numbers)
-{
-    return first + ids_from(numbers);
-}
 SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing order)
 {
     for (int k = 0; k < LANES; ++k)
         to[k] = v[order >> (8 * k) & (unsigned)(LANES - 1)];
 }
-SPHGI_TEMPLATE void number_ids(uint16_t *to, id_base first, packing order)
+SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing order)
 {
     for (int k = 0; k < LANES; ++k)
-        to[k] = (uint16_t)(first + SPHGI_ID_STEP * (int32_t)(order >> (8 * k) & 255));
+        to[k] = first + SPHGI_ID_STEP * (uint32_t)(order >> (8 * k) & 255);
 }
-SPHGI_TEMPLATE uint16_t *pack_ids(const struct sphgi_find *find, uint16_t *to, const uint16_t *ids,
+SPHGI_TEMPLATE uint32_t *pack_ids(const struct sphgi_find *find, uint32_t *to, const uint32_t *ids,
                                   unsigned bits)
 {
     (void)find;
@@ -185,8 +157,9 @@ SPHGI_TEMPLATE uint16_t *pack_ids(const struct sphgi_find *find, uint16_t *to, c
     return to;
 }
 #endif
-SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to,
-                                     const uint16_t *ids, uint16_t bits)
+#if !defined(__AVX512F__) && !defined(__aarch64__)
+SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
+                                     const uint32_t *ids, uint16_t bits)
 {
     to = pack_ids(find, to, ids, bits & 255);
     return pack_ids(find, to, ids + SPHGI_PAD, bits >> SPHGI_PAD);
@@ -195,12 +168,14 @@ SPHGI_TEMPLATE uint16_t *pack_tested(const struct sphgi_find *find, uint16_t *to
 
 /* ---- Candidates ----------------------------------------------------------------------------- */
 
-/* The packed candidates of a few targets. If these are sources, they come first. */
+/* The packed candidates of a few targets. If these are sources, they follow one another from `self`
+ * on. */
 struct candidates {
     real *x, *y, *z;
-    uint16_t *ids;
+    uint32_t *ids;
     uint16_t *bits; /* of the target in hand, one number for TESTED candidates */
     int32_t count;  /* rounded up to TESTED with NaN */
+    int32_t self;
 };
 
 SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most)
@@ -209,8 +184,8 @@ SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most)
     struct candidates c = {.x = scratch};
     c.y = c.x + room;
     c.z = c.y + room;
-    c.ids = (uint16_t *)(void *)(c.z + room);
-    c.bits = c.ids + room;
+    c.ids = (uint32_t *)(void *)(c.z + room);
+    c.bits = (uint16_t *)(void *)(c.ids + room);
     return c;
 }
 
@@ -245,9 +220,10 @@ SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real
 }
 
 /* Which of LANES sources lie within reach of the box, and perhaps a few beyond it. */
-SPHGI_TEMPLATE mask near_box(const struct box *box, const vec *at, const struct wraps *w,
-                             bool periodic)
+SPHGI_TEMPLATE mask near_box(const struct box *box, const struct three *coordinates,
+                             const struct wraps *w, bool periodic)
 {
+    const vec at[3] = {coordinates->x, coordinates->y, coordinates->z};
     vec square = {0};
     for (int a = 0; a < 3; ++a) {
         vec d;
@@ -266,19 +242,17 @@ SPHGI_TEMPLATE int32_t collect_run(const struct sphgi_find *find, const struct c
                                    const struct box *box, int32_t begin, int32_t end, int32_t n,
                                    const struct wraps *w, bool periodic)
 {
-    const real *x = find->x, *y = find->y, *z = find->z;
+    const real *rows = (const real *)find->rows + SPHGI_ROW * (ptrdiff_t)begin;
     mask near = {0};
     int32_t k = begin;
-    id_base first = ids_from(begin);
-    for (; k < end; k += LANES) {
-        const vec at[3] = {load(x + k), load(y + k), load(z + k)};
-        near = near_box(box, at, w, periodic);
+    for (; k < end; k += LANES, rows += SPHGI_ROW * LANES) {
+        const struct three at = coordinates_of(rows);
+        near = near_box(box, &at, w, periodic);
         const packing moved = packing_of(find, near);
-        pack_numbers(c->x + n, at[0], moved);
-        pack_numbers(c->y + n, at[1], moved);
-        pack_numbers(c->z + n, at[2], moved);
-        number_ids(c->ids + n, first, moved);
-        first = ids_after(first, LANES);
+        pack_numbers(c->x + n, at.x, moved);
+        pack_numbers(c->y + n, at.y, moved);
+        pack_numbers(c->z + n, at.z, moved);
+        number_ids(c->ids + n, SPHGI_ID_STEP * (uint32_t)k, moved);
         n += lanes_in(near);
     }
     return n - lanes_in(near & ~first_lanes(LANES - (k - end))); /* read beyond the end */
@@ -289,12 +263,15 @@ SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
                                          int32_t self, const struct wraps *w, bool periodic)
 {
     struct candidates c = carve(find->scratch, runs->candidates);
-    const int32_t cut = self < 0 ? runs->begin[0] : self; /* the first run goes from here ... */
     int32_t n = 0;
-    for (int32_t run = 0; run <= runs->count; ++run) {
-        const bool rest = run == runs->count; /* ... and up to here it comes last */
-        const int32_t begin = rest ? runs->begin[0] : run ? runs->begin[run] : cut;
-        const int32_t end = rest ? cut : runs->begin[run] + runs->length[run];
+    for (int32_t run = 0; run < runs->count; ++run) {
+        int32_t begin = runs->begin[run];
+        const int32_t end = begin + runs->length[run];
+        if (!run && self >= 0) { /* in two parts, to see where the targets stand */
+            n = collect_run(find, &c, box, begin, self, n, w, periodic);
+            c.self = n;
+            begin = self;
+        }
         n = collect_run(find, &c, box, begin, end, n, w, periodic);
     }
     c.count = (int32_t)sphgi_round_up((size_t)n, TESTED);
@@ -363,39 +340,40 @@ SPHGI_TEMPLATE void test(const struct candidates *c, const vec *x, vec square_re
         *bits++ = bits_within(c, k, x, square_reach, w, periodic);
 }
 
-SPHGI_TEMPLATE uint16_t *pack(const struct sphgi_find *find, const struct candidates *c,
-                              uint16_t *to)
+SPHGI_TEMPLATE uint32_t *pack(const struct sphgi_find *find, const struct candidates *c,
+                              uint32_t *to)
 {
     for (int32_t k = 0; k < c->count; k += TESTED)
         to = pack_tested(find, to, c->ids + k, c->bits[k / TESTED]);
-    __builtin_memset(to, 0, SPHGI_PAD * sizeof *to);
+    for (int32_t k = 0; k < SPHGI_PAD; ++k)
+        to[k] = find->dummy;
     return to;
 }
 
 SPHGI_TEMPLATE int64_t find_as(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                               const real *targets, int32_t count, int32_t self, uint16_t *ids,
-                               uint16_t *lengths, bool periodic)
+                               const real *targets, int32_t count, int32_t self, uint32_t *ids,
+                               int32_t *lengths, bool periodic)
 {
     const struct wraps w = wraps_of(find->period);
     const vec square_reach = square_of(find->reach);
     const struct box box = bounding_box(find, targets, count);
     const struct candidates c = collect(find, runs, &box, self, &w, periodic);
-    uint16_t *out = ids;
+    uint32_t *out = ids;
     for (int32_t t = 0; t < count; ++t, targets += SPHGI_ROW) {
         const vec x[3] = {splat(targets[0]), splat(targets[1]), splat(targets[2])};
         test(&c, x, square_reach, &w, periodic);
         if (self >= 0)
-            c.bits[t / TESTED] &= (uint16_t) ~(1u << t % TESTED);
-        const uint16_t *end = pack(find, &c, out);
-        lengths[t] = (uint16_t)(end - out);
+            c.bits[(c.self + t) / TESTED] &= (uint16_t) ~(1u << (c.self + t) % TESTED);
+        const uint32_t *end = pack(find, &c, out);
+        lengths[t] = (int32_t)(end - out);
         out += sphgi_round_up((size_t)(end - out), SPHGI_PAD);
     }
     return out - ids;
 }
 
 static int64_t find(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                    const void *targets, int32_t count, int32_t self, uint16_t *ids,
-                    uint16_t *lengths)
+                    const void *targets, int32_t count, int32_t self, uint32_t *ids,
+                    int32_t *lengths)
 {
     return find->periodic ? find_as(find, runs, targets, count, self, ids, lengths, true)
                           : find_as(find, runs, targets, count, self, ids, lengths, false);

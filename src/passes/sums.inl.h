@@ -57,6 +57,12 @@ SPHGI_TEMPLATE int32_t places_of(const struct sphgi_tile *tile)
     return tile->steps * LANES;
 }
 
+/* The ids of the step that stands at place k. */
+SPHGI_TEMPLATE const uint32_t *ids_at(const struct sphgi_tile *tile, int32_t k)
+{
+    return tile->ids + k / LANES * tile->id_stride;
+}
+
 /* To the first lane's sums, in the order of the list. */
 static void join_lanes(const struct sphgi_tile *tile, int32_t chunks, int32_t count, void *sums)
 {
@@ -140,7 +146,7 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_tile *tile, enum sphgi_vectors v
     vec sum[12];
     clear(sum, count * d);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const struct four row = gather_rows(rows, tile->ids + k);
+        const struct four row = gather_rows(rows, ids_at(tile, k));
         const vec value[4] = {row.x, row.y, row.z, row.w};
         vec g[3];
         vectors_at(tile, k, vectors, three, g);
@@ -202,7 +208,7 @@ static void sum_value(const struct sphgi_tile *tile, const void *rows, int32_t c
     vec sum[4];
     clear(sum, 4);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const struct four row = gather_rows(rows, tile->ids + k);
+        const struct four row = gather_rows(rows, ids_at(tile, k));
         const vec phi = from(tile, SPHGI_PHI, k);
         sum[0] += (row.x - own[0]) * phi;
         sum[1] += (row.y - own[1]) * phi;
@@ -220,7 +226,7 @@ SPHGI_TEMPLATE void vectors_as(const struct sphgi_tile *tile, enum sphgi_vectors
     vec sum[3];
     clear(sum, d);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const vec density = dense ? gather_rows(rows, tile->ids + k).x : splat(R(1));
+        const vec density = dense ? gather_rows(rows, ids_at(tile, k)).x : splat(R(1));
         vec g[3];
         vectors_at(tile, k, vectors, three, g);
         for (int32_t c = 0; c < d; ++c)
@@ -264,7 +270,7 @@ SPHGI_TEMPLATE vec weight_of(const struct sphgi_tile *tile, int32_t k, const voi
     if (kind == SPHGI_WEIGHT_V || kind == SPHGI_WEIGHT_V_PER_DENSITY)
         weight = from(tile, SPHGI_V, k);
     if (kind == SPHGI_WEIGHT_PER_DENSITY || kind == SPHGI_WEIGHT_V_PER_DENSITY) {
-        const vec rho = gather_rows(density, tile->ids + k).x;
+        const vec rho = gather_rows(density, ids_at(tile, k)).x;
         /* the dummy row's density is 0, its weight must be, too */
         weight = where(differ(rho, splat(R(0))), weight / rho);
     }
@@ -285,11 +291,11 @@ SPHGI_TEMPLATE void transposed_as(const struct sphgi_tile *tile, const void *con
             gz = s * from(tile, SPHGI_Z, k);
         vec t[3] = {gx, gy, gz};
         if (!plain) {
-            const struct four c = gather_rows(rows[0], tile->ids + k);
+            const struct four c = gather_rows(rows[0], ids_at(tile, k));
             t[0] = c.x * gx + c.y * gy;
             t[1] = c.y * gx + (three ? c.w : c.z) * gy;
             if (three) {
-                const struct four e = gather_rows(rows[1], tile->ids + k);
+                const struct four e = gather_rows(rows[1], ids_at(tile, k));
                 t[0] += c.z * gz;
                 t[1] += e.x * gz;
                 t[2] = c.z * gx + e.x * gy + e.y * gz;

@@ -1,4 +1,5 @@
 #include "build.h"
+#include "dummy.h"
 #include "core/kernel.h"
 #include "core/parallel.h"
 #include "core/view.h"
@@ -164,14 +165,15 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
 /* ---- Search ---------------------------------------------------------------------------------- */
 
 /* What the tables of the grids can take at most; those of the lists too, which keep a number per
- * block of the targets. */
+ * group of targets. */
 static size_t tables_most(const sphg_neighbors *n)
 {
     size_t bytes = sphgi_grid_tables(n->source_count) + SPHGI_ALIGNMENT;
     if (!n->same)
         bytes += sphgi_grid_tables(n->target_count) + SPHGI_ALIGNMENT;
     if (!n->list_free)
-        bytes += (size_t)n->target_count * sizeof(int64_t) + SPHGI_ALIGNMENT;
+        bytes +=
+            (size_t)sphgi_group_count(n->target_count) * sizeof(int64_t) + SPHGI_ALIGNMENT;
     return bytes;
 }
 
@@ -209,6 +211,8 @@ sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *
     n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
     result = build_grids(checker.context, n, &g);
+    if (!result)
+        sphgi_place_dummy(n, true);
     if (!result && !n->list_free)
         result = sphgi_lists_build(checker.context, n);
     n->skin_left = 0;
@@ -239,7 +243,7 @@ sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *n
         (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g.row_size)))
         return sphgi_fail_memory(checker.context, checker.function);
     memcpy(n->sources.rows.data, g.source_rows, sources * g.row_size);
-    memset((char *)n->sources.rows.data + sources * g.row_size, 0xff, g.row_size); /* NaN */
+    sphgi_place_dummy(n, false);
     if (!n->part_of)
         memcpy(n->targets.rows.data, g.target_rows, targets * g.row_size);
     n->lists = *lists;

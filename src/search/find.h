@@ -1,56 +1,46 @@
-/* Neighbours of the targets of one cell: staging their surroundings and running the search pass. */
+/* Neighbours of targets in the order of storage, found cell by cell. */
 #ifndef SPHGI_FIND_H
 #define SPHGI_FIND_H
 #include "neighbors.h"
 
 enum {
-    SPHGI_STAGED_MOST = 32000,  /* what 16-bit ids can tell apart; more take the wide way */
-    SPHGI_UNITS_MOST = 1 << 19, /* ids of a block that are collected before they are stored */
-    SPHGI_WOVEN_MOST = 1 << 15  /* ... and laid side by side in the cache */
+    SPHGI_CANDIDATES_MOST = 8192, /* of a target; what has more is crowded, and searched in slices */
+    SPHGI_LISTS_MOST = 2 * SPHGI_GROUP
 };
 
-/* Scratch of one worker. */
+/* A walk over targets. Lists are found for all targets of a cell at once, and wait until those of a
+ * group are together. */
 struct sphgi_finder {
+    const sphg_neighbors *neighbors;
     const struct sphgi_passes *passes; /* for the positions */
     struct sphgi_find find;
-    void *x, *y, *z; /* staged coordinates */
-    uint16_t *ids;   /* SPHGI_UNITS_MOST + room for one more batch */
-    uint16_t *lengths;
-    uint16_t *woven; /* SPHGI_WOVEN_MOST */
-    int32_t room;    /* staged numbers that fit */
+    int32_t room; /* candidates */
+
+    int32_t next;        /* the first target that has not been looked at */
+    int32_t block, cell; /* where it is; block -1: nowhere yet */
+    int32_t start[SPHGI_BLOCK_CELLS + 1];
+    struct sphgi_surroundings around;
+
+    uint32_t *ids; /* of the lists that wait, one after the other */
+    int64_t used;
+    int32_t lists, taken;             /* those that wait; the first of them have been handed out */
+    int32_t length[SPHGI_LISTS_MOST]; /* CROWDED: not collected */
 };
 
-/* Bytes of scratch per worker, and its parts; room as sphgi_finder_room(). */
-size_t sphgi_finder_size(const sphg_neighbors *neighbors, int32_t room);
-struct sphgi_finder sphgi_finder_at(const sphg_context *context, const sphg_neighbors *neighbors,
-                                    int32_t room, void *memory);
-int32_t sphgi_finder_room(const sphg_neighbors *neighbors);
+/* Bytes of scratch for a walk; it depends on the number of sources alone. */
+size_t sphgi_finder_size(const sphg_neighbors *neighbors);
+void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
+                       const sphg_neighbors *neighbors, void *memory);
 
-/* Asks for the rows that will be staged. */
-void sphgi_prefetch_rows(const sphg_neighbors *neighbors, const struct sphgi_surroundings *around);
+/* The lists of a group, padded to SPHGI_PAD with the dummy, and their lengths; they stay until the
+ * next call. SPHGI_GROUP entries, those behind the last target are empty. False: a target is
+ * crowded, and there are none. Groups are best asked for in rising order. */
+bool sphgi_find_group(struct sphgi_finder *finder, int32_t group, const uint32_t **lists,
+                      int32_t *lengths);
 
-/* Coordinates of the surroundings into x, y, z. */
-void sphgi_stage_coordinates(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
-                             const struct sphgi_surroundings *around);
-
-/* Too many around the block for 16-bit ids? */
-static inline bool sphgi_is_crowded(const struct sphgi_surroundings *around)
-{
-    return around->staged > SPHGI_STAGED_MOST;
-}
-
-/* Pairs of targets [begin, end) in grid order, all of cell `cell` of the staged block, at most
- * SPHGI_FIND_MOST. Returns the ids written, padding included. */
-int64_t sphgi_find_targets(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
-                           const struct sphgi_surroundings *around, const struct sphgi_runs *runs,
-                           int32_t cell, int32_t begin, int32_t end, uint16_t *ids,
-                           uint16_t *lengths);
-
-/* Wide: the same for one target, slice by slice of its surroundings. take() gets the rows of the
- * neighbours, 32-bit and not padded, at most SPHGI_STAGED_MOST at a time. */
-typedef void sphgi_take(void *data, const uint32_t *rows, int32_t count);
-void sphgi_find_wide(const struct sphgi_finder *finder, const sphg_neighbors *neighbors,
-                     const struct sphgi_surroundings *around, int32_t cell, int32_t target,
-                     sphgi_take *take, void *data);
+/* The same for one target however crowded, slice by slice of its candidates. take() gets ids of
+ * rows, not padded, at most SPHGI_CANDIDATES_MOST at a time. */
+typedef void sphgi_take(void *data, const uint32_t *ids, int32_t count);
+void sphgi_find_target(struct sphgi_finder *finder, int32_t target, sphgi_take *take, void *data);
 
 #endif

@@ -2,26 +2,31 @@
 
 /* ---- Keys ----------------------------------------------------------------------------------- */
 
-enum { KEY_BITS = 42, LOW_BITS = 64 - KEY_BITS };
+/* Numbers of cells reach to 3 2^40 on either side, those of blocks along x to a 32nd of that. */
+enum { X_BITS = 40, Y_BITS = 44, Z_BITS = 44, Y_LOW_BITS = 64 - X_BITS };
+
+/* Coordinates count from the lowest there can be, so that keys rise with them. */
+static uint64_t raised(int64_t at, int32_t bits)
+{
+    return (uint64_t)(at + ((int64_t)1 << (bits - 1)));
+}
 
 struct sphgi_key sphgi_key_of(const int64_t *at)
 {
-    const uint64_t mask = ((uint64_t)1 << KEY_BITS) - 1;
-    const uint64_t x = (uint64_t)at[0] & mask, y = (uint64_t)at[1] & mask;
-    return (struct sphgi_key){x | y << KEY_BITS, y >> LOW_BITS | (uint64_t)at[2] << LOW_BITS};
+    const uint64_t x = raised(at[0], X_BITS), y = raised(at[1], Y_BITS), z = raised(at[2], Z_BITS);
+    return (struct sphgi_key){x | y << X_BITS, y >> Y_LOW_BITS | z << (Y_BITS - Y_LOW_BITS)};
 }
 
-static int64_t sign_extended(uint64_t bits)
+static int64_t lowered(uint64_t number, int32_t bits)
 {
-    const uint64_t sign = (uint64_t)1 << (KEY_BITS - 1), mask = 2 * sign - 1;
-    return (int64_t)((bits & mask) ^ sign) - (int64_t)sign;
+    return (int64_t)(number & (((uint64_t)1 << bits) - 1)) - ((int64_t)1 << (bits - 1));
 }
 
 void sphgi_key_open(struct sphgi_key key, int64_t *at)
 {
-    at[0] = sign_extended(key.low);
-    at[1] = sign_extended(key.low >> KEY_BITS | key.high << LOW_BITS);
-    at[2] = sign_extended(key.high >> LOW_BITS);
+    at[0] = lowered(key.low, X_BITS);
+    at[1] = lowered(key.low >> X_BITS | key.high << Y_LOW_BITS, Y_BITS);
+    at[2] = lowered(key.high >> (Y_BITS - Y_LOW_BITS), Z_BITS);
 }
 
 /* ---- Tables --------------------------------------------------------------------------------- */
@@ -48,15 +53,28 @@ int32_t sphgi_find_block(const struct sphgi_grid *grid, const int64_t *at)
     return grid->hash[slot] - 1;
 }
 
+int32_t sphgi_block_of_place(const struct sphgi_grid *grid, int32_t place)
+{
+    int32_t low = 0, high = grid->block_count;
+    while (high - low > 1) {
+        const int32_t middle = low + (high - low) / 2;
+        if (grid->blocks[middle].first <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 void sphgi_cell_starts(const struct sphgi_grid *grid, int32_t block, int32_t *start)
 {
     const struct sphgi_block *own = &grid->blocks[block];
     const int32_t *next = (const int32_t *)grid->cell_start.data + own->first;
-    for (int32_t c = 0; c < grid->cells; ++c) {
+    for (int32_t c = 0; c < SPHGI_BLOCK_CELLS; ++c) {
         start[c] = *next;
         next += own->occupied >> c & 1;
     }
-    start[grid->cells] = *next;
+    start[SPHGI_BLOCK_CELLS] = *next;
 }
 
 void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allocator)

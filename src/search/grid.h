@@ -1,15 +1,15 @@
-/* The uniform grid: cells a little wider than the search radius, gathered in blocks. Only blocks
- * that hold a particle exist, so that memory depends on the number of particles alone. Particles
- * are sorted by block along a Morton curve, inside a block by cell, inside a cell by number. */
+/* The uniform grid: cells a little wider than the search radius, gathered in blocks, bars of cells
+ * along x. Only blocks that hold a particle exist, so that memory depends on the number of particles
+ * alone. Particles are sorted by z, y and x of their cells, inside a cell by number: whatever lies in
+ * neighbouring cells along x follows one another. */
 #ifndef SPHGI_GRID_H
 #define SPHGI_GRID_H
 #include "core/context.h"
 
 enum {
-    SPHGI_BLOCK_CELLS_MOST = 32,   /* 4 x 4 x 2 in 3D, 8 x 4 in 2D */
-    SPHGI_STAGED_CELLS_MOST = 144, /* a block and the cells around it: 6 x 6 x 4, 10 x 6 */
-    SPHGI_STAGED_ROWS_MOST = 24,
-    SPHGI_STAGED_WIDTH_MOST = 10
+    SPHGI_BLOCK_SHIFT = 5,
+    SPHGI_BLOCK_CELLS = 1 << SPHGI_BLOCK_SHIFT,
+    SPHGI_BARS_MOST = 9 /* a block and the bars beside it */
 };
 
 /* ---- Lattice -------------------------------------------------------------------------------- */
@@ -18,7 +18,7 @@ struct sphgi_axis {
     double inverse;    /* open: 1 / cell width */
     double length;     /* of the period; 0: open */
     int64_t cells;     /* of the period */
-    int32_t shift;     /* a block is 2^shift cells long */
+    int32_t shift;     /* a block is 2^shift cells long: SPHGI_BLOCK_SHIFT along x, else 0 */
     int32_t low, high; /* neighbouring cells that are cells of their own: -1 .. 1, fewer where the
                           period holds less than three */
 };
@@ -41,14 +41,13 @@ struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
                                       const struct sphgi_periods *periods, const double *largest,
                                       sphg_type type);
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice);
-int32_t sphgi_cells_per_block(const struct sphgi_lattice *lattice);
 void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell);
 /* Its number in its block. */
 int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell);
 
 /* ---- Grid ----------------------------------------------------------------------------------- */
 
-/* Three coordinates of a block, 42 bits each: cells reach to 3 2^40 on either side. */
+/* Three coordinates of a block. Keys rise as blocks do in storage. */
 struct sphgi_key {
     uint64_t low, high;
 };
@@ -66,13 +65,13 @@ struct sphgi_grid {
     struct sphgi_lattice lattice;
     int32_t count; /* particles */
     int32_t block_count;
-    int32_t cells;   /* per block */
     int32_t fullest; /* particles in the fullest cell */
     uint32_t slots;
     struct sphgi_block *blocks;     /* and one behind the last, with `first` only */
     int32_t *hash;                  /* slots: block + 1, 0: empty */
     struct sphgi_buffer cell_start; /* int32_t, count + 1 */
-    struct sphgi_buffer rows;       /* positions in grid order, and SPHGI_LANES_MOST rows of 0 */
+    struct sphgi_buffer rows;       /* positions in grid order, and SPHGI_LANES_MOST more: the dummy
+                                       of dummy.h, then 0 */
     struct sphgi_buffer order;      /* int32_t: the particle behind each row */
 };
 
@@ -90,8 +89,8 @@ void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);
 
 /* Sorts the rows (x y z 0, finite; SPHGI_LANES_MOST - 1 more are read) of count particles; type is
  * that of the positions. tables: memory for the tables of as many blocks as particles, which is
- * used from its beginning on. Gives OK or MEMORY. Cost: O(count), O(blocks log blocks) for the
- * curve. */
+ * used from its beginning on. Gives OK or MEMORY. Cost: O(count), and O(blocks log blocks) where the
+ * host's order is another one. */
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
                              const struct sphgi_lattice *lattice, sphg_type type, const void *rows,
@@ -113,29 +112,41 @@ static inline uint32_t sphgi_slot_of(struct sphgi_key key, uint32_t slots)
     return (uint32_t)((h >> 32) * slots >> 32);
 }
 
+static inline bool sphgi_is_before(struct sphgi_key a, struct sphgi_key b)
+{
+    return a.high != b.high ? a.high < b.high : a.low < b.low;
+}
+
 /* The block's number, -1: no particle is there. */
 int32_t sphgi_find_block(const struct sphgi_grid *grid, const int64_t *at);
+
+/* The block of the particle that has this place in storage. */
+int32_t sphgi_block_of_place(const struct sphgi_grid *grid, int32_t place);
 
 /* Numbers of the first particles of all cells of a block, and the number behind the last. */
 void sphgi_cell_starts(const struct sphgi_grid *grid, int32_t block, int32_t *start);
 
 /* ---- Surroundings --------------------------------------------------------------------------- */
 
-/* The sources around one block, in the order in which they are staged: along x through rows of
- * cells. Number 0 is a dummy; offset[row][x] is the first number of a staged cell. */
+/* The sources of a bar and of the cells before and behind it: those of cell c begin with row
+ * first[c + 1] and end before first[c + 2], for c from -1 to SPHGI_BLOCK_CELLS. What a period puts
+ * before or behind it stands somewhere else in storage: from row before[0] up to, and without,
+ * before[1]. */
+struct sphgi_bar {
+    int32_t first[SPHGI_BLOCK_CELLS + 3];
+    int32_t before[2], behind[2];
+};
+
+/* The bars around a block, its own first. */
 struct sphgi_surroundings {
-    int32_t block; /* of the targets */
-    int32_t ranges;
-    int32_t begin[SPHGI_STAGED_CELLS_MOST], count[SPHGI_STAGED_CELLS_MOST];
-    int32_t staged; /* dummy included */
-    int32_t offset[SPHGI_STAGED_ROWS_MOST][SPHGI_STAGED_WIDTH_MOST + 1];
-    int32_t start[SPHGI_BLOCK_CELLS_MOST + 1]; /* first targets of the block's cells */
+    int32_t bars, cells; /* cells: along x, in a period what the block has of it */
+    struct sphgi_bar bar[SPHGI_BARS_MOST];
 };
 
 void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key block,
                            struct sphgi_surroundings *around);
 
-/* Where the candidates of a cell are staged. */
+/* The rows of the candidates of a cell. */
 void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
                           const struct sphgi_surroundings *around, int32_t cell,
                           struct sphgi_runs *runs);

@@ -104,14 +104,13 @@ struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
                                       const struct sphgi_periods *periods, const double *largest,
                                       sphg_type type)
 {
-    static const int32_t shift[2][3] = {{3, 2, 0}, {2, 2, 1}};
     struct sphgi_lattice lattice = {.dimension = dimension,
                                     .slack = sphgi_slack_of(periods, largest, type)};
     const double wide = reach * (1 + 0x1p-9);
     for (int32_t a = 0; a < 3; ++a) {
         struct sphgi_axis *axis = &lattice.axis[a];
         *axis = (struct sphgi_axis){.inverse = 1 / wide, .low = -1, .high = 1};
-        axis->shift = shift[dimension == 3][a];
+        axis->shift = a ? 0 : SPHGI_BLOCK_SHIFT;
         if (a >= dimension)
             *axis = (struct sphgi_axis){.shift = 0};
         else if (periods->length[a] > 0) {
@@ -137,11 +136,6 @@ struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice)
         local += lattice->axis[a].shift;
     }
     return cutting;
-}
-
-int32_t sphgi_cells_per_block(const struct sphgi_lattice *lattice)
-{
-    return 1 << (lattice->axis[0].shift + lattice->axis[1].shift + lattice->axis[2].shift);
 }
 
 int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell)

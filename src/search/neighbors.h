@@ -5,48 +5,28 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Found pairs, target by target in grid order, in groups of SPHGI_LANES_MOST that stand side by
- * side: [step][target], padded with 0. Normally ids are staged numbers (struct sphgi_surroundings)
- * times SPHGI_ID_STEP in 16 bits; in a clump too dense for that ("wide" block) they are 32-bit
- * numbers of rows, and behind each target's length.
+/* Found pairs, in groups of SPHGI_GROUP targets that follow one another in storage: ids of rows,
+ * [step][target], padded with the dummy's. Groups that hold a list much longer than the others, or
+ * a very long one, are kept "apart": a header of SPHGI_GROUP lengths, then list after list, each
+ * padded to SPHGI_PAD.
  *
  * Lists share one piece of memory with the tables of the grids: these are large where lists are
  * small, in clouds so thin that many particles have a block of their own. Memory grows only when
  * there are more particles or pairs than ever before. What does not fit although there are not,
  * because pairs fall onto the targets in another way or lie in many more blocks, is not kept: such
- * blocks are searched when they are evaluated, like those of a list-free object. */
+ * groups are searched when they are evaluated, like those of a list-free object. */
 struct sphgi_found {
-    int64_t *lists; /* per block of the targets: place in ids * 2 + wide; < 0: not kept */
-    uint16_t *ids;  /* units */
-    struct sphgi_buffer lengths; /* uint16_t per target; unused in wide blocks */
-    int64_t room;                /* units that ids can hold */
-    int64_t pairs, units;        /* of the last search, whether they were kept or not */
+    int64_t *groups; /* place in ids << SPHGI_STEPS_BITS | steps; < 0: not kept */
+    uint32_t *ids;
+    struct sphgi_buffer lengths; /* uint16_t per target; unused in groups kept apart */
+    int64_t room;                /* ids that there is room for */
+    int64_t pairs, ids_used;     /* of the last search, whether they were kept or not */
+    bool crowded;                /* lengths of some lists are not known */
     int64_t most_pairs;          /* of any search; < 0: none yet */
     int32_t most_targets, most_sources;
 };
 
-/* Targets of a block whose lists stand side by side, as sweeps read them. If one of them is much
- * longer than the others, they follow one another instead, each padded to SPHGI_PAD. */
-struct sphgi_list_group {
-    int32_t count;   /* targets */
-    int32_t longest; /* pairs of one */
-    bool side_by_side;
-    int64_t units;
-};
-
-static inline struct sphgi_list_group sphgi_list_group_of(const uint16_t *lengths, int32_t left)
-{
-    struct sphgi_list_group group = {.count = sphgi_min32(left, SPHGI_LANES_MOST)};
-    int64_t padded = 0;
-    for (int32_t k = 0; k < group.count; ++k) {
-        group.longest = sphgi_max32(group.longest, lengths[k]);
-        padded += (int64_t)sphgi_round_up(lengths[k], SPHGI_PAD);
-    }
-    const int64_t woven = (int64_t)group.longest * group.count;
-    group.side_by_side = group.count > 1 && woven <= 2 * padded;
-    group.units = group.side_by_side ? (int64_t)sphgi_round_up((size_t)woven, SPHGI_PAD) : padded;
-    return group;
-}
+enum { SPHGI_STEPS_BITS = 16, SPHGI_APART = (1 << SPHGI_STEPS_BITS) - 1 };
 
 enum sphgi_neighbors_kind { SPHGI_NEVER_BUILT, SPHGI_SEARCHED, SPHGI_HOST_LISTS };
 
@@ -64,6 +44,7 @@ struct sphg_neighbors {
     int32_t source_count, target_count;
 
     struct sphgi_grid sources, targets; /* targets: unused if same */
+    bool dummy_is_far;                  /* farther from all targets than pairs reach, else NaN */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
     atomic_uint_least64_t places;       /* one number for where the targets stand, 0: not known */
     struct sphgi_buffer shared;         /* tables of the grids, then lists */
@@ -81,44 +62,33 @@ static inline const struct sphgi_grid *sphgi_target_grid(const sphg_neighbors *n
     return neighbors->same ? &neighbors->sources : &neighbors->targets;
 }
 
-/* What is staged for one block of the targets, and where the targets of its cells begin. */
-static inline void sphgi_block_surroundings(const sphg_neighbors *neighbors, int32_t block,
-                                            struct sphgi_surroundings *around)
+/* ---- Groups --------------------------------------------------------------------------------- */
+
+static inline int32_t sphgi_group_count(int32_t targets)
 {
-    const struct sphgi_grid *grid = sphgi_target_grid(neighbors);
-    around->block = block;
-    sphgi_cell_starts(grid, block, around->start);
-    sphgi_surroundings_of(&neighbors->sources, grid->blocks[block].key, around);
+    return targets / SPHGI_GROUP + (targets % SPHGI_GROUP != 0);
 }
 
-static inline bool sphgi_is_kept(const sphg_neighbors *neighbors, int32_t block)
+/* Targets of a group: all but the last are full. */
+static inline int32_t sphgi_targets_in(const sphg_neighbors *neighbors, int32_t group)
 {
-    return !neighbors->list_free && neighbors->found.lists[block] >= 0;
+    return sphgi_min32(SPHGI_GROUP, neighbors->target_count - group * SPHGI_GROUP);
 }
 
-/* Of a block that is kept. */
-static inline bool sphgi_is_kept_wide(const sphg_neighbors *neighbors, int32_t block)
+static inline bool sphgi_is_kept(const sphg_neighbors *neighbors, int32_t group)
 {
-    return neighbors->found.lists[block] & 1;
+    return !neighbors->list_free && neighbors->found.groups[group] >= 0;
 }
 
-static inline const uint16_t *sphgi_kept_units(const sphg_neighbors *neighbors, int32_t block)
+/* Of a group that is kept: the longest list rounded up, or SPHGI_APART. */
+static inline int32_t sphgi_kept_steps(const sphg_neighbors *neighbors, int32_t group)
 {
-    return neighbors->found.ids + (neighbors->found.lists[block] >> 1);
+    return (int32_t)(neighbors->found.groups[group] & SPHGI_APART);
 }
 
-/* Of a block that is kept and not wide: its ids, and what is staged for them, ranges alone. */
-static inline const uint16_t *sphgi_kept_ids(const sphg_neighbors *neighbors, int32_t block,
-                                             struct sphgi_surroundings *around)
+static inline const uint32_t *sphgi_kept_ids(const sphg_neighbors *neighbors, int32_t group)
 {
-    const uint16_t *units = sphgi_kept_units(neighbors, block);
-    const int32_t *head = (const int32_t *)(const void *)units;
-    const size_t ranges = (size_t)head[0];
-    around->ranges = head[0];
-    around->staged = head[1];
-    memcpy(around->begin, head + 2, ranges * sizeof *head);
-    memcpy(around->count, head + 2 + ranges, ranges * sizeof *head);
-    return units + sphgi_round_up(2 * (2 + 2 * ranges), SPHGI_PAD);
+    return neighbors->found.ids + (neighbors->found.groups[group] >> SPHGI_STEPS_BITS);
 }
 
 /* Row (x y z .) of a target; place: in grid order, with the host's lists the target itself. */

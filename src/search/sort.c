@@ -133,52 +133,39 @@ static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
 
 /* ---- Blocks of the grid --------------------------------------------------------------------- */
 
-/* Along the Morton curve: the axis with the highest differing bit decides. */
-static bool before_on_curve(struct sphgi_key a, struct sphgi_key b, const int64_t *low)
-{
-    int64_t at[3], other[3];
-    sphgi_key_open(a, at);
-    sphgi_key_open(b, other);
-    int32_t axis = 2;
-    uint64_t highest = 0;
-    for (int32_t k = 2; k >= 0; --k) {
-        const uint64_t difference = (uint64_t)(at[k] - low[k]) ^ (uint64_t)(other[k] - low[k]);
-        if (highest < difference && highest < (highest ^ difference)) {
-            axis = k;
-            highest = difference;
-        }
-    }
-    return at[axis] < other[axis];
-}
-
-static void merge_runs(const struct sphgi_key *keys, const int64_t *low, const int32_t *from,
-                       int32_t *to, int32_t begin, int32_t middle, int32_t end)
+/* Two runs in order become one. */
+static void merge_runs(const struct sphgi_key *keys, const int32_t *from, int32_t *to, int32_t begin,
+                       int32_t middle, int32_t end)
 {
     int32_t a = begin, b = middle;
     for (int32_t k = begin; k < end; ++k) {
         const bool take_b =
-            a >= middle || (b < end && before_on_curve(keys[from[b]], keys[from[a]], low));
+            a >= middle || (b < end && sphgi_is_before(keys[from[b]], keys[from[a]]));
         to[k] = take_b ? from[b++] : from[a++];
     }
 }
 
-/* Numbers of the blocks in curve order, by merging; scratch holds as many. */
+static bool are_in_order(const struct sphgi_key *keys, int32_t count)
+{
+    for (int32_t k = 1; k < count; ++k)
+        if (sphgi_is_before(keys[k], keys[k - 1]))
+            return false;
+    return true;
+}
+
+/* Numbers of the blocks in the order of their keys, by merging; scratch holds as many. */
 static int32_t *sort_blocks(const struct sphgi_key *keys, int32_t count, int32_t *numbers,
                             int32_t *scratch)
 {
-    int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX};
-    for (int32_t b = 0; b < count; ++b) {
-        int64_t at[3];
+    for (int32_t b = 0; b < count; ++b)
         numbers[b] = b;
-        sphgi_key_open(keys[b], at);
-        for (int32_t a = 0; a < 3; ++a)
-            low[a] = at[a] < low[a] ? at[a] : low[a];
-    }
+    if (are_in_order(keys, count))
+        return numbers;
     for (int64_t width = 1; width < count; width *= 2) {
         for (int64_t begin = 0; begin < count; begin += 2 * width) {
             const int64_t middle = begin + width < count ? begin + width : count;
             const int64_t end = middle + width < count ? middle + width : count;
-            merge_runs(keys, low, numbers, scratch, (int32_t)begin, (int32_t)middle, (int32_t)end);
+            merge_runs(keys, numbers, scratch, (int32_t)begin, (int32_t)middle, (int32_t)end);
         }
         int32_t *swap = numbers;
         numbers = scratch;
@@ -209,12 +196,11 @@ static int32_t merge_keys(struct sort *sort, int32_t *hash)
     return count;
 }
 
-/* Blocks along the curve; chunk->global becomes their number there. */
+/* Blocks in the order of their keys; chunk->global becomes their number there. */
 static void number_blocks(struct sort *sort, int32_t count, void *tables)
 {
     struct sphgi_grid *grid = sort->grid;
     grid->block_count = count;
-    grid->cells = sphgi_cells_per_block(sort->lattice);
     grid->slots = (uint32_t)sphgi_slots_for((size_t)count);
     sphgi_grid_use_tables(grid, tables);
     const int32_t *sorted = sort_blocks(sort->keys, count, sort->numbers, sort->scratch);
@@ -276,13 +262,12 @@ static void scatter_task(void *data, int32_t begin, int32_t end, int32_t worker)
 
 /* Starts of the block's cells, of which place[] holds the sizes; these become places. Returns the
  * size of the fullest. */
-static int32_t place_cells(struct sphgi_block *block, int32_t cells, int32_t *place,
-                           int32_t *cell_start)
+static int32_t place_cells(struct sphgi_block *block, int32_t *place, int32_t *cell_start)
 {
     int32_t next = block->first, fullest = 0;
     int32_t *start = cell_start + next;
     block->occupied = 0;
-    for (int32_t c = 0; c < cells; ++c) {
+    for (int32_t c = 0; c < SPHGI_BLOCK_CELLS; ++c) {
         const int32_t size = place[c];
         place[c] = next;
         if (!size)
@@ -301,13 +286,12 @@ static int32_t place_cells(struct sphgi_block *block, int32_t cells, int32_t *pl
 SPHGI_TEMPLATE int32_t sort_block(const struct sort *sort, int32_t b, size_t row_size)
 {
     struct sphgi_grid *grid = sort->grid;
-    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS_MOST] = {0};
+    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS] = {0};
     char *rows = grid->rows.data;
     const int32_t first = grid->blocks[b].first, last = grid->blocks[b + 1].first;
     for (int32_t k = first; k < last; ++k)
         ++place[sort->sorted_cell[k]];
-    const int32_t fullest =
-        place_cells(&grid->blocks[b], grid->cells, place, grid->cell_start.data);
+    const int32_t fullest = place_cells(&grid->blocks[b], place, grid->cell_start.data);
     for (int32_t k = first; k < last; ++k) {
         const int32_t to = place[sort->sorted_cell[k]]++, i = sort->order[k];
         order[to] = i;

@@ -53,7 +53,7 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
     const size_t position = SPHGI_ROW * sphgi_size_of_type(n->position_type);
     const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
     const int32_t *order = n->kind == SPHGI_SEARCHED ? n->sources.order.data : NULL;
-    char *positions = w->staged_positions + (size_t)at * position;
+    char *positions = w->local_positions + (size_t)at * position;
     int32_t *items = (int32_t *)(void *)w->local_items + at;
     uint32_t rows[SPHGI_CHUNK];
     const int32_t used = number_copies(w, ids, count, at, rows);
@@ -67,7 +67,7 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
         w->tally->bad_volume = true;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
         const struct sphgi_stream *stream = &sweep->set->streams[s];
-        char *to = w->staged_rows + ((size_t)s * (size_t)(SPHGI_TILE + 1) + (size_t)at) * row;
+        char *to = w->local_rows + ((size_t)s * (size_t)(SPHGI_TILE + 1) + (size_t)at) * row;
         w->passes->load_rows(&stream->columns, items, 0, used, stream->first,
                              stream->columns.count ? stream->count : 0, to);
     }

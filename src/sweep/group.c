@@ -54,40 +54,48 @@ static int32_t sums_of_round(const struct sphgi_worker *w)
 
 /* ---- Tiles ---------------------------------------------------------------------------------- */
 
-/* Steps [begin, begin + tile.steps) of 32-bit lists: the host's numbers become ids of rows, and
- * rows that are not at hand are copied. */
-static void fill_from_wide(struct sphgi_worker *w, const struct sphgi_lane_lists *lists,
-                           int32_t begin)
+/* Ids of one lane from pair `begin` of its list on, one after the other: the host's numbers become
+ * ids of rows, and rows that are not at hand are copied. */
+static void ready_lane(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t lane,
+                       int32_t begin, uint32_t *ids)
 {
-    const bool hosts = w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS;
-    struct sphgi_lane_lists ready = {.wide = true, .dummy = w->gather.dummy};
+    const int32_t count = w->pairs[lane], stride = lists->stride[lane];
+    const uint32_t *list = lists->ids[lane] + (ptrdiff_t)begin * stride;
+    if (count && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
+        sphgi_clean_list(w, sphgi_targets(w)[w->tile.spread ? 0 : lane],
+                         (const int32_t *)(const void *)list, count, ids);
+    else
+        for (int32_t k = 0; k < count; ++k, list += stride)
+            ids[k] = *list;
+    if (w->local && count)
+        sphgi_make_local(w, ids, count, lane * SPHGI_CHUNK);
+    for (int32_t k = count; k % 4; ++k)
+        ids[k] = w->gather.dummy;
+}
+
+static void ready_ids(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+{
+    struct sphgi_lane_lists ready = {.side_by_side = false};
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
-        const int32_t count = w->pairs[l];
-        const uint32_t *list = (const uint32_t *)lists->ids[l] + begin;
         uint32_t *ids = (uint32_t *)(void *)w->clean_ids + l * SPHGI_CHUNK;
-        if (hosts && count)
-            sphgi_clean_list(w, sphgi_targets(w)[l], (const int32_t *)list, count, ids);
-        for (int32_t k = 0; !hosts && k < count; ++k)
-            ids[k] = list[k] * SPHGI_ID_STEP;
-        if (w->local && count)
-            sphgi_make_local(w, ids, count, l * SPHGI_CHUNK);
-        for (int32_t k = count; k % 4; ++k)
-            ids[k] = w->gather.dummy;
+        ready_lane(w, lists, l, begin, ids);
         ready.ids[l] = ids;
-        ready.count[l] = count;
+        ready.count[l] = w->pairs[l];
+        ready.stride[l] = 1;
     }
-    w->passes->interleave(&ready, 0, &w->tile);
+    w->passes->interleave(&ready, 0, w->gather.dummy, &w->tile);
 }
 
 static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
-    if (lists->wide || w->sweep->pairs)
+    const bool ready = !w->local && w->sweep->set->neighbors->kind == SPHGI_SEARCHED;
+    if (!ready || w->sweep->pairs)
         for (int32_t l = 0; l < w->passes->lanes; ++l)
             w->pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
-    if (lists->wide)
-        fill_from_wide(w, lists, begin);
+    if (ready)
+        w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
     else
-        w->passes->interleave(lists, begin, &w->tile);
+        ready_ids(w, lists, begin);
     w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
         &w->gather, w->group.x + w->first, w->passes->lanes, &w->tile);
     sphgi_evaluate_tile(w);
@@ -117,15 +125,15 @@ static void join(struct sphgi_worker *w)
 
 /* All lanes for one target: a chunk each, from pair number `at` of its list on.
  */
-static void run_spread(struct sphgi_worker *w, const void *ids, int32_t count, ptrdiff_t distance,
-                       int32_t at, bool wide)
+static void run_spread(struct sphgi_worker *w, const uint32_t *ids, int32_t count, int32_t stride,
+                       int32_t at)
 {
-    struct sphgi_lane_lists lists = {.wide = wide};
+    struct sphgi_lane_lists lists = {.side_by_side = false};
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
         const int32_t first = l * SPHGI_CHUNK;
-        lists.ids[l] = (const char *)ids + first * distance;
+        lists.ids[l] = ids + (ptrdiff_t)first * stride;
         lists.count[l] = sphgi_max32(0, sphgi_min32(SPHGI_CHUNK, count - first));
-        lists.stride[l] = w->lists.stride[0];
+        lists.stride[l] = stride;
     }
     w->tile.spread = true;
     w->spread_pairs = count;
@@ -142,13 +150,11 @@ static int32_t spread_most(const struct sphgi_worker *w)
 
 static void run_long_list(struct sphgi_worker *w)
 {
-    const struct sphgi_lane_lists *lists = &w->lists;
-    const ptrdiff_t distance = lists->wide ? 4 : 2 * lists->stride[0];
-    const int32_t most = spread_most(w);
+    const int32_t stride = w->lists.stride[0], most = spread_most(w);
     for (int64_t at = 0; at < w->longest; at += most)
-        run_spread(w, (const char *)lists->ids[0] + at * distance,
-                   (int32_t)(w->longest - at < most ? w->longest - at : most), distance,
-                   (int32_t)at, lists->wide);
+        run_spread(w, w->lists.ids[0] + at * stride,
+                   (int32_t)(w->longest - at < most ? w->longest - at : most), stride,
+                   (int32_t)at);
 }
 
 /* ---- Rounds --------------------------------------------------------------------------------- */
@@ -230,18 +236,21 @@ void sphgi_stream_begin(struct sphgi_worker *w)
 
 static void run_waiting(struct sphgi_worker *w)
 {
-    run_spread(w, w->waiting_ids, w->waiting, sizeof(uint32_t), w->streamed, true);
+    uint32_t *ids = (uint32_t *)(void *)w->waiting_ids;
+    for (int32_t k = w->waiting; k % 4; ++k)
+        ids[k] = w->gather.dummy;
+    run_spread(w, ids, w->waiting, 1, w->streamed);
     w->streamed += w->waiting;
     w->waiting = 0;
 }
 
-void sphgi_stream_add(struct sphgi_worker *w, const uint32_t *rows, int32_t count)
+void sphgi_stream_add(struct sphgi_worker *w, const uint32_t *ids, int32_t count)
 {
     while (count > 0) {
         const int32_t part = sphgi_min32(count, spread_most(w) - w->waiting);
-        memcpy((uint32_t *)(void *)w->waiting_ids + w->waiting, rows, (size_t)part * sizeof *rows);
+        memcpy((uint32_t *)(void *)w->waiting_ids + w->waiting, ids, (size_t)part * sizeof *ids);
         w->waiting += part;
-        rows += part;
+        ids += part;
         count -= part;
         if (w->waiting == spread_most(w))
             run_waiting(w);

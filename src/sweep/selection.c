@@ -3,14 +3,10 @@
 #include <string.h>
 
 enum {
-    FEW = 4,      /* items are few if there are so many times as many blocks */
-    SPARSE = 16,  /* a block has few active targets if it has so many times as many */
+    FEW = 4,      /* items are few if there are so many times as many groups */
     GRAIN = 4096, /* items of a task that marks */
-    BLOCKS = 64   /* of a task that looks at places */
+    GROUPS = 512  /* of a task that looks at places */
 };
-
-/* What is known of a block. */
-enum { NONE_ACTIVE, FEW_ACTIVE, MANY_ACTIVE };
 
 struct sphgi_selection sphgi_selection_of(const sphg_subset *subset, int32_t target_count)
 {
@@ -20,62 +16,33 @@ struct sphgi_selection sphgi_selection_of(const sphg_subset *subset, int32_t tar
     return selection;
 }
 
-static int32_t targets_of(const struct sphgi_grid *grid, int32_t block)
-{
-    return grid->blocks[block + 1].first - grid->blocks[block].first;
-}
+/* ---- Few items: the group of each is looked up ---------------------------------------------- */
 
-static void list_block(struct sphgi_selection *selection, int32_t block, bool few)
-{
-    selection->blocks[selection->block_count++] = few ? ~block : block;
-    selection->full_blocks += !few;
-}
-
-/* ---- Few items: the block of each is looked up ---------------------------------------------- */
-
-static int32_t block_of_place(const struct sphgi_grid *grid, int32_t place)
-{
-    int32_t low = 0, high = grid->block_count;
-    while (high - low > 1) {
-        const int32_t middle = low + (high - low) / 2;
-        if (grid->blocks[middle].first <= place)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* seen: a byte per block, 0, and 0 again afterwards. */
+/* seen: a byte per group, 0, and 0 again afterwards. */
 static void mark_few(struct sphgi_selection *selection, const sphg_neighbors *n, uint8_t *seen)
 {
-    const struct sphgi_grid *grid = sphgi_target_grid(n);
     const int32_t *place = n->target_place.data;
     for (int32_t k = selection->begin; k < selection->end; ++k) {
         const int32_t target = sphgi_selected(selection, k);
         if (target < 0 || selection->active[place[target]])
             continue;
         selection->active[place[target]] = 1;
-        const int32_t block = block_of_place(grid, place[target]);
-        if (!seen[block])
-            selection->blocks[selection->block_count++] = block;
-        seen[block] = (uint8_t)(seen[block] + (seen[block] < UINT8_MAX));
+        ++selection->active_count;
+        const int32_t group = place[target] / SPHGI_GROUP;
+        if (!seen[group])
+            selection->groups[selection->group_count++] = group;
+        seen[group] = 1;
     }
-    const int32_t listed = selection->block_count;
-    selection->block_count = 0;
-    for (int32_t k = 0; k < listed; ++k) {
-        const int32_t block = selection->blocks[k];
-        list_block(selection, block, seen[block] * SPARSE <= targets_of(grid, block));
-        seen[block] = 0;
-    }
+    for (int32_t k = 0; k < selection->group_count; ++k)
+        seen[selection->groups[k]] = 0;
 }
 
-/* ---- Many: all blocks are looked at --------------------------------------------------------- */
+/* ---- Many: all groups are looked at --------------------------------------------------------- */
 
 struct marking {
     const struct sphgi_selection *selection;
     const sphg_neighbors *neighbors;
-    uint8_t *seen;
+    uint8_t *seen; /* active targets per group */
 };
 
 static void mark_task(void *data, int32_t begin, int32_t end, int32_t worker)
@@ -91,39 +58,35 @@ static void mark_task(void *data, int32_t begin, int32_t end, int32_t worker)
     }
 }
 
-/* Stops when it is clear that many are active. */
-static uint8_t look_at_block(const struct marking *marking, int32_t block)
-{
-    const struct sphgi_grid *grid = sphgi_target_grid(marking->neighbors);
-    const int32_t *order = grid->order.data;
-    const int32_t behind = grid->blocks[block + 1].first;
-    const int32_t few = targets_of(grid, block) / SPARSE;
-    int32_t active = 0;
-    for (int32_t place = grid->blocks[block].first; place < behind && active <= few; ++place)
-        active += sphgi_is_selected(marking->selection, place, order[place]);
-    return active > few ? MANY_ACTIVE : active ? FEW_ACTIVE : NONE_ACTIVE;
-}
-
 static void look_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct marking *marking = data;
+    const sphg_neighbors *n = marking->neighbors;
+    const int32_t *order = sphgi_target_grid(n)->order.data;
     (void)worker;
-    for (int32_t b = begin; b < end; ++b)
-        marking->seen[b] = look_at_block(marking, b);
+    for (int32_t g = begin; g < end; ++g) {
+        const int32_t first = g * SPHGI_GROUP;
+        uint8_t active = 0;
+        for (int32_t k = first; k < first + sphgi_targets_in(n, g); ++k)
+            active += sphgi_is_selected(marking->selection, k, order[k]);
+        marking->seen[g] = active;
+    }
 }
 
-static void look_at_blocks(sphg_context *context, struct sphgi_selection *selection,
+static void look_at_groups(sphg_context *context, struct sphgi_selection *selection,
                            const sphg_neighbors *n, uint8_t *seen)
 {
     struct marking marking = {selection, n, seen};
     const int32_t items = selection->end - selection->begin;
-    const int32_t count = sphgi_target_grid(n)->block_count;
+    const int32_t count = sphgi_group_count(n->target_count);
     if (selection->active)
         sphgi_parallel_for(context, mark_task, &marking, items, GRAIN);
-    sphgi_parallel_for(context, look_task, &marking, count, BLOCKS);
-    for (int32_t b = 0; b < count; ++b)
-        if (seen[b] != NONE_ACTIVE)
-            list_block(selection, b, seen[b] == FEW_ACTIVE);
+    sphgi_parallel_for(context, look_task, &marking, count, GROUPS);
+    for (int32_t g = 0; g < count; ++g) {
+        if (seen[g])
+            selection->groups[selection->group_count++] = g;
+        selection->active_count += seen[g];
+    }
     memset(seen, 0, (size_t)count);
 }
 
@@ -132,31 +95,31 @@ static void look_at_blocks(sphg_context *context, struct sphgi_selection *select
 static bool are_few(const struct sphgi_selection *selection, const sphg_neighbors *n)
 {
     const int64_t items = selection->end - selection->begin;
-    return items * FEW < sphgi_target_grid(n)->block_count;
+    return items * FEW < sphgi_group_count(n->target_count);
 }
 
 bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selection,
                           const sphg_neighbors *n)
 {
     const size_t targets = sphgi_round_up((size_t)n->target_count + 1, SPHGI_ALIGNMENT);
-    const size_t blocks = targets; /* at most as many */
+    const size_t groups = sphgi_round_up((size_t)sphgi_group_count(n->target_count) + 1, SPHGI_ALIGNMENT);
     const size_t before = context->selection.size;
     if (!sphgi_reserve(&context->allocator, &context->selection,
-                       targets + blocks * (1 + sizeof(int32_t)), 1))
+                       targets + groups * (1 + sizeof(int32_t)), 1))
         return false;
     if (context->selection.size != before) /* marks are all taken back between calls */
         memset(context->selection.data, 0, context->selection.size);
-    /* Marks stand at fixed ends of the buffer, the list of blocks between them is scratch. */
+    /* Marks stand at fixed ends of the buffer, the list of groups between them is scratch. */
     uint8_t *base = context->selection.data;
-    uint8_t *seen = base + context->selection.size - blocks;
+    uint8_t *seen = base + context->selection.size - groups;
     const bool few = are_few(selection, n);
     selection->active = few || selection->subset->indices ? base : NULL;
-    selection->blocks = (int32_t *)(void *)(base + targets);
-    selection->block_count = selection->full_blocks = 0;
+    selection->groups = (int32_t *)(void *)(base + targets);
+    selection->group_count = selection->active_count = 0;
     if (few)
         mark_few(selection, n, seen);
     else
-        look_at_blocks(context, selection, n, seen);
+        look_at_groups(context, selection, n, seen);
     return true;
 }
 
@@ -171,7 +134,7 @@ void sphgi_selection_close(struct sphgi_selection *selection, const sphg_neighbo
     }
     if (selection->active && !few)
         memset(selection->active, 0, (size_t)n->target_count);
-    memset(selection->blocks, 0, (size_t)selection->block_count * sizeof *selection->blocks);
+    memset(selection->groups, 0, (size_t)selection->group_count * sizeof *selection->groups);
     selection->active = NULL;
-    selection->blocks = NULL;
+    selection->groups = NULL;
 }

@@ -8,9 +8,9 @@ struct sphgi_selection {
     int32_t target_count;
     int32_t begin, end;  /* of the items to look at: targets, or entries of indices */
     uint8_t *active;     /* by place in grid order; NULL: the subset says it target by target */
-    int32_t *blocks;     /* with an active target, ~block if those are few; NULL: all */
-    int32_t block_count; /* of the list */
-    int32_t full_blocks; /* those with more than a few */
+    int32_t *groups;     /* that hold an active target; NULL: all */
+    int32_t group_count; /* of the list */
+    int32_t active_count;
 };
 
 struct sphgi_selection sphgi_selection_of(const sphg_subset *subset, int32_t target_count);
@@ -36,8 +36,8 @@ static inline bool sphgi_is_selected(const struct sphgi_selection *selection, in
            (!subset->mask || subset->mask[target]);
 }
 
-/* Lists the blocks of a searched object's grid that hold a selected target. Costs as much as is
- * selected where that is little, else a look at each place. False: out of memory. */
+/* Lists the groups of a searched object that hold a selected target. Costs as much as is selected
+ * where that is little, else a look at each place. False: out of memory. */
 bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selection,
                           const sphg_neighbors *neighbors);
 void sphgi_selection_close(struct sphgi_selection *selection, const sphg_neighbors *neighbors);

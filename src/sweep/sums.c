@@ -153,14 +153,17 @@ static void sum_fields(struct sphgi_worker *w)
 }
 
 /* The pairs of one lane of the tile, without what lies beyond the cutoff: their places in the
- * arrays. Returns how many. */
-static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at)
+ * arrays, and their ids. Returns how many. */
+static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at,
+                             uint32_t *ids)
 {
     const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
+    const uint32_t *id = w->tile.ids + lane;
     int32_t kept = 0;
-    for (int32_t k = 0; k < count; ++k) {
+    for (int32_t k = 0; k < count; ++k, id += w->tile.id_stride) {
         at[kept] = k * lanes + lane;
-        kept += !w->gather.guarded || w->tile.ids[at[kept]] != w->gather.dummy;
+        ids[kept] = *id;
+        kept += *id != w->gather.dummy;
     }
     return kept;
 }
@@ -187,13 +190,14 @@ static void write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
     const sphg_type type = w->sweep->plan->type;
     const int32_t row = pairs->row_of_target[w->group.target[of]];
     int32_t at[SPHGI_CHUNK + 1];
-    const int32_t count = pairs_of_lane(w, lane, at);
+    uint32_t ids[SPHGI_CHUNK + 1];
+    const int32_t count = pairs_of_lane(w, lane, at, ids);
     const int64_t place = pairs->offsets ? pairs->offsets[row] + w->written[of] : 0;
     w->written[of] += count;
     if (!pairs->offsets)
         return;
     for (int32_t k = 0; k < count; ++k) {
-        const uint32_t number = w->tile.ids[at[k]] / SPHGI_ID_STEP;
+        const uint32_t number = ids[k] / SPHGI_ID_STEP;
         pairs->indices[place + k] = w->items ? w->items[number] : (int32_t)number;
     }
     for (int32_t a = 0; a < pairs->gradient.count; ++a)

@@ -9,7 +9,7 @@
 
 enum {
     LEAST_TARGETS = 512, /* of a task: fewer are not worth a thread */
-    PACK_WORTH = 4       /* fields are packed when at least a 4th of them is read */
+    PACK_WORTH = 16      /* fields are packed for a 16th of as many targets, or more */
 };
 
 /* ---- One sweep ------------------------------------------------------------------------------ */
@@ -18,8 +18,6 @@ enum {
 static bool open_workers(struct sphgi_sweep *sweep)
 {
     sphg_context *context = sweep->context;
-    const sphg_neighbors *n = sweep->set->neighbors;
-    sweep->staged_most = n->kind == SPHGI_SEARCHED ? sphgi_finder_room(n) : 0;
     sweep->memory_each = sphgi_worker_size(sweep);
     if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
                        sweep->memory_each))
@@ -60,12 +58,6 @@ static void look_at_volumes(struct sphgi_sweep *sweep, struct sphgi_tally *tally
         sweep->plan->type == SPHG_F64 ? value * unit : (double)((float)value * (float)unit);
 }
 
-/* Items of a task, of which so many hold all targets. */
-static int32_t grain_of(int32_t items, int32_t targets)
-{
-    return (int32_t)((int64_t)items * LEAST_TARGETS / sphgi_max32(targets, 1)) + 1;
-}
-
 static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *selection,
                              struct sphgi_tally *tally)
 {
@@ -78,14 +70,14 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     look_at_volumes(sweep, tally);
     if (some && !sphgi_selection_open(context, selection, n))
         return SPHG_ERROR_MEMORY;
-    const int32_t all = searched ? sphgi_target_grid(n)->block_count : n->source_count;
-    const int32_t work = some ? selection->block_count : searched ? all : items;
-    const int32_t reading = some ? selection->full_blocks : work;
-    sweep->packed = (int64_t)reading * PACK_WORTH >= all;
+    const int32_t active = some ? selection->active_count : items;
+    const int32_t groups = some ? selection->group_count : sphgi_group_count(n->target_count);
+    const bool nothing_to_pack = !sweep->volumes && !sweep->plan->stream_count;
+    sweep->packed = nothing_to_pack || (int64_t)active * PACK_WORTH >= n->source_count;
     const bool ready =
         !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) && open_workers(sweep);
     if (ready && searched)
-        sphgi_parallel_for(context, sphgi_block_task, task, work, grain_of(all, n->target_count));
+        sphgi_parallel_for(context, sphgi_group_task, task, groups, LEAST_TARGETS / SPHGI_GROUP);
     else if (ready)
         sphgi_parallel_for(context, sphgi_list_task, task, items, LEAST_TARGETS);
     if (some)

@@ -1,4 +1,5 @@
 #include "worker.h"
+#include "stage.h"
 #include "core/kernel.h"
 #include "core/view.h"
 #include <string.h>
@@ -26,14 +27,14 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t size = sphgi_size_of_type(plan->type);
     const size_t position = sphgi_size_of_type(n->position_type);
-    const size_t staged = (size_t)sphgi_max32(sweep->staged_most, SPHGI_TILE + 1);
+    const size_t local = sweep->packed ? 0 : SPHGI_TILE + 1;
     const size_t streams = (size_t)plan->stream_count, row = SPHGI_ROW * size;
     struct layout layout = {0};
 #define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
     CARVE(tally, 1, sizeof(struct sphgi_tally));
     CARVE(rows, streams + 1, sizeof(void *));
-    CARVE(staged_positions, staged, SPHGI_ROW * position);
-    CARVE(staged_rows, staged * streams, row);
+    CARVE(local_positions, local, SPHGI_ROW * position);
+    CARVE(local_rows, local * streams, row);
     CARVE(arrays, SPHGI_ARRAYS * SPHGI_TILE, size);
     CARVE(ids, SPHGI_TILE, sizeof(uint32_t));
     CARVE(clean_ids, SPHGI_TILE, sizeof(uint32_t));
@@ -53,9 +54,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(jacobian, 27 * SPHGI_WIDTH, size);
     CARVE(contracted, 6 * SPHGI_WIDTH, size);
     CARVE(extra, 8 * SPHGI_WIDTH, size);
-    CARVE(staged_items, sweep->pairs ? staged : 0, sizeof(int32_t));
-    CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n, sphgi_finder_room(n)) : 0,
-          1);
+    CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
 #undef CARVE
     return layout.total;
 }
@@ -116,7 +115,7 @@ static void open_scheme(struct sphgi_worker *w)
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
     w->gather.superset = n->kind == SPHGI_HOST_LISTS || n->skin > 0 || h < n->radius;
-    w->gather.guarded = true; /* until a far row stands in front of those of a block */
+    w->gather.guarded = w->gather.superset || n->periodic || !n->dummy_is_far;
     w->shape =
         (struct sphgi_shape){.kernel = scheme->kernel,
                              .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
@@ -136,11 +135,12 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     sphgi_shares_of(sweep->plan, w->share);
     w->coefficients_first = needs_coefficients_first(sweep);
     w->tile.arrays = w->arrays;
-    w->tile.ids = (uint32_t *)(void *)w->ids;
+    w->tile.own_ids = (uint32_t *)(void *)w->ids;
     w->tile.section = (ptrdiff_t)sweep->plan->sums * SPHGI_WIDTH;
     const size_t volumes = SPHGI_V * SPHGI_TILE * sphgi_size_of_type(sweep->plan->type);
     if (!sweep->volumes)
         w->passes->fill(SPHGI_TILE, sweep->volume, w->arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     find_targets_in_rows(w);
+    sphgi_use_rows(w);
 }

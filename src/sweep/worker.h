@@ -31,7 +31,7 @@ struct sphgi_sweep {
     int32_t set_number;
     unsigned steps;
     const struct sphgi_passes *passes, *position_passes; /* of fields; of positions */
-    bool packed;                  /* positions and fields stand as rows in storage order */
+    bool packed;                  /* fields stand as rows in storage order; else rows are copied */
     const char *packed_positions; /* x y z V, source_count + 1 rows */
     const char *packed_rows;      /* streams, as many rows each */
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
@@ -39,7 +39,6 @@ struct sphgi_sweep {
     char *arena;                  /* sums, plan->sums numbers a target */
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
-    int32_t staged_most;                      /* rows that a worker must hold */
     char *memory;
     size_t memory_each;
 };
@@ -77,15 +76,14 @@ struct sphgi_worker {
     int32_t waiting_ids_used;        /* by lists that wait for a vector of targets */
     int32_t streamed, waiting;    /* pairs of a list that comes bit by bit: summed, and yet to be */
     bool local;                   /* rows are copied pair by pair */
-    bool sparse;                  /* ... and targets of several blocks wait together */
-    const int32_t *items;         /* sources behind the ids; NULL: the ids are their numbers */
+    const int32_t *items;         /* sources behind the rows; NULL: the rows are their numbers */
     int64_t written[SPHGI_WIDTH]; /* pairs of each target so far */
 
     /* Memory, in the order in which it is carved. */
     struct sphgi_tally *tally;
-    char *staged_positions, *staged_rows, *arrays, *ids, *clean_ids, *local_items, *waiting_ids;
+    char *local_positions, *local_rows, *arrays, *ids, *clean_ids, *local_items, *waiting_ids;
     char *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume, *density;
-    char *self, *zeros, *jacobian, *contracted, *extra, *staged_items;
+    char *self, *zeros, *jacobian, *contracted, *extra;
     char *finder_memory;
 };
 
@@ -100,10 +98,10 @@ void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sw
  * the group is finished. */
 void sphgi_group_run(struct sphgi_worker *worker);
 
-/* The same for one target whose list comes bit by bit, 32-bit numbers of rows:
+/* The same for one target whose list comes bit by bit:
  *   begin; do { add ... } while (again); end. */
 void sphgi_stream_begin(struct sphgi_worker *worker);
-void sphgi_stream_add(struct sphgi_worker *worker, const uint32_t *rows, int32_t count);
+void sphgi_stream_add(struct sphgi_worker *worker, const uint32_t *ids, int32_t count);
 bool sphgi_stream_again(struct sphgi_worker *worker);
 void sphgi_stream_end(struct sphgi_worker *worker);
 

@@ -1,0 +1,50 @@
+#include "dummy.h"
+#include <math.h>
+
+struct extent {
+    int64_t low[3], high[3]; /* cells, along x those of whole blocks */
+};
+
+static void widen(struct extent *extent, const struct sphgi_grid *grid)
+{
+    for (int32_t b = 0; b < grid->block_count; ++b) {
+        int64_t at[3];
+        sphgi_key_open(grid->blocks[b].key, at);
+        for (int32_t a = 0; a < 3; ++a) {
+            const int64_t cells = (int64_t)1 << grid->lattice.axis[a].shift;
+            const int64_t low = at[a] * cells, high = low + cells;
+            extent->low[a] = low < extent->low[a] ? low : extent->low[a];
+            extent->high[a] = high > extent->high[a] ? high : extent->high[a];
+        }
+    }
+}
+
+/* Below the lowest x by 64 cells, and by as much as that x has digits for; NaN if cells do not tell
+ * places, or if squares of differences could leave the range of the type. */
+static double far_x(const sphg_neighbors *n)
+{
+    const struct sphgi_lattice *lattice = &n->sources.lattice;
+    const double most = n->type == SPHG_F64 ? 0x1p500 : 0x1p60;
+    struct extent extent = {{0}, {0}};
+    widen(&extent, &n->sources);
+    if (!n->same)
+        widen(&extent, &n->targets);
+    const double width = 1 / lattice->axis[0].inverse;
+    for (int32_t a = 0; a < lattice->dimension; ++a)
+        if (extent.low[a] <= -SPHGI_CUT_MOST || extent.high[a] >= SPHGI_CUT_MOST)
+            return NAN;
+    return 0x1p32 * width < most ? 2 * (double)extent.low[0] * width - 64 * width : NAN;
+}
+
+void sphgi_place_dummy(sphg_neighbors *n, bool fixed)
+{
+    const size_t row = SPHGI_ROW * (size_t)n->source_count;
+    const double far = fixed && !n->periodic && !(n->skin > 0) ? far_x(n) : NAN;
+    const double x[SPHGI_ROW] = {far, isnan(far) ? far : 0, isnan(far) ? far : 0, 0};
+    n->dummy_is_far = !isnan(far);
+    for (size_t a = 0; a < SPHGI_ROW; ++a)
+        if (n->position_type == SPHG_F64)
+            ((double *)n->sources.rows.data)[row + a] = x[a];
+        else
+            ((float *)n->sources.rows.data)[row + a] = (float)x[a];
+}
