@@ -31,9 +31,10 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const v
     const uint32_t *ids = tile->ids + first;
     const ptrdiff_t stride = tile->id_stride;
     uint32_t *kept = tile->own_ids + first;
+    const ptrdiff_t ahead = tile->ids == tile->own_ids ? 0 : AHEAD * stride; /* those are here */
     OUT *at = (OUT *)tile->arrays + first;
     for (int32_t k = 0; k < tile->steps; ++k, at += lanes, ids += stride, kept += lanes) {
-        __builtin_prefetch(ids + AHEAD * stride);
+        __builtin_prefetch(ids + ahead);
         const struct four row = gather_rows(g->rows, ids);
         vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         mask inside = first_lanes(0);
