@@ -36,12 +36,15 @@ SPHGI_TEMPLATE void put_parts(vec v, quad *to)
     to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
 }
 #elif VECTOR_BYTES == 64
+SPHGI_TEMPLATE __m256 two_rows(const real *low, const real *high)
+{
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)), _mm_loadu_ps(high), 1);
+}
+/* By halves: three insertions one after the other would wait for each other. */
 SPHGI_TEMPLATE vec four_rows(const real *const *row)
 {
-    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(row[0]));
-    v = _mm512_insertf32x4(v, _mm_loadu_ps(row[4]), 1);
-    v = _mm512_insertf32x4(v, _mm_loadu_ps(row[8]), 2);
-    return (vec)_mm512_insertf32x4(v, _mm_loadu_ps(row[12]), 3);
+    const __m512d low = _mm512_castpd256_pd512(_mm256_castps_pd(two_rows(row[0], row[4])));
+    return (vec)_mm512_insertf64x4(low, _mm256_castps_pd(two_rows(row[8], row[12])), 1);
 }
 /* [row][number] to [number][row] in each quarter, and back. */
 SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
