@@ -63,3 +63,12 @@ SPHGI_TEMPLATE void keep_ids(mask inside, uint32_t dummy, const uint32_t *ids, u
     *(lane_ids *)to = (*(const lane_ids *)ids & keep) | (((lane_ids){0} + dummy) & ~keep);
 #endif
 }
+
+/* The rows of LANES targets. */
+SPHGI_TEMPLATE struct four target_rows(const struct sphgi_gather *g, const int32_t *targets)
+{
+    const real *row[LANES];
+    for (int l = 0; l < LANES; ++l)
+        row[l] = (const real *)g->target_rows + SPHGI_ROW * (ptrdiff_t)targets[l];
+    return transpose(row);
+}

@@ -16,15 +16,12 @@ struct OUT_NAME(how) {
     bool guarded, periodic, three, scaled, volumes;
 };
 
-/* LANES of the tile's lanes, from `first` on, whose targets stand at x. */
-SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const void *const *x,
-                                           int32_t lanes, int32_t first, struct sphgi_tile *tile,
+/* LANES of the tile's lanes, from `first` on. */
+SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g,
+                                           const int32_t *targets, int32_t lanes, int32_t first, struct sphgi_tile *tile,
                                            struct OUT_NAME(how) how)
 {
-    const real *own_rows[LANES];
-    for (int l = 0; l < LANES; ++l)
-        own_rows[l] = x[first + l];
-    const struct four own = transpose(own_rows);
+    const struct four own = target_rows(g, targets + first);
     const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
     const vec far = splat(R(2 * g->cutoff));
     const struct wraps w = wraps_of(g->period);
@@ -72,12 +69,12 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const v
     }
 }
 
-SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void *const *x,
+SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const int32_t *targets,
                                         int32_t lanes, struct sphgi_tile *tile,
                                         struct OUT_NAME(how) how)
 {
     for (int32_t first = 0; first < lanes; first += LANES)
-        OUT_NAME(gather_lanes)(g, x, lanes, first, tile, how);
+        OUT_NAME(gather_lanes)(g, targets, lanes, first, tile, how);
     if (how.guarded) {
         tile->ids = tile->own_ids;
         tile->id_stride = lanes;
@@ -85,8 +82,8 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const void
 }
 
 /* Every combination; periodic ones are always guarded. */
-static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x, int32_t lanes,
-                             struct sphgi_tile *tile)
+static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *targets,
+                             int32_t lanes, struct sphgi_tile *tile)
 {
     struct OUT_NAME(how) how = {.guarded = false};
 #define WITH(name, value, call)                                                                    \
@@ -99,7 +96,7 @@ static void OUT_NAME(gather)(const struct sphgi_gather *g, const void *const *x,
             call;                                                                                  \
         }                                                                                          \
     while (0)
-#define GATHER  OUT_NAME(gather_as)(g, x, lanes, tile, how)
+#define GATHER  OUT_NAME(gather_as)(g, targets, lanes, tile, how)
 #define SHAPED  WITH(three, g->dimension == 3, WITH(scaled, g->unit != 1, GATHER))
 #define WEIGHED WITH(volumes, g->volumes, SHAPED)
     if (!g->guarded)

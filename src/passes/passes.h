@@ -91,13 +91,15 @@ struct sphgi_lane_lists {
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
  * its weight is 0, and with fields of 0. Guarded ones test each pair; their dummy may be NaN. */
 struct sphgi_gather {
-    const void *rows; /* x y z V of the sources */
+    const void *rows;        /* x y z V of the sources */
+    const void *target_rows; /* x y z . */
     double unit;      /* what x_ij is multiplied with: 1, classic 1 / H */
     double cutoff;    /* H, for supersets */
     double period[3]; /* 0: open */
     bool periodic, superset;
     bool guarded; /* periodic, superset, or no dummy is far enough */
     bool volumes; /* V_j differ: gather the 4th number of the rows */
+    double volume; /* V_j otherwise */
     int32_t dimension;
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
 };
@@ -216,10 +218,14 @@ struct sphgi_passes {
                     const void *targets, int32_t count, int32_t self, uint32_t *ids,
                     int32_t *lengths);
 
-    /* Pairs behind tile->ids into the arrays; x: row of each lane's target; lanes: of the tile.
+    /* Pairs behind tile->ids into the arrays; targets: row number of each lane's; lanes: of the tile.
      * [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
-    void (*gather[2])(const struct sphgi_gather *gather, const void *const *x, int32_t lanes,
+    void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,
                       struct sphgi_tile *tile);
+    /* The same for pairs that need no guard, and the factors s_ij instead of the distances. Rows of
+     * the type of the arrays. */
+    void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                           const int32_t *targets, struct sphgi_tile *tile);
 
     /* SPHGI_GROUP lists padded to four with the dummy, side by side: [step][list]. Steps are rounded
      * up to four. */

@@ -27,6 +27,7 @@
 #include "cells.inl.h"
 #include "search.inl.h"
 #include "shape.inl.h"
+#include "gather_factors.inl.h"
 #include "sums.inl.h"
 #include "contracted.inl.h"
 #include "classic.inl.h"
@@ -52,6 +53,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .gather = {gather_f32},
 #endif
     .largest_move = largest_move,
+    .gather_factors = gather_factors,
     .find = find,
     .weave = weave,
     .interleave = interleave,

@@ -6,19 +6,30 @@ SPHGI_TEMPLATE real *array_of(void *arrays, enum sphgi_array array)
 }
 
 /* s_ij / H (theory.md, section 2), divided by m_ref; MLS still lacks its V_i. */
+SPHGI_TEMPLATE vec factor_of(vec scale, vec inverse_h, vec r, vec volume, sphg_kernel kernel,
+                             sphg_method method)
+{
+    const vec q = inverse_h * r;
+    const vec value = method == SPHG_KGC ? kernel_d(kernel, q) : kernel_w(kernel, q);
+    vec weight = scale;
+    if (method != SPHG_MLS)
+        weight *= volume;
+    return weight * value;
+}
+
+SPHGI_TEMPLATE vec factor_scale(const struct sphgi_shape *shape, sphg_method method)
+{
+    return splat(R(method == SPHG_KGC ? shape->w_scale : -shape->w_scale));
+}
+
 SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t count,
                                sphg_kernel kernel, sphg_method method)
 {
-    const vec scale = splat(R(method == SPHG_KGC ? shape->w_scale : -shape->w_scale));
-    const vec inverse_h = splat(R(shape->inverse_h));
-    for (int32_t k = 0; k < count; k += LANES, a += LANES) {
-        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_TILE);
-        const vec value = method == SPHG_KGC ? kernel_d(kernel, q) : kernel_w(kernel, q);
-        vec weight = scale;
-        if (method != SPHG_MLS)
-            weight *= load(a + SPHGI_V * SPHGI_TILE);
-        store(a + SPHGI_S * SPHGI_TILE, weight * value);
-    }
+    const vec scale = factor_scale(shape, method), inverse_h = splat(R(shape->inverse_h));
+    for (int32_t k = 0; k < count; k += LANES, a += LANES)
+        store(a + SPHGI_S * SPHGI_TILE,
+              factor_of(scale, inverse_h, load(a + SPHGI_R * SPHGI_TILE),
+                        load(a + SPHGI_V * SPHGI_TILE), kernel, method));
 }
 
 /* S: w_j, D: w_j'/r, both without V_j. */

@@ -20,7 +20,6 @@ static void put_to_work(struct sphgi_worker *w, int32_t first)
     for (int32_t l = group->lanes; l < first + w->width; ++l) {
         group->target[l] = group->target[first];
         group->place[l] = group->place[first];
-        group->x[l] = group->x[first];
     }
 }
 
@@ -96,8 +95,11 @@ static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *list
         w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
     else
         ready_ids(w, lists, begin);
-    w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
-        &w->gather, w->group.x + w->first, w->passes->lanes, &w->tile);
+    if (w->factors_at_once)
+        w->passes->gather_factors(&w->gather, &w->shape, sphgi_places(w), &w->tile);
+    else
+        w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
+            &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
     sphgi_evaluate_tile(w);
 }
 

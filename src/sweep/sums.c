@@ -225,6 +225,8 @@ static void weigh(struct sphgi_worker *w, int32_t count)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
+    if (w->factors_at_once)
+        return;
     if (plan->classic || plan->wants_value || plan->mean_volume)
         p->shape_weights(&w->shape, w->arrays, count);
     if (plan->classic)

@@ -4,12 +4,11 @@
 
 /* ---- Groups of a worker --------------------------------------------------------------------- */
 
-static int32_t add_target(struct sphgi_worker *w, int32_t target, int32_t place, const void *row)
+static int32_t add_target(struct sphgi_worker *w, int32_t target, int32_t place)
 {
     const int32_t lane = w->group.lanes++;
     w->group.target[lane] = target;
     w->group.place[lane] = place;
-    w->group.x[lane] = row;
     return lane;
 }
 
@@ -28,10 +27,10 @@ static void run_rest(struct sphgi_worker *w)
     w->waiting_ids_used = 0;
 }
 
-static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
-                     const uint32_t *ids, int32_t count, int32_t stride)
+static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
+                     int32_t count, int32_t stride)
 {
-    const int32_t lane = add_target(w, target, place, row) - w->summed;
+    const int32_t lane = add_target(w, target, place) - w->summed;
     w->lists.ids[lane] = ids;
     w->lists.count[lane] = count;
     w->lists.stride[lane] = stride;
@@ -44,15 +43,15 @@ static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, cons
 }
 
 /* The list is where it will not stay: it is copied. What is too long for that is summed at once. */
-static void add_copied(struct sphgi_worker *w, int32_t target, int32_t place, const void *row,
-                       const uint32_t *ids, int32_t count)
+static void add_copied(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
+                       int32_t count)
 {
     const int32_t room = (int32_t)sphgi_round_up((size_t)sphgi_min32(count, SPHGI_WAITING_IDS), 4);
     if (w->waiting_ids_used + room > SPHGI_WAITING_IDS)
         run_rest(w);
     if (count > SPHGI_WAITING_IDS) {
         run_rest(w);
-        add_list(w, target, place, row, ids, count, 1);
+        add_list(w, target, place, ids, count, 1);
         run_rest(w);
         return;
     }
@@ -62,7 +61,7 @@ static void add_copied(struct sphgi_worker *w, int32_t target, int32_t place, co
     for (int32_t k = count; k < room; ++k)
         copy[k] = w->gather.dummy;
     w->waiting_ids_used += room;
-    add_list(w, target, place, row, copy, count, 1);
+    add_list(w, target, place, copy, count, 1);
 }
 
 /* ---- Groups of a searched object ------------------------------------------------------------ */
@@ -90,26 +89,27 @@ static int32_t active_of(const struct sphgi_task *task, int32_t group, int32_t *
     return picked;
 }
 
-/* As many targets as a vector has lanes, whose lists stand side by side from ids on. */
-static void add_vector(struct sphgi_worker *w, int32_t place, const uint32_t *ids)
+/* A whole group, whose lists stand side by side. */
+static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    const int32_t *order = sphgi_target_grid(n)->order.data;
-    const uint16_t *lengths = n->found.lengths.data;
-    const size_t size = SPHGI_ROW * sphgi_size_of_type(n->position_type);
-    const char *row = sphgi_target_row(n, place);
-    const int32_t lanes = w->passes->lanes, first = w->group.lanes;
-    for (int32_t l = 0; l < lanes; ++l) {
-        w->group.target[first + l] = order[place + l];
-        w->group.place[first + l] = place + l;
-        w->group.x[first + l] = row + (size_t)l * size;
-        w->lists.count[l] = lengths[place + l];
+    const int32_t *order = (const int32_t *)sphgi_target_grid(n)->order.data + place;
+    const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + place;
+    int32_t *const target = w->group.target + w->group.lanes;
+    int32_t *const places = w->group.place + w->group.lanes;
+    for (int32_t l = 0; l < SPHGI_GROUP; ++l) {
+        target[l] = order[l];
+        places[l] = place + l;
     }
-    w->group.lanes += lanes;
-    w->lists.ids[0] = ids;
     w->lists.stride[0] = SPHGI_GROUP;
     w->lists.side_by_side = true;
-    sphgi_group_run(w);
+    for (int32_t first = 0; first < SPHGI_GROUP; first += w->passes->lanes) {
+        w->lists.ids[0] = ids + first;
+        for (int32_t l = 0; l < w->passes->lanes; ++l)
+            w->lists.count[l] = lengths[first + l];
+        w->group.lanes += w->passes->lanes;
+        sphgi_group_run(w);
+    }
     w->lists.side_by_side = false;
     if (w->summed == SPHGI_WIDTH)
         finish_group(w);
@@ -135,7 +135,7 @@ static void add_kept(struct sphgi_worker *w, int32_t place, const uint32_t *ids,
     const sphg_neighbors *n = w->sweep->set->neighbors;
     if (w->local)
         ask_for_rows(n, ids, count, stride);
-    add_list(w, target_at(n, place), place, sphgi_target_row(n, place), ids, count, stride);
+    add_list(w, target_at(n, place), place, ids, count, stride);
 }
 
 /* Lists that stand one after the other. */
@@ -154,19 +154,20 @@ static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, i
 static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, int32_t group)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    const int32_t lanes = w->passes->lanes, first = group * SPHGI_GROUP;
+    const int32_t first = group * SPHGI_GROUP;
     if (sphgi_kept_steps(n, group) == SPHGI_APART) {
         sweep_apart(task, w, group);
         return;
     }
     const uint32_t *ids = sphgi_kept_ids(n, group);
     const uint16_t *lengths = n->found.lengths.data;
-    int32_t places[SPHGI_GROUP], k = 0;
+    int32_t places[SPHGI_GROUP];
     const int32_t active = active_of(task, group, places);
-    const bool alone = !w->local && w->group.lanes == w->summed; /* no other lists wait */
-    for (; alone && active == SPHGI_GROUP && k < SPHGI_GROUP; k += lanes)
-        add_vector(w, first + k, ids + k);
-    for (; k < active; ++k)
+    if (active == SPHGI_GROUP && !w->local && w->group.lanes == w->summed) { /* no lists wait */
+        add_group(w, first, ids);
+        return;
+    }
+    for (int32_t k = 0; k < active; ++k)
         add_kept(w, places[k], ids + places[k] - first, lengths[places[k]], SPHGI_GROUP);
 }
 
@@ -180,7 +181,7 @@ static void stream_target(struct sphgi_worker *w, struct sphgi_finder *finder, i
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
     run_rest(w);
-    add_target(w, target_at(n, place), place, sphgi_target_row(n, place));
+    add_target(w, target_at(n, place), place);
     sphgi_stream_begin(w);
     do
         sphgi_find_target(finder, place, take_ids, w);
@@ -205,13 +206,12 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     const bool all = active == SPHGI_GROUP && w->group.lanes == w->summed;
     for (int32_t k = 0; k < active; ++k) {
         const int32_t place = places[k], target = target_at(n, place);
-        const void *row = sphgi_target_row(n, place);
         if (!collected)
             stream_target(w, finder, place);
         else if (all)
-            add_list(w, target, place, row, lists[k], lengths[k], 1);
+            add_list(w, target, place, lists[k], lengths[k], 1);
         else
-            add_copied(w, target, place, row, lists[place - first], lengths[place - first]);
+            add_copied(w, target, place, lists[place - first], lengths[place - first]);
     }
 }
 
@@ -265,11 +265,9 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         if (!sphgi_is_host_row(ids, count))
             note_bad_length(w.tally, target);
         else if (n->lists.row) /* the host may use its array again */
-            add_copied(&w, target, target, sphgi_target_row(n, target), numbers_of(ids),
-                       (int32_t)count);
+            add_copied(&w, target, target, numbers_of(ids), (int32_t)count);
         else
-            add_list(&w, target, target, sphgi_target_row(n, target), numbers_of(ids),
-                     (int32_t)count, 1);
+            add_list(&w, target, target, numbers_of(ids), (int32_t)count, 1);
     }
     run_rest(&w);
 }

@@ -112,6 +112,7 @@ static void open_scheme(struct sphgi_worker *w)
                                       .cutoff = h,
                                       .periodic = n->periodic,
                                       .volumes = w->sweep->volumes,
+                                      .volume = w->sweep->volume,
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
     w->gather.superset = n->kind == SPHGI_HOST_LISTS || n->skin > 0 || h < n->radius;
@@ -123,7 +124,17 @@ static void open_scheme(struct sphgi_worker *w)
                              .inverse_h = plan->classic ? 1 : 1 / h,
                              .w_scale = (by_value ? sigma / mu2 : sigma) / h,
                              .value_scale = sigma};
+    w->gather.target_rows = sphgi_target_row(n, 0);
     w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d, 1 / h};
+}
+
+/* Nor anything else that is formed pair by pair from them, apart from s_ij. */
+static bool are_distances_not_needed(const struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    return !w->gather.guarded && !plan->classic && !plan->wants_value && !plan->mean_volume &&
+           (plan->differentiates || plan->computes) &&
+           w->sweep->set->neighbors->position_type == plan->type;
 }
 
 void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
@@ -143,4 +154,5 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     find_targets_in_rows(w);
     sphgi_use_rows(w);
+    w->factors_at_once = are_distances_not_needed(w);
 }

@@ -47,7 +47,6 @@ struct sphgi_group {
     int32_t lanes;
     int32_t target[SPHGI_WIDTH];
     int32_t place[SPHGI_WIDTH]; /* in storage order */
-    const void *x[SPHGI_WIDTH]; /* rows */
 };
 
 struct sphgi_worker {
@@ -66,6 +65,7 @@ struct sphgi_worker {
     struct sphgi_share share[2];     /* of the table of corrections */
     const void **rows;               /* of each stream */
     unsigned summing;                /* SPHGI_SUM_..., of this pass over the group */
+    bool factors_at_once;            /* s_ij come with the pairs, for nobody asks for distances */
     bool coefficients_first;         /* they must be known before fields can be summed */
     bool targets_loaded;             /* A_i, V_i, rho_i of the group */
     uint32_t targets_in_rows;        /* a bit per field: A_i stand in packed rows */
@@ -122,10 +122,15 @@ static inline char *sphgi_lane(const struct sphgi_worker *worker, char *base, in
     return base + ((size_t)number * SPHGI_WIDTH + (size_t)worker->first) * size;
 }
 
-/* The targets at work. */
+/* The targets at work, and their rows. */
 static inline const int32_t *sphgi_targets(const struct sphgi_worker *worker)
 {
     return worker->group.target + worker->first;
+}
+
+static inline const int32_t *sphgi_places(const struct sphgi_worker *worker)
+{
+    return worker->group.place + worker->first;
 }
 
 #endif

@@ -1,0 +1,81 @@
+/* Pairs and their factors in one loop: what most sweeps do, and most of what they do. */
+
+SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                     const int32_t *targets, struct sphgi_tile *tile,
+                                     sphg_kernel kernel, sphg_method method, bool three,
+                                     bool volumes)
+{
+    const struct four own = target_rows(g, targets);
+    const vec scale = factor_scale(shape, method), inverse_h = splat(R(shape->inverse_h));
+    const vec volume = splat(R(g->volume));
+    const real *rows = g->rows;
+    const uint32_t *ids = tile->ids;
+    const int32_t steps = tile->steps;
+    const ptrdiff_t stride = tile->id_stride;
+    const ptrdiff_t ahead = ids == tile->own_ids ? 0 : AHEAD * stride;
+    real *at = tile->arrays;
+    for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride) {
+        __builtin_prefetch(ids + ahead);
+        const struct four row = gather_rows(rows, ids);
+        const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
+        vec square = dx * dx + dy * dy;
+        if (three)
+            square += dz * dz;
+        store(at + SPHGI_X * SPHGI_TILE, dx);
+        store(at + SPHGI_Y * SPHGI_TILE, dy);
+        if (three)
+            store(at + SPHGI_Z * SPHGI_TILE, dz);
+        if (volumes)
+            store(at + SPHGI_V * SPHGI_TILE, row.w);
+        store(at + SPHGI_S * SPHGI_TILE, factor_of(scale, inverse_h, vsqrt(square),
+                                                   volumes ? row.w : volume, kernel, method));
+    }
+}
+
+#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
+    static void prefix##_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,      \
+                               const int32_t *targets, struct sphgi_tile *tile)                    \
+    {                                                                                              \
+        factors_by_method(g, shape, targets, tile, SPHG_##name);                                   \
+    }
+
+SPHGI_TEMPLATE void factors_by_shape(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                     const int32_t *targets, struct sphgi_tile *tile,
+                                     sphg_kernel kernel, sphg_method method)
+{
+    if (g->dimension == 3 && g->volumes)
+        factors_of_pairs(g, shape, targets, tile, kernel, method, true, true);
+    else if (g->dimension == 3)
+        factors_of_pairs(g, shape, targets, tile, kernel, method, true, false);
+    else if (g->volumes)
+        factors_of_pairs(g, shape, targets, tile, kernel, method, false, true);
+    else
+        factors_of_pairs(g, shape, targets, tile, kernel, method, false, false);
+}
+
+SPHGI_TEMPLATE void factors_by_method(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                      const int32_t *targets, struct sphgi_tile *tile,
+                                      sphg_kernel kernel)
+{
+    if (shape->method == SPHG_MLS)
+        factors_by_shape(g, shape, targets, tile, kernel, SPHG_MLS);
+    else if (shape->method == SPHG_RKPM)
+        factors_by_shape(g, shape, targets, tile, kernel, SPHG_RKPM);
+    else
+        factors_by_shape(g, shape, targets, tile, kernel, SPHG_KGC);
+}
+
+SPHGI_KERNELS(SPHGI_INSTANCE)
+#undef SPHGI_INSTANCE
+
+static void gather_factors(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                           const int32_t *targets, struct sphgi_tile *tile)
+{
+    static void (*const instance[])(const struct sphgi_gather *, const struct sphgi_shape *,
+                                    const int32_t *, struct sphgi_tile *) = {
+#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_pairs,
+        SPHGI_KERNELS(SPHGI_ENTRY)
+#undef SPHGI_ENTRY
+    };
+    instance[shape->kernel](gather, shape, targets, tile);
+}
