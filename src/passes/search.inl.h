@@ -12,11 +12,24 @@ struct three {
 /* Of LANES rows that follow one another. */
 SPHGI_TEMPLATE struct three coordinates_of(const real *rows)
 {
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+    const __m512i xy =
+        _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+    const __m512i z = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
+    const __m512 a = _mm512_loadu_ps(rows), b = _mm512_loadu_ps(rows + 16);
+    const __m512 c = _mm512_loadu_ps(rows + 32), d = _mm512_loadu_ps(rows + 48);
+    const __m512 low = _mm512_permutex2var_ps(a, xy, b), high = _mm512_permutex2var_ps(c, xy, d);
+    return (struct three){(vec)_mm512_shuffle_f32x4(low, high, 0x44),
+                          (vec)_mm512_shuffle_f32x4(low, high, 0xee),
+                          (vec)_mm512_shuffle_f32x4(_mm512_permutex2var_ps(a, z, b),
+                                                    _mm512_permutex2var_ps(c, z, d), 0x44)};
+#else
     const real *row[LANES];
     for (int l = 0; l < LANES; ++l)
         row[l] = rows + SPHGI_ROW * l;
     const struct four v = transpose(row);
     return (struct three){v.x, v.y, v.z};
+#endif
 }
 
 /* ---- Packing -------------------------------------------------------------------------------- */
