@@ -89,12 +89,14 @@ static int32_t active_of(const struct sphgi_task *task, int32_t group, int32_t *
     return picked;
 }
 
-/* A whole group, whose lists stand side by side. */
+/* A whole group, whose lists stand side by side, and no others wait. */
 static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
     const int32_t *order = (const int32_t *)sphgi_target_grid(n)->order.data + place;
     const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + place;
+    if (w->group.lanes > SPHGI_WIDTH - SPHGI_GROUP)
+        finish_group(w);
     int32_t *const target = w->group.target + w->group.lanes;
     int32_t *const places = w->group.place + w->group.lanes;
     for (int32_t l = 0; l < SPHGI_GROUP; ++l) {
