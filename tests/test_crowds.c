@@ -1,4 +1,4 @@
-/* More sources around a target than 16-bit ids tell apart, and many times the pairs that are summed
+/* More sources around a target than are searched at once, and many times the pairs that are summed
  * at once: kept or found on the way, with corrections of the same sweep or of a table. */
 #include "support/fixture.h"
 #include <math.h>

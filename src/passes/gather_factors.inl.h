@@ -27,8 +27,8 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
             store(at + SPHGI_Z * SPHGI_TILE, dz);
         if (volumes)
             store(at + SPHGI_V * SPHGI_TILE, row.w);
-        store(at + SPHGI_S * SPHGI_TILE, factor_of(scale, inverse_h, vsqrt(square),
-                                                   volumes ? row.w : volume, kernel, method));
+        store(at + SPHGI_S * SPHGI_TILE,
+              factor_of(scale, inverse_h, vsqrt(square), volumes ? row.w : volume, kernel, method));
     }
 }
 

@@ -17,8 +17,8 @@ struct OUT_NAME(how) {
 };
 
 /* LANES of the tile's lanes, from `first` on. */
-SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g,
-                                           const int32_t *targets, int32_t lanes, int32_t first, struct sphgi_tile *tile,
+SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const int32_t *targets,
+                                           int32_t lanes, int32_t first, struct sphgi_tile *tile,
                                            struct OUT_NAME(how) how)
 {
     const struct four own = target_rows(g, targets + first);
@@ -82,8 +82,8 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const int3
 }
 
 /* Every combination; periodic ones are always guarded. */
-static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *targets,
-                             int32_t lanes, struct sphgi_tile *tile)
+static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *targets, int32_t lanes,
+                             struct sphgi_tile *tile)
 {
     struct OUT_NAME(how) how = {.guarded = false};
 #define WITH(name, value, call)                                                                    \

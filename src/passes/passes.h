@@ -74,9 +74,9 @@ struct sphgi_tile {
     const uint32_t *ids; /* of rows: [step][lane]; the dummy's where there is no pair */
     ptrdiff_t id_stride; /* from step to step */
     uint32_t *own_ids;   /* SPHGI_TILE: room for ids that do not stand like this in memory */
-    int32_t steps;     /* SPHGI_CHUNK at most */
-    int32_t chunk;     /* of the lists, that the tile holds: 0 starts the sums */
-    bool spread;       /* the lanes hold one list, a chunk each */
+    int32_t steps;       /* SPHGI_CHUNK at most */
+    int32_t chunk;       /* of the lists, that the tile holds: 0 starts the sums */
+    bool spread;         /* the lanes hold one list, a chunk each */
     ptrdiff_t section; /* numbers from a sum to its carry, and on to what a spread chunk comes to */
 };
 
@@ -93,12 +93,12 @@ struct sphgi_lane_lists {
 struct sphgi_gather {
     const void *rows;        /* x y z V of the sources */
     const void *target_rows; /* x y z . */
-    double unit;      /* what x_ij is multiplied with: 1, classic 1 / H */
-    double cutoff;    /* H, for supersets */
-    double period[3]; /* 0: open */
+    double unit;             /* what x_ij is multiplied with: 1, classic 1 / H */
+    double cutoff;           /* H, for supersets */
+    double period[3];        /* 0: open */
     bool periodic, superset;
-    bool guarded; /* periodic, superset, or no dummy is far enough */
-    bool volumes; /* V_j differ: gather the 4th number of the rows */
+    bool guarded;  /* periodic, superset, or no dummy is far enough */
+    bool volumes;  /* V_j differ: gather the 4th number of the rows */
     double volume; /* V_j otherwise */
     int32_t dimension;
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
@@ -211,15 +211,15 @@ struct sphgi_passes {
                            int64_t begin, int64_t end);
 
     /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: row of the
-     * first, if it is a source of the first run, those of the others follow; else -1. Lists stand one
-     * after the other, each in the order of the runs and padded to SPHGI_PAD. Returns the number of
-     * ids written. */
+     * first, if it is a source of the first run, those of the others follow; else -1. Lists stand
+     * one after the other, each in the order of the runs and padded to SPHGI_PAD. Returns the
+     * number of ids written. */
     int64_t (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs,
                     const void *targets, int32_t count, int32_t self, uint32_t *ids,
                     int32_t *lengths);
 
-    /* Pairs behind tile->ids into the arrays; targets: row number of each lane's; lanes: of the tile.
-     * [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
+    /* Pairs behind tile->ids into the arrays; targets: row number of each lane's; lanes: of the
+     * tile. [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,
                       struct sphgi_tile *tile);
     /* The same for pairs that need no guard, and the factors s_ij instead of the distances. Rows of
@@ -227,12 +227,12 @@ struct sphgi_passes {
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
 
-    /* SPHGI_GROUP lists padded to four with the dummy, side by side: [step][list]. Steps are rounded
-     * up to four. */
+    /* SPHGI_GROUP lists padded to four with the dummy, side by side: [step][list]. Steps are
+     * rounded up to four. */
     void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, uint32_t dummy,
                   uint32_t *to);
-    /* Steps [begin, begin + tile->steps) of the lists become the ids of the tile. Lists with a stride
-     * of 1 are padded to a multiple of four with the dummy. */
+    /* Steps [begin, begin + tile->steps) of the lists become the ids of the tile. Lists with a
+     * stride of 1 are padded to a multiple of four with the dummy. */
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,
                        struct sphgi_tile *tile);
 

@@ -13,8 +13,7 @@ struct three {
 SPHGI_TEMPLATE struct three coordinates_of(const real *rows)
 {
 #if VECTOR_BYTES == 64 && !REAL_IS_F64
-    const __m512i xy =
-        _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
+    const __m512i xy = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
     const __m512i z = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
     const __m512 a = _mm512_loadu_ps(rows), b = _mm512_loadu_ps(rows + 16);
     const __m512 c = _mm512_loadu_ps(rows + 32), d = _mm512_loadu_ps(rows + 48);
@@ -57,10 +56,8 @@ SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing lanes)
 }
 SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing lanes)
 {
-    const __m512i numbers =
-        _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    const __m512i ids =
-        _mm512_add_epi32(_mm512_set1_epi32((int)first), SPHGI_ID_STEP * numbers);
+    const __m512i numbers = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const __m512i ids = _mm512_add_epi32(_mm512_set1_epi32((int)first), SPHGI_ID_STEP * numbers);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, ids));
 }
 SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
@@ -131,9 +128,8 @@ SPHGI_TEMPLATE void pack_numbers(real *to, vec v, packing order)
 }
 SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing order)
 {
-    _mm256_storeu_si256((__m256i *)(void *)to,
-                        _mm256_add_epi32(_mm256_set1_epi32((int)first),
-                                         _mm256_add_epi32(order, order)));
+    _mm256_storeu_si256((__m256i *)(void *)to, _mm256_add_epi32(_mm256_set1_epi32((int)first),
+                                                                _mm256_add_epi32(order, order)));
 }
 SPHGI_TEMPLATE uint32_t *pack_ids(const struct sphgi_find *find, uint32_t *to, const uint32_t *ids,
                                   unsigned bits)

@@ -27,9 +27,8 @@ SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t
 {
     const vec scale = factor_scale(shape, method), inverse_h = splat(R(shape->inverse_h));
     for (int32_t k = 0; k < count; k += LANES, a += LANES)
-        store(a + SPHGI_S * SPHGI_TILE,
-              factor_of(scale, inverse_h, load(a + SPHGI_R * SPHGI_TILE),
-                        load(a + SPHGI_V * SPHGI_TILE), kernel, method));
+        store(a + SPHGI_S * SPHGI_TILE, factor_of(scale, inverse_h, load(a + SPHGI_R * SPHGI_TILE),
+                                                  load(a + SPHGI_V * SPHGI_TILE), kernel, method));
 }
 
 /* S: w_j, D: w_j'/r, both without V_j. */

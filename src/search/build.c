@@ -172,8 +172,7 @@ static size_t tables_most(const sphg_neighbors *n)
     if (!n->same)
         bytes += sphgi_grid_tables(n->target_count) + SPHGI_ALIGNMENT;
     if (!n->list_free)
-        bytes +=
-            (size_t)sphgi_group_count(n->target_count) * sizeof(int64_t) + SPHGI_ALIGNMENT;
+        bytes += (size_t)sphgi_group_count(n->target_count) * sizeof(int64_t) + SPHGI_ALIGNMENT;
     return bytes;
 }
 

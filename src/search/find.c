@@ -38,15 +38,14 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
 {
     *finder = (struct sphgi_finder){.neighbors = neighbors, .room = room_of(neighbors)};
     finder->passes = sphgi_passes_of(context, neighbors->position_type);
-    finder->find =
-        (struct sphgi_find){.rows = neighbors->sources.rows.data,
-                            .reach = neighbors->radius + neighbors->skin,
-                            .slack = neighbors->sources.lattice.slack,
-                            .periodic = neighbors->periodic,
-                            .dummy = (uint32_t)neighbors->source_count * SPHGI_ID_STEP,
-                            .scratch = memory,
-                            .pack_order = context->pack_order,
-                            .pack_bytes = context->pack_bytes};
+    finder->find = (struct sphgi_find){.rows = neighbors->sources.rows.data,
+                                       .reach = neighbors->radius + neighbors->skin,
+                                       .slack = neighbors->sources.lattice.slack,
+                                       .periodic = neighbors->periodic,
+                                       .dummy = (uint32_t)neighbors->source_count * SPHGI_ID_STEP,
+                                       .scratch = memory,
+                                       .pack_order = context->pack_order,
+                                       .pack_bytes = context->pack_bytes};
     memcpy(finder->find.period, neighbors->period, sizeof finder->find.period);
     finder->ids = (uint32_t *)(void *)((char *)memory + candidate_bytes(neighbors));
     finder->block = -1;
@@ -103,9 +102,9 @@ static void find_some(struct sphgi_finder *f)
         for (int32_t k = 0; k < count; ++k)
             f->length[f->lists + k] = CROWDED;
     else
-        f->used += f->passes->find(&f->find, &runs, sphgi_target_row(n, f->next), count,
-                                   row_of_self(f, &runs, f->next), f->ids + f->used,
-                                   f->length + f->lists);
+        f->used +=
+            f->passes->find(&f->find, &runs, sphgi_target_row(n, f->next), count,
+                            row_of_self(f, &runs, f->next), f->ids + f->used, f->length + f->lists);
     f->lists += count;
     f->next += count;
 }
@@ -166,11 +165,8 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
             const int32_t begin = runs.begin[run] + at;
             const int32_t count = sphgi_min32(runs.length[run] - at, f->room);
             const bool inside = self >= begin && self < begin + count;
-            const struct sphgi_runs slice = {.count = 1,
-                                             .candidates = count,
-                                             .own = begin,
-                                             .begin = {begin},
-                                             .length = {count}};
+            const struct sphgi_runs slice = {
+                .count = 1, .candidates = count, .own = begin, .begin = {begin}, .length = {count}};
             int32_t found;
             f->passes->find(&f->find, &slice, sphgi_target_row(n, target), 1, inside ? self : -1,
                             f->ids, &found);

@@ -4,7 +4,8 @@
 #include "neighbors.h"
 
 enum {
-    SPHGI_CANDIDATES_MOST = 8192, /* of a target; what has more is crowded, and searched in slices */
+    SPHGI_CANDIDATES_MOST =
+        8192, /* of a target; what has more is crowded, and searched in slices */
     SPHGI_LISTS_MOST = 2 * SPHGI_GROUP
 };
 

@@ -1,7 +1,7 @@
 /* The uniform grid: cells a little wider than the search radius, gathered in blocks, bars of cells
- * along x. Only blocks that hold a particle exist, so that memory depends on the number of particles
- * alone. Particles are sorted by z, y and x of their cells, inside a cell by number: whatever lies in
- * neighbouring cells along x follows one another. */
+ * along x. Only blocks that hold a particle exist, so that memory depends on the number of
+ * particles alone. Particles are sorted by z, y and x of their cells, inside a cell by number:
+ * whatever lies in neighbouring cells along x follows one another. */
 #ifndef SPHGI_GRID_H
 #define SPHGI_GRID_H
 #include "core/context.h"
@@ -89,8 +89,8 @@ void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);
 
 /* Sorts the rows (x y z 0, finite; SPHGI_LANES_MOST - 1 more are read) of count particles; type is
  * that of the positions. tables: memory for the tables of as many blocks as particles, which is
- * used from its beginning on. Gives OK or MEMORY. Cost: O(count), and O(blocks log blocks) where the
- * host's order is another one. */
+ * used from its beginning on. Gives OK or MEMORY. Cost: O(count), and O(blocks log blocks) where
+ * the host's order is another one. */
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
                              const struct sphgi_lattice *lattice, sphg_type type, const void *rows,

@@ -4,9 +4,9 @@
 #include <string.h>
 
 enum {
-    LEAST_GROUPS = 32,    /* of a task: fewer are not worth a thread */
-    MARGIN = 256,         /* ids */
-    SAMPLE = 64,          /* one group of so many is looked at for a first guess */
+    LEAST_GROUPS = 32,     /* of a task: fewer are not worth a thread */
+    MARGIN = 256,          /* ids */
+    SAMPLE = 64,           /* one group of so many is looked at for a first guess */
     WAITING_IDS = 1 << 14, /* of groups that are stored together: a copy at once does not read first
                               what it overwrites */
     WAITING_GROUPS = 256
@@ -228,8 +228,7 @@ static void find_groups(struct build *build, int32_t step)
     atomic_store(&build->ids, 0);
     atomic_store(&build->pairs, 0);
     atomic_store(&build->crowded, false);
-    sphgi_parallel_for(build->context, build_task, build, (groups + step - 1) / step,
-                       LEAST_GROUPS);
+    sphgi_parallel_for(build->context, build_task, build, (groups + step - 1) / step, LEAST_GROUPS);
     found->ids_used = atomic_load(&build->ids);
     found->pairs = atomic_load(&build->pairs);
     found->crowded = atomic_load(&build->crowded);

@@ -134,8 +134,8 @@ static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
 /* ---- Blocks of the grid --------------------------------------------------------------------- */
 
 /* Two runs in order become one. */
-static void merge_runs(const struct sphgi_key *keys, const int32_t *from, int32_t *to, int32_t begin,
-                       int32_t middle, int32_t end)
+static void merge_runs(const struct sphgi_key *keys, const int32_t *from, int32_t *to,
+                       int32_t begin, int32_t middle, int32_t end)
 {
     int32_t a = begin, b = middle;
     for (int32_t k = begin; k < end; ++k) {

@@ -155,8 +155,7 @@ static void run_long_list(struct sphgi_worker *w)
     const int32_t stride = w->lists.stride[0], most = spread_most(w);
     for (int64_t at = 0; at < w->longest; at += most)
         run_spread(w, w->lists.ids[0] + at * stride,
-                   (int32_t)(w->longest - at < most ? w->longest - at : most), stride,
-                   (int32_t)at);
+                   (int32_t)(w->longest - at < most ? w->longest - at : most), stride, (int32_t)at);
 }
 
 /* ---- Rounds --------------------------------------------------------------------------------- */

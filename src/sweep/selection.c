@@ -102,7 +102,8 @@ bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selecti
                           const sphg_neighbors *n)
 {
     const size_t targets = sphgi_round_up((size_t)n->target_count + 1, SPHGI_ALIGNMENT);
-    const size_t groups = sphgi_round_up((size_t)sphgi_group_count(n->target_count) + 1, SPHGI_ALIGNMENT);
+    const size_t groups =
+        sphgi_round_up((size_t)sphgi_group_count(n->target_count) + 1, SPHGI_ALIGNMENT);
     const size_t before = context->selection.size;
     if (!sphgi_reserve(&context->allocator, &context->selection,
                        targets + groups * (1 + sizeof(int32_t)), 1))

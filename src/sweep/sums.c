@@ -154,8 +154,7 @@ static void sum_fields(struct sphgi_worker *w)
 
 /* The pairs of one lane of the tile, without what lies beyond the cutoff: their places in the
  * arrays, and their ids. Returns how many. */
-static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at,
-                             uint32_t *ids)
+static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at, uint32_t *ids)
 {
     const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
     const uint32_t *id = w->tile.ids + lane;

@@ -1,7 +1,7 @@
 #include "sweep.h"
 #include "core/digits.h"
 #include "core/parallel.h"
-#include "stage.h"
+#include "rows.h"
 #include "traverse.h"
 #include "core/view.h"
 #include <math.h>

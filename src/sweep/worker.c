@@ -1,5 +1,5 @@
 #include "worker.h"
-#include "stage.h"
+#include "rows.h"
 #include "core/kernel.h"
 #include "core/view.h"
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Rows of the sources: packed in storage order, or copied for single pairs. */
-#ifndef SPHGI_STAGE_H
-#define SPHGI_STAGE_H
+#ifndef SPHGI_ROWS_H
+#define SPHGI_ROWS_H
 #include "worker.h"
 
 /* Where the worker reads them: they stand packed, or will be copied. */

@@ -1,4 +1,4 @@
-#include "stage.h"
+#include "rows.h"
 #include "core/parallel.h"
 #include <string.h>
 
