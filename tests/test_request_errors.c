@@ -84,6 +84,11 @@ static void evaluate_refuses_bad_fields(const test_case *test)
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields", own->request.fields = NULL);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "fields is set, but field_count is 0",
             own->request.field_count = 0);
+    REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "nothing is asked for", own->field.value = sphg_absent();
+            own->field.gradient = own->field.divergence = own->field.curl = own->field.square =
+                sphg_absent();
+            own->request.correction = own->request.rank = own->request.lambda_min = sphg_absent();
+            own->request.stats = NULL);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = -1);
     REFUSES(evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = 4097);
     const int shapes[] = {0, 5, -1, INT_MAX}, forms[] = {-1, 4, INT_MIN, INT_MAX};

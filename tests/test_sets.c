@@ -438,6 +438,8 @@ static void a_result_alone_has_the_bits_it_has_among_all(const test_case *test)
                                  stage_random_field(&on, (sphg_shape)shape, 91)};
             stage_result all = stage_apply(&on, &field, given);
             for (int which = 0; which < 5; which++) {
+                if (!result_of(&all, which)->width) /* this shape or form has none */
+                    continue;
                 stage_result alone = stage_apply_alone(&on, &field, given, which);
                 TEST_REQUIRE(fixture_same_bits(result_of(&all, which), result_of(&alone, which)),
                              "result %d of shape %d in form %d", which, shape, form);

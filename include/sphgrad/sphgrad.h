@@ -497,7 +497,8 @@ typedef struct sphg_request {
     sphg_stats *stats;
 } sphg_request;
 
-/* All that the request names, in one sweep over the pairs. Views have the neighbours' precision.
+/* All that the request names, at least one result, in one sweep over the pairs. Views have the
+ * neighbours' precision.
  * scheme: dimension as in the build, support_radius at most that of the search.
  * MPI: ask for `correction` of your own n of n + ghosts particles; refresh the ghosts' rows; then
  * ADJOINT or SYMMETRIC with that table as sources' correction. DIFFERENCE needs no exchange.

@@ -135,6 +135,11 @@ static sphg_result check_needed(struct sphgi_making *making)
             SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].volume is absent", f, (int)s);
     if (!plan->target_count)
         return SPHG_OK; /* nobody's volume and density are read */
+    if (!anything && making->purpose == SPHGI_FOR_RESULTS)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: nothing is asked for: no field has a result, and correction, rank, "
+                     "lambda_min and stats are absent",
+                     f);
     const bool at_targets = plan->adjoint || (plan->transposes[1] && !in_weight) ||
                             (plan->transposes[1] && plan->classic);
     if (at_targets && !plan->target_volume.count)

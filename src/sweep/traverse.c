@@ -42,26 +42,31 @@ static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, cons
         w->waiting_ids_used = 0;
 }
 
-/* The list is where it will not stay: it is copied. What is too long for that is summed at once. */
-static void add_copied(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
-                       int32_t count)
+/* A place for a list that will not stay where it is: it waits there until the lanes are full. NULL:
+ * it is too long for that. */
+static uint32_t *room_to_wait(struct sphgi_worker *w, int32_t count)
 {
-    const int32_t room = (int32_t)sphgi_round_up((size_t)sphgi_min32(count, SPHGI_WAITING_IDS), 4);
-    if (w->waiting_ids_used + room > SPHGI_WAITING_IDS)
+    if (w->waiting_ids_used + (int64_t)count > SPHGI_WAITING_IDS)
         run_rest(w);
-    if (count > SPHGI_WAITING_IDS) {
+    if (count > SPHGI_WAITING_IDS)
+        return NULL;
+    uint32_t *room = (uint32_t *)(void *)w->waiting_ids + w->waiting_ids_used;
+    w->waiting_ids_used += count;
+    return room;
+}
+
+/* What is too long is summed at once. */
+static void add_copied(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
+                       int32_t count, int32_t copied)
+{
+    uint32_t *copy = room_to_wait(w, copied);
+    if (!copy)
         run_rest(w);
-        add_list(w, target, place, ids, count, 1);
+    else if (copied)
+        memcpy(copy, ids, (size_t)copied * sizeof *ids);
+    add_list(w, target, place, copy ? copy : ids, count, 1);
+    if (!copy)
         run_rest(w);
-        return;
-    }
-    uint32_t *copy = (uint32_t *)(void *)w->waiting_ids + w->waiting_ids_used;
-    if (count)
-        memcpy(copy, ids, (size_t)count * sizeof *ids);
-    for (int32_t k = count; k < room; ++k)
-        copy[k] = w->gather.dummy;
-    w->waiting_ids_used += room;
-    add_list(w, target, place, copy, count, 1);
 }
 
 /* ---- Groups of a searched object ------------------------------------------------------------ */
@@ -213,7 +218,8 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
         else if (all)
             add_list(w, target, place, lists[k], lengths[k], 1);
         else
-            add_copied(w, target, place, lists[place - first], lengths[place - first]);
+            add_copied(w, target, place, lists[place - first], lengths[place - first],
+                       (int32_t)sphgi_round_up((size_t)lengths[place - first], SPHGI_PAD));
     }
 }
 
@@ -267,7 +273,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         if (!sphgi_is_host_row(ids, count))
             note_bad_length(w.tally, target);
         else if (n->lists.row) /* the host may use its array again */
-            add_copied(&w, target, target, numbers_of(ids), (int32_t)count);
+            add_copied(&w, target, target, numbers_of(ids), (int32_t)count, (int32_t)count);
         else
             add_list(&w, target, target, numbers_of(ids), (int32_t)count, 1);
     }
