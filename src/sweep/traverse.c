@@ -1,4 +1,5 @@
 #include "traverse.h"
+#include "rows.h"
 #include "search/find.h"
 #include <string.h>
 
@@ -231,6 +232,7 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     struct sphgi_worker w;
     struct sphgi_finder finder;
     sphgi_worker_open(&w, &task->sweep, number);
+    sphgi_use_rows(&w);
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t group = groups ? groups[k] : k;
@@ -264,6 +266,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_worker w;
     sphgi_worker_open(&w, &task->sweep, number);
+    sphgi_use_rows(&w);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
         if (target < 0)

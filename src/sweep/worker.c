@@ -1,5 +1,4 @@
 #include "worker.h"
-#include "rows.h"
 #include "core/kernel.h"
 #include "core/view.h"
 #include <string.h>
@@ -132,8 +131,8 @@ static void open_scheme(struct sphgi_worker *w)
 static bool are_distances_not_needed(const struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    return !w->gather.guarded && !plan->classic && !plan->wants_value && !plan->mean_volume &&
-           (plan->differentiates || plan->computes) &&
+    return w->sweep->packed && !w->gather.guarded && !plan->classic && !plan->wants_value &&
+           !plan->mean_volume && (plan->differentiates || plan->computes) &&
            w->sweep->set->neighbors->position_type == plan->type;
 }
 
@@ -153,6 +152,5 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
         w->passes->fill(SPHGI_TILE, sweep->volume, w->arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     find_targets_in_rows(w);
-    sphgi_use_rows(w);
     w->factors_at_once = are_distances_not_needed(w);
 }
