@@ -82,7 +82,7 @@ static int64_t wrapped(const struct sphgi_axis *axis, int64_t cell)
 /* Cells of the block along x that the period has. */
 static int32_t cells_along(const struct sphgi_axis *axis, int64_t block)
 {
-    const int64_t left = axis->cells - (block << SPHGI_BLOCK_SHIFT);
+    const int64_t left = axis->cells - block * SPHGI_BLOCK_CELLS;
     return axis->cells && left < SPHGI_BLOCK_CELLS ? (int32_t)left : SPHGI_BLOCK_CELLS;
 }
 
