@@ -31,6 +31,8 @@ static void take_lists(fuzz_bytes *from, host *on, sphg_lists *lists)
         on->offsets[i + 1] = on->offsets[i] + on->lengths[i];
         if (!honest && fuzz_byte(from) > 250)
             on->offsets[i + 1] = fuzz_byte(from) - 128;
+        if (on->offsets[i + 1] > INDICES) /* nobody can tell where an array ends */
+            on->offsets[i + 1] = INDICES;
         if (!honest && fuzz_byte(from) > 250)
             on->lengths[i] = -fuzz_byte(from);
         on->rows[i] = on->indices + i * (INDICES / MOST);
