@@ -171,6 +171,16 @@ SPHGI_TEMPLATE void clean_eight(const int32_t *list, struct cleaning *how, uint3
     }
 }
 
+SPHGI_TEMPLATE bool is_any_beyond(const struct cleaning *how)
+{
+    const some_ids bad = (some_ids)(how->largest >= how->sources);
+    uint64_t any[sizeof bad / 8], all = 0;
+    __builtin_memcpy(any, &bad, sizeof any);
+    for (size_t k = 0; k < sizeof bad / 8; ++k)
+        all |= any[k];
+    return all;
+}
+
 /* A list, padded with the dummy. True: there was a number that is no source. */
 static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out)
@@ -194,10 +204,70 @@ static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cle
         for (int32_t l = 0; l < count; ++l)
             out[l] = clean[l];
     }
-    const some_ids bad = (some_ids)(own.largest >= own.sources);
-    uint64_t any[sizeof bad / 8], all = 0;
-    __builtin_memcpy(any, &bad, sizeof any);
-    for (size_t k = 0; k < sizeof bad / 8; ++k)
-        all |= any[k];
-    return all;
+    return is_any_beyond(&own);
+}
+
+/* ---- ... side by side ------------------------------------------------------------------------ */
+
+typedef int32_t some_ints __attribute__((vector_size(sizeof(some_ids)), aligned(4), may_alias));
+enum { BLOCK = 16, PARTS = BLOCK / SOME_IDS }; /* a number of steps of any vector */
+
+/* The numbers of a tile become ids in place. left: pairs of each lane from here on. */
+SPHGI_TEMPLATE void clean_block(uint32_t *ids, some_ints *left, const some_ids *self,
+                                struct cleaning *how)
+{
+    for (int p = 0; p < PARTS; ++p) {
+        const some_ids is_pair = (some_ids)(left[p] > 0);
+        some_ids number = *(const some_ids *)(ids + p * SOME_IDS) & how->mask;
+        const some_ids seen = number & is_pair;
+        raise_ids(&how->largest, &seen);
+        number |= (some_ids)(number == self[p]) | ~is_pair;
+        lower_ids(&number, &how->sources);
+        *(some_ids *)(ids + p * SOME_IDS) = number + number; /* SPHGI_ID_STEP */
+        left[p] -= BLOCK / LANES;
+    }
+}
+
+/* Four steps of all lanes. Behind the end of a list nothing is read: its last numbers stand in
+ * `tail`. */
+SPHGI_TEMPLATE void turn_hosts(const struct sphgi_lane_lists *lists, const uint32_t (*tail)[4],
+                               int32_t k, uint32_t *to)
+{
+    static const int32_t there[SPHGI_LANES_MOST] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    const uint32_t *row[LANES];
+    for (int32_t l = 0; l < LANES; ++l)
+        row[l] = k + 4 <= lists->count[l] ? lists->ids[l] + k : tail[l];
+#if VECTOR_BYTES == 16 && REAL_IS_F64
+    (void)there;
+    for (int32_t l = 0; l < LANES; ++l)
+        for (int32_t i = 0; i < 4; ++i)
+            to[i * LANES + l] = row[l][i];
+#else
+    for (int32_t l = 0; l < LANES; l += TURNED)
+        turn_lanes(row + l, there, 0, (const four_ids *)tail, LANES, to + l);
+#endif
+}
+
+static bool interleave_hosts(const struct sphgi_lane_lists *lists, const struct sphgi_cleaning *how,
+                             const uint32_t *self, struct sphgi_tile *tile)
+{
+    const some_ids zero = {0};
+    struct cleaning own = {zero + how->mask, zero + how->sources, zero, zero};
+    some_ids selves[PARTS];
+    some_ints left[PARTS];
+    uint32_t tail[LANES][4] = {{0}};
+    for (int32_t l = 0; l < LANES; ++l)
+        for (int32_t k = lists->count[l] & -4; k < lists->count[l]; ++k)
+            tail[l][k % 4] = lists->ids[l][k];
+    for (int32_t i = 0; i < BLOCK; ++i) {
+        selves[i / SOME_IDS][i % SOME_IDS] = self[i % LANES];
+        left[i / SOME_IDS][i % SOME_IDS] = lists->count[i % LANES] - i / LANES;
+    }
+    tile->ids = tile->own_ids;
+    tile->id_stride = LANES;
+    for (int32_t k = 0; k < tile->steps; k += 4)
+        turn_hosts(lists, (const uint32_t(*)[4])tail, k, tile->own_ids + k * LANES);
+    for (int32_t k = 0; k < tile->steps * LANES; k += BLOCK)
+        clean_block(tile->own_ids + k, left, selves, &own);
+    return is_any_beyond(&own);
 }

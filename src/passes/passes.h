@@ -236,8 +236,12 @@ struct sphgi_passes {
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,
                        struct sphgi_tile *tile);
 
+    /* A list of the host's becomes ids, padded to SPHGI_PAD. True: it holds what is no source. */
     bool (*clean_ids)(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out);
+    /* The same for lists of a tile, side by side. self: of each lane. */
+    bool (*interleave_hosts)(const struct sphgi_lane_lists *lists, const struct sphgi_cleaning *how,
+                             const uint32_t *self, struct sphgi_tile *tile);
 
     /* Weights. */
     void (*shape_factors)(const struct sphgi_shape *shape, void *arrays, int32_t count);

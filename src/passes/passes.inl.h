@@ -58,6 +58,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .weave = weave,
     .interleave = interleave,
     .clean_ids = clean_ids,
+    .interleave_hosts = interleave_hosts,
     .shape_factors = shape_factors,
     .shape_weights = shape_weights,
     .shape_values = shape_values,

@@ -2,33 +2,56 @@
 #include "core/view.h"
 #include <string.h>
 
-static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w, int32_t target)
+static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
     return (struct sphgi_cleaning){.mask = n->lists.index_mask ? (uint32_t)n->lists.index_mask
                                                                : UINT32_MAX,
-                                   .sources = (uint32_t)n->source_count,
-                                   .self = n->part_of ? (uint32_t)target : UINT32_MAX};
+                                   .sources = (uint32_t)n->source_count};
+}
+
+/* What a target's list may hold of itself. */
+static uint32_t self_of(const struct sphgi_worker *w, int32_t target)
+{
+    return w->sweep->set->neighbors->part_of ? (uint32_t)target : UINT32_MAX;
 }
 
 /* Remembers the first target whose list holds what is no source, and what that is. */
-static void note_bad_index(struct sphgi_tally *tally, int32_t target, const int32_t *list,
+static void note_bad_index(struct sphgi_tally *tally, int32_t target, const uint32_t *list,
                            int32_t count, const struct sphgi_cleaning *how)
 {
     if (tally->bad_target >= 0 && target >= tally->bad_target)
         return;
-    tally->bad_target = target;
-    for (int32_t k = count - 1; k >= 0; --k)
-        if (((uint32_t)list[k] & how->mask) >= how->sources)
-            tally->bad_index = (int32_t)((uint32_t)list[k] & how->mask); /* -1 reads as -1 */
+    for (int32_t k = 0; k < count; ++k) {
+        const uint32_t number = list[k] & how->mask;
+        if (number < how->sources)
+            continue;
+        tally->bad_target = target;
+        tally->bad_index = (int32_t)number; /* -1 reads as -1 */
+        return;
+    }
 }
 
-void sphgi_clean_list(struct sphgi_worker *w, int32_t target, const int32_t *list, int32_t count,
+void sphgi_clean_list(struct sphgi_worker *w, int32_t target, const uint32_t *list, int32_t count,
                       uint32_t *ids)
 {
-    const struct sphgi_cleaning how = cleaning_of(w, target);
-    if (w->passes->clean_ids(list, count, &how, ids))
+    struct sphgi_cleaning how = cleaning_of(w);
+    how.self = self_of(w, target);
+    if (w->passes->clean_ids((const int32_t *)(const void *)list, count, &how, ids))
         note_bad_index(w->tally, target, list, count, &how);
+}
+
+void sphgi_clean_lists(struct sphgi_worker *w, const struct sphgi_lane_lists *lists)
+{
+    const struct sphgi_cleaning how = cleaning_of(w);
+    const int32_t lanes = w->passes->lanes;
+    uint32_t self[SPHGI_LANES_MOST] = {0};
+    for (int32_t l = 0; l < lanes; ++l)
+        self[l] = self_of(w, sphgi_targets(w)[l]);
+    if (!w->passes->interleave_hosts(lists, &how, self, &w->tile))
+        return;
+    for (int32_t l = 0; l < lanes; ++l)
+        note_bad_index(w->tally, sphgi_targets(w)[l], lists->ids[l], lists->count[l], &how);
 }
 
 /* Numbers of rows packed; the ids that lead to the copies stay where the numbers stood. */

@@ -53,36 +53,42 @@ static int32_t sums_of_round(const struct sphgi_worker *w)
 
 /* ---- Tiles ---------------------------------------------------------------------------------- */
 
-/* Ids of one lane from pair `begin` of its list on, one after the other: the host's numbers become
- * ids of rows, and rows that are not at hand are copied. */
-static void ready_lane(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t lane,
-                       int32_t begin, uint32_t *ids)
-{
-    const int32_t count = w->pairs[lane], stride = lists->stride[lane];
-    const uint32_t *list = lists->ids[lane] + (ptrdiff_t)begin * stride;
-    if (count && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
-        sphgi_clean_list(w, sphgi_targets(w)[w->tile.spread ? 0 : lane],
-                         (const int32_t *)(const void *)list, count, ids);
-    else
-        for (int32_t k = 0; k < count; ++k, list += stride)
-            ids[k] = *list;
-    if (w->local && count)
-        sphgi_make_local(w, ids, count, lane * SPHGI_CHUNK);
-    for (int32_t k = count; k % 4; ++k)
-        ids[k] = w->gather.dummy;
-}
-
-static void ready_ids(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+/* Rows that are not at hand are copied. */
+static void copy_rows(struct sphgi_worker *w, const struct sphgi_lane_lists *lists)
 {
     struct sphgi_lane_lists ready = {.side_by_side = false};
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        const int32_t count = lists->count[l], stride = lists->stride[l];
         uint32_t *ids = (uint32_t *)(void *)w->clean_ids + l * SPHGI_CHUNK;
-        ready_lane(w, lists, l, begin, ids);
+        if (count && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
+            sphgi_clean_list(w, sphgi_targets(w)[l], lists->ids[l], count, ids);
+        else
+            for (int32_t k = 0; k < count; ++k)
+                ids[k] = lists->ids[l][(ptrdiff_t)k * stride];
+        if (count)
+            sphgi_make_local(w, ids, count, l * SPHGI_CHUNK);
+        for (int32_t k = count; k % 4; ++k)
+            ids[k] = w->gather.dummy;
         ready.ids[l] = ids;
-        ready.count[l] = w->pairs[l];
+        ready.count[l] = count;
         ready.stride[l] = 1;
     }
     w->passes->interleave(&ready, 0, w->gather.dummy, &w->tile);
+}
+
+/* Steps [begin, begin + tile.steps) of lists whose ids cannot be taken as they are. */
+static void ready_ids(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+{
+    struct sphgi_lane_lists part = {.side_by_side = false};
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        part.ids[l] = w->pairs[l] ? lists->ids[l] + (ptrdiff_t)begin * lists->stride[l] : NULL;
+        part.count[l] = w->pairs[l];
+        part.stride[l] = lists->stride[l];
+    }
+    if (w->local)
+        copy_rows(w, &part);
+    else
+        sphgi_clean_lists(w, &part);
 }
 
 static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
