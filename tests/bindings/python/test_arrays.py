@@ -288,7 +288,7 @@ class Lists(Case):
 
     def test_contexts_outlive_their_neighbours(self):
         gc.collect()
-        real = {name: getattr(_c.library, name)
+        real = {name: getattr(_c.functions, name)
                 for name in ("sphg_context_destroy", "sphg_neighbors_destroy")}
         order = []
 
@@ -296,7 +296,7 @@ class Lists(Case):
             def destroy(pointer):
                 order.append(name)
                 real[name](pointer)
-            setattr(_c.library, name, destroy)
+            setattr(_c.functions, name, destroy)
 
         try:
             for name in real:
@@ -310,7 +310,7 @@ class Lists(Case):
             gc.collect()
         finally:
             for name in real:
-                setattr(_c.library, name, real[name])
+                setattr(_c.functions, name, real[name])
         self.assertEqual(order, ["sphg_neighbors_destroy", "sphg_context_destroy"])
         n = sg.Neighbors(self.x, H, context=sg.Context(threads=1))
         gc.collect()

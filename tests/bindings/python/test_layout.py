@@ -86,7 +86,7 @@ class Layout(Case):
                 with open(os.path.join(folder, name)) as source:
                     text += source.read()
         called = {name for name in _c.FUNCTIONS
-                  if re.search(rf"library\.{name}\b", text) or name == "sphg_version"}
+                  if re.search(rf"functions\.{name}\b", text) or name == "sphg_version"}
         self.assertEqual(called | set(_c.NOT_CALLED), set(_c.FUNCTIONS))
         self.assertEqual(called & set(_c.NOT_CALLED), set())
         members = {f"{s}.{m}" for s, m, _, _ in rows("member")}

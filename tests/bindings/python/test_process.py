@@ -85,7 +85,7 @@ class Process(Case):
                                                        len(X))[:, None], H,
                          context=sg.Context(threads=1))
         v, out = np.tile(V, (4, 1)), np.empty((4 * len(X), 3, 3), np.float32)
-        inside, real, interval = threading.Event(), _c.library.sphg_evaluate, sys.getswitchinterval()
+        inside, real, interval = threading.Event(), _c.functions.sphg_evaluate, sys.getswitchinterval()
         calls = [0, 0]
 
         def watched(*arguments):
@@ -99,7 +99,7 @@ class Process(Case):
             while calls[1] < 3 and calls[0] < 1000:
                 sg.jacobian(n, v, 1, out=out)
 
-        _c.library.sphg_evaluate = watched
+        _c.functions.sphg_evaluate = watched
         sys.setswitchinterval(100) # who has the GIL keeps it until it lets go of it
         try:
             thread = threading.Thread(target=work)
@@ -109,7 +109,7 @@ class Process(Case):
                 time.sleep(0)
         finally:
             sys.setswitchinterval(interval)
-            _c.library.sphg_evaluate = real
+            _c.functions.sphg_evaluate = real
             thread.join()
         self.assertEqual(calls[1], 3)
 

@@ -11,7 +11,7 @@ except ImportError:
 import sphgrad
 
 prefix = os.path.realpath(sys.argv[1])
-loaded = [os.path.realpath(path) for path in (sphgrad.__file__, sphgrad._c.library._name)]
+loaded = [os.path.realpath(path) for path in (sphgrad.__file__, sphgrad._c.functions._name)]
 assert all(path.startswith(prefix + os.sep) for path in loaded), loaded
 
 x = np.stack(np.meshgrid(*[np.arange(6.0)] * 3, indexing="ij"), -1).reshape(-1, 3)

@@ -284,4 +284,4 @@ def _load():
     return library
 
 
-library = _load()
+functions = _load()

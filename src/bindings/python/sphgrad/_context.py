@@ -18,7 +18,7 @@ class Error(Exception):
         super().__init__(status, message)
 
     def __str__(self):
-        return f"{self.message or _c.library.sphg_result_string(self.status).decode()}" \
+        return f"{self.message or _c.functions.sphg_result_string(self.status).decode()}" \
                f" ({self.status.name})"
 
 
@@ -49,13 +49,13 @@ class _Handle:
     def __init__(self, config):
         pointer = c.c_void_p()
         version = _c.VERSION[0] * 10000 + _c.VERSION[1] * 100 + _c.VERSION[2]
-        status = _c.library.sphg_context_create(version, c.byref(config), c.byref(pointer))
+        status = _c.functions.sphg_context_create(version, c.byref(config), c.byref(pointer))
         if status:
             raise Error(status, f"Context: threads={config.threads}, "
                                 f"isa={_c.Isa(config.isa).name}: "
-                                f"{_c.library.sphg_result_string(status).decode()}")
+                                f"{_c.functions.sphg_result_string(status).decode()}")
         self.pointer = pointer
-        self.destroy = weakref.finalize(self, _c.library.sphg_context_destroy, pointer)
+        self.destroy = weakref.finalize(self, _c.functions.sphg_context_destroy, pointer)
 
 
 class Context:
@@ -91,14 +91,14 @@ class Context:
 
     def _check(self, status):
         if status:
-            raise Error(status, _c.library.sphg_last_message(self._pointer).decode())
+            raise Error(status, _c.functions.sphg_last_message(self._pointer).decode())
 
     @property
     def info(self):
         """What calls use: threads, isa, openmp, and the bytes held beside neighbours."""
         info = _c.ContextInfo()
         with self._calls() as pointer:
-            self._check(_c.library.sphg_context_get_info(pointer, c.byref(info)))
+            self._check(_c.functions.sphg_context_get_info(pointer, c.byref(info)))
         return ContextInfo(info.threads, _c.Isa(info.isa), bool(info.openmp), info.bytes)
 
     def close(self):

@@ -123,7 +123,7 @@ class Call:
                 raise ValueError("the source sets differ in targets, precision or dimension")
         scheme = first.scheme if self.scheme is None else as_scheme(self.scheme)
         self.c_scheme = scheme._c_scheme(self.dimension)
-        self.width = _c.library.sphg_correction_width(c.byref(self.c_scheme))
+        self.width = _c.functions.sphg_correction_width(c.byref(self.c_scheme))
         if self.subset_given is not None:
             self.subset = self._subset(self.subset_given)
         self.c_sources = (_c.Sources * len(self.sets))(*(self._source(s) for s in self.sets))
@@ -278,7 +278,7 @@ def evaluate(sources, fields=(), *, volume=None, scheme=None, subset=None, targe
         c_stats = call.stats(stats)
         if c_stats is not None:
             request.stats = c.pointer(c_stats)
-        call.context._check(_c.library.sphg_evaluate(context, c.byref(call.c_scheme),
+        call.context._check(_c.functions.sphg_evaluate(context, c.byref(call.c_scheme),
                                                      c.byref(request)))
         call.borrowed.finish()
     return Evaluation([found for _, found in made], correction, rank, lambda_min,

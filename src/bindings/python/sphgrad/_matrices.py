@@ -38,7 +38,7 @@ def invert_moments(moments, scheme, volume=None, *, correction=None, rank=False,
         borrowed.output(ranks, count, (), np.dtype(np.uint8), "rank"),
         borrowed.output(lambdas, count, (), dtype, "lambda_min"), c.pointer(c_stats))
     with context._calls() as pointer:
-        context._check(_c.library.sphg_invert_moments(pointer, c.byref(c_scheme), count, given,
+        context._check(_c.functions.sphg_invert_moments(pointer, c.byref(c_scheme), count, given,
                                                       volumes, c.byref(wanted)))
         borrowed.finish()
     extra = tuple(x for x in (ranks, lambdas, stats_of(c_stats) if stats else None)
@@ -57,7 +57,7 @@ def eigen(matrices, vectors=True, *, context=None):
     values = np.empty((count, d), dtype)
     columns = np.empty((count, d, d), dtype) if vectors else None
     with context._calls() as pointer:
-        context._check(_c.library.sphg_eigen(
+        context._check(_c.functions.sphg_eigen(
             pointer, d, count,
             borrowed.input(matrices, count, matrices.shape[1:], dtype, "matrices",
                            Shape.SYM_TENSOR, same=False),
@@ -75,7 +75,7 @@ def svd(matrices, *, context=None):
     u, v = np.empty((count, 3, 3), dtype), np.empty((count, 3, 3), dtype)
     sigma = np.empty((count, 3), dtype)
     with context._calls() as pointer:
-        context._check(_c.library.sphg_svd(
+        context._check(_c.functions.sphg_svd(
             pointer, count,
             borrowed.input(matrices, count, (3, 3), dtype, "matrices", Shape.TENSOR, same=False),
             borrowed.output(u, count, (3, 3), dtype, "u", Shape.TENSOR),

@@ -71,7 +71,7 @@ class Neighbors:
         self._options = dict(period=period, skin=skin, precision=precision, list_free=list_free)
         pointer = c.c_void_p()
         with self.context._calls() as handle:
-            self.context._check(_c.library.sphg_neighbors_create(handle, c.byref(pointer)))
+            self.context._check(_c.functions.sphg_neighbors_create(handle, c.byref(pointer)))
             self._pointer_value = pointer
             # The context's handle stands among the arguments so that it lives until this is done.
             self._destroy = weakref.finalize(self, _destroy_neighbors, pointer, self.context._handle)
@@ -161,10 +161,10 @@ class Neighbors:
         with self.context._calls() as context:
             pointer = self._pointer
             if c_lists is None:
-                status = _c.library.sphg_neighbors_search(context, pointer, c.byref(c_scheme),
+                status = _c.functions.sphg_neighbors_search(context, pointer, c.byref(c_scheme),
                                                           c.byref(geometry))
             else:
-                status = _c.library.sphg_neighbors_use_lists(
+                status = _c.functions.sphg_neighbors_use_lists(
                     context, pointer, c.byref(c_scheme), c.byref(geometry), c.byref(c_lists))
             self.context._check(status)
             self._scheme, self.dtype, self.dimension = scheme, dtype, positions.shape[1]
@@ -177,7 +177,7 @@ class Neighbors:
         """Pairs, bytes, counts, whether the last search found anew, and what is left of the skin."""
         info = _c.NeighborsInfo()
         with self.context._calls() as context:
-            self.context._check(_c.library.sphg_neighbors_get_info(context, self._pointer,
+            self.context._check(_c.functions.sphg_neighbors_get_info(context, self._pointer,
                                                                    c.byref(info)))
         return NeighborsInfo(info.pairs, info.bytes, info.target_count, info.source_count,
                              bool(info.rebuilt), info.skin_left)
@@ -186,7 +186,7 @@ class Neighbors:
         """None if every pair with r < H is there, once and from both ends; else the first ListFault."""
         fault, scheme = _c.ListFault(), self._scheme._c_scheme(self.dimension)
         with self.context._calls() as context:
-            status = _c.library.sphg_neighbors_check(context, c.byref(scheme), self._pointer,
+            status = _c.functions.sphg_neighbors_check(context, c.byref(scheme), self._pointer,
                                                      c.byref(fault))
             if status not in (_c.Result.ERROR_LISTS, _c.Result.ERROR_INDEX):
                 self.context._check(status)
@@ -199,7 +199,7 @@ class Neighbors:
         """Sources along the library's path through space: sort particles by it now and then."""
         with self.context._calls() as context:
             order = np.empty(self.source_count, np.int32)
-            self.context._check(_c.library.sphg_neighbors_get_order(context, self._pointer,
+            self.context._check(_c.functions.sphg_neighbors_get_order(context, self._pointer,
                                                                     order.ctypes.data))
         return order
 
@@ -222,4 +222,4 @@ class Neighbors:
 
 def _destroy_neighbors(pointer, context_handle):
     del context_handle
-    _c.library.sphg_neighbors_destroy(pointer)
+    _c.functions.sphg_neighbors_destroy(pointer)

@@ -48,7 +48,7 @@ def pairs(sources, volume=None, *, gradient=False, scheme=None, subset=None,
         subset = None if call.subset is None else c.byref(call.subset)
 
         def find():
-            call.context._check(_c.library.sphg_pair_gradients(
+            call.context._check(_c.functions.sphg_pair_gradients(
                 context, c.byref(call.c_scheme), call.c_sources, subset, table, c.byref(wanted)))
 
         find()

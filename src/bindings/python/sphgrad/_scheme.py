@@ -37,7 +37,7 @@ class Scheme:
 
     def correction_width(self, dimension=None):
         """Numbers per particle of a correction table."""
-        return _c.library.sphg_correction_width(c.byref(self._c_scheme(dimension)))
+        return _c.functions.sphg_correction_width(c.byref(self._c_scheme(dimension)))
 
     def kernel_value(self, r):
         """W(r) and W'(r)/r, of a distance or of an array of them."""
@@ -46,14 +46,14 @@ class Scheme:
         both = np.empty((2,) + r.shape)
         flat = both.reshape(2, -1)
         for k, distance in enumerate(r.ravel()):
-            _c.library.sphg_kernel_value(c.byref(scheme), distance, c.byref(w), c.byref(slope))
+            _c.functions.sphg_kernel_value(c.byref(scheme), distance, c.byref(w), c.byref(slope))
             flat[0, k], flat[1, k] = w.value, slope.value
         return both[0][()], both[1][()]
 
     def kernel_constants(self):
         """sigma and the second moment mu2 of the smoothing function."""
         sigma, mu2 = c.c_double(), c.c_double()
-        _c.library.sphg_kernel_constants(c.byref(self._c_scheme()), c.byref(sigma), c.byref(mu2))
+        _c.functions.sphg_kernel_constants(c.byref(self._c_scheme()), c.byref(sigma), c.byref(mu2))
         return sigma.value, mu2.value
 
     def pair_gradient(self, x_ij, volume, correction=None):
@@ -62,7 +62,7 @@ class Scheme:
         if x_ij.shape not in ((2,), (3,)):
             raise ValueError(f"x_ij has the shape {x_ij.shape}, must have (2,) or (3,)")
         scheme = self._c_scheme(len(x_ij))
-        width, gradient = _c.library.sphg_correction_width(c.byref(scheme)), np.empty_like(x_ij)
+        width, gradient = _c.functions.sphg_correction_width(c.byref(scheme)), np.empty_like(x_ij)
         pointer = c.POINTER(c.c_double)
         if correction is None:
             if width:
@@ -73,7 +73,7 @@ class Scheme:
             if table.shape != (width,):
                 raise ValueError(f"correction has the shape {table.shape}, must have {(width,)}")
             row = table.ctypes.data_as(pointer)
-        _c.library.sphg_pair_gradient(c.byref(scheme), x_ij.ctypes.data_as(pointer), volume, row,
+        _c.functions.sphg_pair_gradient(c.byref(scheme), x_ij.ctypes.data_as(pointer), volume, row,
                                       gradient.ctypes.data_as(pointer))
         return gradient
 
