@@ -110,20 +110,21 @@ static int64_t ids_apart(const int64_t *lengths)
     return (int64_t)sphgi_round_up((size_t)ids, SPHGI_GROUP);
 }
 
-/* List after list, behind their lengths. */
-static void store_apart(struct waiting *w, int32_t group, const uint32_t *const *lists,
-                        const int32_t *lengths)
+/* A place for lists one after the other, behind a header with their lengths; NULL: they do not fit.
+ */
+static uint32_t *place_apart(struct waiting *w, int32_t group, const int64_t *lengths)
 {
-    int64_t count[SPHGI_GROUP];
-    for (int32_t k = 0; k < SPHGI_GROUP; ++k)
-        count[k] = lengths[k];
-    uint32_t *to = place_for(w, group, ids_apart(count), SPHGI_APART);
-    if (!to)
-        return;
-    for (int32_t k = 0; k < SPHGI_GROUP; ++k)
+    uint32_t *to = place_for(w, group, ids_apart(lengths), SPHGI_APART);
+    for (int32_t k = 0; to && k < SPHGI_GROUP; ++k)
         to[k] = (uint32_t)lengths[k];
-    to += SPHGI_GROUP;
-    for (int32_t k = 0; k < SPHGI_GROUP; to += padded(lengths[k++]))
+    return to ? to + SPHGI_GROUP : NULL;
+}
+
+static void store_apart(struct waiting *w, int32_t group, const uint32_t *const *lists,
+                        const int64_t *lengths)
+{
+    uint32_t *to = place_apart(w, group, lengths);
+    for (int32_t k = 0; to && k < SPHGI_GROUP; to += padded(lengths[k++]))
         memcpy(to, lists[k], (size_t)padded(lengths[k]) * sizeof *to);
 }
 
@@ -131,14 +132,14 @@ static void store_group(struct waiting *w, int32_t group, const uint32_t *const 
                         const int32_t *lengths)
 {
     int32_t longest = 0;
-    int64_t apart = SPHGI_GROUP;
+    int64_t count[SPHGI_GROUP];
     for (int32_t k = 0; k < SPHGI_GROUP; ++k) {
         longest = sphgi_max32(longest, lengths[k]);
-        apart += padded(lengths[k]);
+        count[k] = lengths[k];
     }
     const int64_t woven = (int64_t)sphgi_round_up((size_t)longest, 4) * SPHGI_GROUP;
-    if (woven > 2 * apart) {
-        store_apart(w, group, lists, lengths);
+    if (woven > 2 * ids_apart(count)) {
+        store_apart(w, group, lists, count);
         return;
     }
     uint32_t *to = place_for(w, group, woven, longest);
@@ -175,13 +176,8 @@ static void find_crowded_group(struct waiting *w, int32_t group)
         w->pairs += counted.count;
     }
     atomic_store(&w->build->crowded, true);
-    uint32_t *to = place_for(w, group, ids_apart(lengths), SPHGI_APART);
-    if (!to)
-        return;
-    for (int32_t k = 0; k < SPHGI_GROUP; ++k)
-        to[k] = (uint32_t)lengths[k];
-    to += SPHGI_GROUP;
-    for (int32_t k = 0; k < targets; ++k) {
+    uint32_t *to = place_apart(w, group, lengths);
+    for (int32_t k = 0; to && k < targets; ++k) {
         struct list list = {to, 0};
         sphgi_find_target(&w->finder, first + k, append, &list);
         for (; list.count < padded(list.count); ++list.count)
