@@ -322,6 +322,9 @@ struct sphgi_passes {
                           const void *sums, void *trace);
     void (*contract)(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
                      void *divergence, void *curl);
+    /* Asks the memory for what load_lanes or store_lanes will touch. */
+    void (*ask_for_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
+                          bool write);
     void (*load_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                        void *out);
     void (*store_lanes)(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,

@@ -90,6 +90,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .add_product = add_product,
     .trace_between = trace_between,
     .contract = contract,
+    .ask_for_lanes = ask_for_lanes,
     .load_lanes = load_lanes,
     .store_lanes = store_lanes,
 };

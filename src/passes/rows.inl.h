@@ -190,6 +190,22 @@ SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int
     }
 }
 
+/* Columns that follow one another share lines of the cache. */
+static void ask_for_lanes(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
+                          bool write)
+{
+    const int32_t count = columns->together ? sphgi_min32(columns->count, 1) : columns->count;
+    for (int32_t c = 0; c < count && columns->stride; ++c)
+        for (int32_t l = 0; l < width; ++l) {
+            const char *at = columns->at[c] + items[l] * columns->stride;
+            if (write)
+                __builtin_prefetch(at, 1);
+            else
+                __builtin_prefetch(at, 0);
+        }
+    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
+}
+
 static void load_lanes(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                        void *out)
 {

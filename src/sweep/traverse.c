@@ -95,6 +95,38 @@ static int32_t active_of(const struct sphgi_task *task, int32_t group, int32_t *
     return picked;
 }
 
+enum { GROUPS_AHEAD = 8 };
+
+/* What stands in order of storage is read front to back, but by so few instructions that the
+ * machine does not see it coming. */
+static void ask_for_numbers(const sphg_neighbors *n, int32_t place)
+{
+    if (place + GROUPS_AHEAD * SPHGI_GROUP < n->target_count) {
+        __builtin_prefetch((const int32_t *)sphgi_target_grid(n)->order.data + place +
+                           GROUPS_AHEAD * SPHGI_GROUP);
+        __builtin_prefetch((const uint16_t *)n->found.lengths.data + place +
+                           GROUPS_AHEAD * SPHGI_GROUP);
+    }
+}
+
+/* The host's arrays have an order of their own: what the group will read and write there comes
+ * while its pairs are summed. */
+static void ask_for_group(const struct sphgi_worker *w, const int32_t *targets)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    p->ask_for_lanes(SPHGI_GROUP, &plan->target_correction, targets, false);
+    p->ask_for_lanes(SPHGI_GROUP, &plan->correction, targets, true);
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (k >= 32 || !(w->targets_in_rows >> k & 1))
+            p->ask_for_lanes(SPHGI_GROUP, &field->target, targets, false);
+        p->ask_for_lanes(SPHGI_GROUP, &field->gradient, targets, true);
+        p->ask_for_lanes(SPHGI_GROUP, &field->divergence, targets, true);
+        p->ask_for_lanes(SPHGI_GROUP, &field->curl, targets, true);
+    }
+}
+
 /* A whole group, whose lists stand side by side, and no others wait. */
 static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids)
 {
@@ -109,6 +141,8 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
         target[l] = order[l];
         places[l] = place + l;
     }
+    ask_for_numbers(n, place);
+    ask_for_group(w, target);
     w->lists.stride[0] = SPHGI_GROUP;
     w->lists.side_by_side = true;
     for (int32_t first = 0; first < SPHGI_GROUP; first += w->passes->lanes) {
