@@ -158,6 +158,11 @@ static const struct column paper_columns[TABLE1_COLUMNS] = {
     {.method = SPHG_RKPM, .paper_matrix = 12.31, .paper_gradient = 13.94},
 };
 
+int table1_keeps_weights(const struct column *column)
+{
+    return column->method == SPHG_KGC || column->method == SPHG_MLS || column->method == SPHG_RKPM;
+}
+
 static void create_columns(struct table1 *table)
 {
     const int32_t repetitions = table->options.repetitions;
@@ -170,6 +175,9 @@ static void create_columns(struct table1 *table)
         column->matrix = samples_create(repetitions);
         column->gradient = samples_create(repetitions);
         column->fused = samples_create(repetitions);
+        column->matrix_kept = samples_create(repetitions);
+        column->gradient_kept = samples_create(repetitions);
+        column->fused_kept = samples_create(repetitions);
     }
 }
 
@@ -182,6 +190,9 @@ static void destroy_columns(struct table1 *table)
         samples_destroy(&table->columns[k].matrix);
         samples_destroy(&table->columns[k].gradient);
         samples_destroy(&table->columns[k].fused);
+        samples_destroy(&table->columns[k].matrix_kept);
+        samples_destroy(&table->columns[k].gradient_kept);
+        samples_destroy(&table->columns[k].fused_kept);
     }
 }
 

@@ -20,9 +20,11 @@ struct column {
     sphg_method method;
     double paper_matrix, paper_gradient; /* [ms], 32 cores of a Threadripper PRO 5975WX */
     struct samples matrix, gradient, fused;
+    /* The same with weights that a sweep before kept; linearised methods only. */
+    struct samples matrix_kept, gradient_kept, fused_kept;
     /* Untimed: the field v = (-y, x, 2z), in 2D (-y, x), max |J_i - J|_F / |J|_F over particles of
      * full rank (plain SPH, which has no rank: over all); NaN if there are none. */
-    double gradient_error, fused_error;
+    double gradient_error, fused_error, kept_error;
     int64_t not_finite; /* numbers in any Jacobian, of v and of the timed field */
     sphg_stats stats;
 };
@@ -39,6 +41,9 @@ struct table1 {
     int32_t probe_count;
     struct column columns[TABLE1_COLUMNS];
 };
+
+/* Whether a method forms weights that neighbours can keep. */
+int table1_keeps_weights(const struct column *column);
 
 /* Opens the library, warms up, measures, closes. */
 void table1_measure(struct table1 *table);

@@ -49,6 +49,10 @@ void table1_write_json(const struct table1 *table, const char *path, const char 
         report_part(report, column, "matrix", &column->matrix, NULL);
         report_part(report, column, "gradient", &column->gradient, &column->gradient_error);
         report_part(report, column, "fused", &column->fused, &column->fused_error);
+        report_part(report, column, "matrix+weights", &column->matrix_kept, NULL);
+        report_part(report, column, "gradient+weights", &column->gradient_kept,
+                    &column->kept_error);
+        report_part(report, column, "fused+weights", &column->fused_kept, NULL);
     }
     report_write(report, path);
 }

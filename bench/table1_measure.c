@@ -13,6 +13,8 @@ struct bench {
     struct table1 *table;
     sphg_context *context;
     sphg_neighbors *neighbors;
+    sphg_neighbors *keeping; /* the same pairs, with room for weights */
+    int with_weights;        /* which of both is swept */
     struct probe *probe;
     struct numbers corrections; /* room for the widest; each method uses the start of it */
     struct numbers jacobians;
@@ -29,8 +31,9 @@ static sphg_scheme scheme_of(const struct bench *bench, sphg_method method)
 
 static sphg_sources sources_of(const struct bench *bench)
 {
-    return (sphg_sources){.neighbors = bench->neighbors,
-                          .volume = numbers_view(&bench->table->particles.volumes)};
+    return (sphg_sources){.neighbors = bench->with_weights ? bench->keeping : bench->neighbors,
+                          .volume = numbers_view(&bench->table->particles.volumes),
+                          .same_volumes = bench->with_weights};
 }
 
 static sphg_view correction_table(const struct bench *bench, sphg_method method)
@@ -41,16 +44,17 @@ static sphg_view correction_table(const struct bench *bench, sphg_method method)
     return table.width > 0 ? numbers_view(&table) : sphg_absent();
 }
 
-static void search(struct bench *bench)
+static void search(struct bench *bench, sphg_neighbors *neighbors, int keep_weights)
 {
     const struct particles *particles = &bench->table->particles;
     const sphg_scheme scheme = scheme_of(bench, SPHG_KGC);
     const sphg_geometry geometry = {.sources = numbers_view(&particles->positions),
                                     .source_count = particles->count,
                                     .target_count = particles->count,
-                                    .precision = bench->jacobians.type};
+                                    .precision = bench->jacobians.type,
+                                    .keep_weights = keep_weights};
     library_check(bench->context,
-                  sphg_neighbors_search(bench->context, bench->neighbors, &scheme, &geometry));
+                  sphg_neighbors_search(bench->context, neighbors, &scheme, &geometry));
 }
 
 static void compute_matrix(struct bench *bench, sphg_method method)
@@ -142,6 +146,13 @@ static void measure_errors(struct bench *bench, struct column *column,
     compute_gradient(bench, method, linear_field);
     column->gradient_error = largest_error(bench, method);
     column->not_finite += count_not_finite(&bench->jacobians);
+    if (!table1_keeps_weights(column))
+        return;
+    bench->with_weights = 1;
+    compute_matrix(bench, method); /* which keeps them */
+    compute_gradient(bench, method, linear_field);
+    column->kept_error = largest_error(bench, method);
+    bench->with_weights = 0;
 }
 
 static void warm_up(struct bench *bench)
@@ -180,6 +191,24 @@ static void time_method(struct bench *bench, struct column *column)
     samples_add_since(&column->fused, fused_start);
 }
 
+/* Weights of one scheme are kept at a time: those of this method are formed first, untimed. */
+static void time_kept(struct bench *bench, struct column *column)
+{
+    const struct numbers *field = &bench->table->particles.velocities;
+    bench->with_weights = 1;
+    compute_matrix(bench, column->method);
+    const struct moment matrix_start = now();
+    compute_matrix(bench, column->method);
+    samples_add_since(&column->matrix_kept, matrix_start);
+    const struct moment gradient_start = now();
+    compute_gradient(bench, column->method, field);
+    samples_add_since(&column->gradient_kept, gradient_start);
+    const struct moment fused_start = now();
+    compute_fused(bench, column->method, field, NULL, NULL);
+    samples_add_since(&column->fused_kept, fused_start);
+    bench->with_weights = 0;
+}
+
 /* A cube of as many particles, a million at most, whatever the table is about. */
 static void prepare_probe(struct bench *bench)
 {
@@ -207,10 +236,13 @@ static void repeat(struct bench *bench)
     for (int32_t repetition = 0; repetition < table->options.repetitions; repetition++) {
         progress_show("repetition %d of %d", repetition + 1, table->options.repetitions);
         const struct moment start = now();
-        search(bench);
+        search(bench, bench->neighbors, 0);
         samples_add_since(&table->search, start);
         for (int k = 0; k < TABLE1_COLUMNS; k++)
             time_method(bench, &table->columns[k]);
+        for (int k = 0; k < TABLE1_COLUMNS; k++)
+            if (table1_keeps_weights(&table->columns[k]))
+                time_kept(bench, &table->columns[k]);
         time_probe(bench);
     }
     progress_clear();
@@ -256,10 +288,11 @@ static void first_search(struct bench *bench)
 {
     progress_show("warm-up: search");
     const double start = now().wall;
-    search(bench);
+    search(bench, bench->neighbors, 0);
     bench->table->first_search = now().wall - start;
     library_check(bench->context, sphg_neighbors_get_info(bench->context, bench->neighbors,
                                                           &bench->table->neighbors));
+    search(bench, bench->keeping, 1);
 }
 
 void table1_measure(struct table1 *table)
@@ -273,6 +306,7 @@ void table1_measure(struct table1 *table)
     bench.jacobians = numbers_create(type, count, dimension * dimension);
     bench.ranks = allocate_or_exit((size_t)count, 1);
     library_check(bench.context, sphg_neighbors_create(bench.context, &bench.neighbors));
+    library_check(bench.context, sphg_neighbors_create(bench.context, &bench.keeping));
     first_search(&bench);
     complete_volumes(&bench);
     prepare_probe(&bench);
@@ -280,6 +314,7 @@ void table1_measure(struct table1 *table)
     repeat(&bench);
     probe_destroy(bench.probe);
     sphg_neighbors_destroy(bench.neighbors);
+    sphg_neighbors_destroy(bench.keeping);
     sphg_context_destroy(bench.context);
     numbers_destroy(&bench.corrections);
     numbers_destroy(&bench.jacobians);

@@ -29,7 +29,10 @@ static void print_cell(const char *text)
 
 static const struct samples *samples_of(const struct column *column, int which)
 {
-    return which == 0 ? &column->matrix : which == 1 ? &column->gradient : &column->fused;
+    const struct samples *const all[] = {&column->matrix,        &column->gradient,
+                                         &column->fused,         &column->matrix_kept,
+                                         &column->gradient_kept, &column->fused_kept};
+    return all[which];
 }
 
 static void print_medians(const struct table1 *table, const char *label, int which)
@@ -231,10 +234,12 @@ static void print_header(const struct table1 *table)
 
 static void print_times(const struct table1 *table)
 {
-    static const char *const labels[] = {"T_mat   [ms]", "T_grad  [ms]", "fused   [ms]"};
+    static const char *const labels[] = {"T_mat   [ms]",         "T_grad  [ms]",
+                                         "fused   [ms]",         "T_mat  +weights [ms]",
+                                         "T_grad +weights [ms]", "fused  +weights [ms]"};
     static const char *const per_pair[] = {"T_mat   [ns a pair]", "T_grad  [ns a pair]",
                                            "fused   [ns a pair]"};
-    for (int which = 0; which < 3; which++) {
+    for (int which = 0; which < 6; which++) {
         print_medians(table, labels[which], which);
         print_ranges(table, which);
     }
@@ -276,6 +281,8 @@ static void print_footer(const struct table1 *table, int deficient)
                (long long)not_finite);
     else
         printf("all numbers of all Jacobians are finite\n");
+    printf("+weights: the sweep before, which is not timed, kept what kernel and volume give each "
+           "pair\n");
     printf("paper: one million particles on 32 cores of a Threadripper PRO 5975WX\n");
 }
 

@@ -145,7 +145,10 @@ static void an_empty_set_beside_another_adds_nothing(const test_case *test)
     const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
     const sphg_view of_nobody[] = {ones, none};
     const sphg_sources sources[] = {
-        {fixture_search(own.context, &own.scheme, &alone), ones, ones, fixture_view(&one.table)},
+        {.neighbors = fixture_search(own.context, &own.scheme, &alone),
+         .volume = ones,
+         .density = ones,
+         .correction = fixture_view(&one.table)},
         {.neighbors = fixture_search(own.context, &own.scheme, &beside)}};
     every_form(&own, sources, 2, of_nobody, none, fixture_view(&one.result));
     for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
@@ -163,7 +166,10 @@ static void a_third_set_of_nobody_adds_nothing(const test_case *test)
     const sphg_view fields[] = {none, ones, none};
     const sphg_sources sources[] = {
         {.neighbors = fixture_search(own.context, &own.scheme, &beside)},
-        {fixture_search(own.context, &own.scheme, &alone), ones, ones, fixture_view(&one.table)},
+        {.neighbors = fixture_search(own.context, &own.scheme, &alone),
+         .volume = ones,
+         .density = ones,
+         .correction = fixture_view(&one.table)},
         {.neighbors = fixture_search(own.context, &own.scheme, &beside)}};
     every_form(&own, sources, 3, fields, none, fixture_view(&one.result));
     for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)

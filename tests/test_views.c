@@ -221,7 +221,8 @@ static fixture_array force_of(const stage *own, const sphg_neighbors *neighbors,
                               sphg_view density, sphg_view table, sphg_view stress)
 {
     fixture_array force = fixture_output(own->scalar.type, COUNT, own->dimension);
-    const sphg_sources sources = {neighbors, volume, density, table};
+    const sphg_sources sources = {
+        .neighbors = neighbors, .volume = volume, .density = density, .correction = table};
     const sphg_field field = {.shape = SPHG_TENSOR,
                               .form = SPHG_SYMMETRIC,
                               .at_sources = &stress,

@@ -281,6 +281,10 @@ typedef struct sphg_geometry {
                             positions: differences are taken before narrowing. Never wider */
     int32_t list_free;   /* search only; 1: keep no pairs, each operator finds them: for one or
                             two uses. Without a skin */
+    int32_t keep_weights; /* search only; 1: room for the weight that a scheme gives each pair: the
+                             first sweep fills it, later ones of the same kernel, method and volumes
+                             read it and save the kernel; same bits. 4 bytes a pair (f64: 8). Of use
+                             without skin and periodic axes; classic methods form theirs anew */
     double skin;         /* [L], search only: find pairs up to H + skin and keep them until a
                             particle has moved skin / 2; results are exact throughout */
     double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin) up to rounding; positions
@@ -407,6 +411,8 @@ typedef struct sphg_sources {
                              (threshold); not read by CMLS in DIFFERENCE and DIRECT */
     sphg_view density;    /* rho_j; read in SYMMETRIC only */
     sphg_view correction; /* C_j; read in ADJOINT and SYMMETRIC, unless this set's A_j are 0 */
+    int32_t same_volumes; /* 1: the V_j are those of the sweep before, so that weights that were kept
+                             (keep_weights) may be read. One volume for all is compared, not asked */
 } sphg_sources;
 
 /* Some of the targets. Arrays stay indexed by target; what is not selected is not touched. */

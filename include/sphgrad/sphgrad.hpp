@@ -404,6 +404,7 @@ struct sources {
     }
     const sphg_neighbors *neighbors;
     input volume, density, correction;
+    bool same_volumes = false; /* those of the sweep before: kept weights may be read */
 };
 
 struct field {
@@ -790,6 +791,7 @@ template <class Errors> class basic_context
         made.density = check.take(set.density, info.source_count, 1, "density");
         made.correction = check.take(set.correction, info.source_count, correction_width(scheme),
                                      "correction of the sources");
+        made.same_volumes = set.same_volumes;
         return made;
     }
     static const sphg_subset *of_subset(detail::checker &check, const subset &some, std::int64_t n)

@@ -32,13 +32,13 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
 }
 
 struct buffers {
-    struct sphgi_buffer *list[5];
+    struct sphgi_buffer *list[7];
 };
 
 static struct buffers own_buffers(sphg_neighbors *n)
 {
-    return (struct buffers){
-        {&n->target_place, &n->found.lengths, &n->shared, &n->sources_then, &n->targets_then}};
+    return (struct buffers){{&n->target_place, &n->found.lengths, &n->shared, &n->sources_then,
+                             &n->targets_then, &n->weights, &n->weight_book}};
 }
 
 void sphg_neighbors_destroy(sphg_neighbors *neighbors)
@@ -113,7 +113,8 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
     if (!result) {
         const sphg_neighbors *n = neighbors;
         const struct sphgi_buffer *own[] = {&n->target_place, &n->found.lengths, &n->shared,
-                                            &n->sources_then, &n->targets_then};
+                                            &n->sources_then, &n->targets_then,  &n->weights,
+                                            &n->weight_book};
         *info = (sphg_neighbors_info){.pairs = n->kind ? n->found.pairs : 0,
                                       .target_count = n->kind ? n->target_count : 0,
                                       .source_count = n->kind ? n->source_count : 0,

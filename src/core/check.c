@@ -249,6 +249,9 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
     if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, must be >= 0 and finite", f,
                sphgi_digits(geometry->skin).text);
+    if (geometry->keep_weights && geometry->list_free)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.keep_weights is %d, but list_free keeps no pairs",
+               f, (int)geometry->keep_weights);
     if (geometry->skin > 0 && geometry->list_free)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, but list_free keeps no pairs", f,
                sphgi_digits(geometry->skin).text);
@@ -321,6 +324,9 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
     if (!searched && geometry->skin != 0)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, it is for searches only", f,
                sphgi_digits(geometry->skin).text);
+    if (!searched && geometry->keep_weights)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.keep_weights is %d, it is for searches only", f,
+               (int)geometry->keep_weights);
     if (!searched && geometry->list_free)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.list_free is %d, it is for searches only", f,
                (int)geometry->list_free);

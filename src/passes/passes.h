@@ -227,6 +227,12 @@ struct sphgi_passes {
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
 
+    /* The same for factors that stand in memory, [step][SPHGI_GROUP] from that of the first lane on;
+     * and what puts them there. */
+    void (*gather_offsets)(const struct sphgi_gather *gather, const void *kept,
+                           const int32_t *targets, struct sphgi_tile *tile);
+    void (*keep_factors)(const struct sphgi_tile *tile, void *kept);
+
     /* SPHGI_GROUP lists padded to four with the dummy, side by side: [step][list]. Steps are
      * rounded up to four. */
     void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, uint32_t dummy,

@@ -28,6 +28,7 @@
 #include "search.inl.h"
 #include "shape.inl.h"
 #include "gather_factors.inl.h"
+#include "kept_factors.inl.h"
 #include "sums.inl.h"
 #include "contracted.inl.h"
 #include "classic.inl.h"
@@ -54,6 +55,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
 #endif
     .largest_move = largest_move,
     .gather_factors = gather_factors,
+    .gather_offsets = gather_offsets,
+    .keep_factors = keep_factors,
     .find = find,
     .weave = weave,
     .interleave = interleave,

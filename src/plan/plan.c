@@ -37,6 +37,7 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
     if (n->part_of && plan->own_set < 0)
         plan->own_set = s;
     plan->sets[s].neighbors = n;
+    plan->sets[s].same_volumes = making->request->sources[s].same_volumes != 0;
     return SPHG_OK;
 }
 

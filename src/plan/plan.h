@@ -15,6 +15,7 @@ struct sphgi_stream {
 struct sphgi_set_plan {
     const sphg_neighbors *neighbors;
     struct sphgi_columns volume;
+    bool same_volumes;                  /* the host says so: those of the sweep before */
     const struct sphgi_stream *streams; /* sphgi_plan.stream_count of them */
 };
 

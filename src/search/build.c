@@ -5,6 +5,7 @@
 #include "core/view.h"
 #include "lists.h"
 #include "skin.h"
+#include "weights.h"
 #include <math.h>
 #include <string.h>
 
@@ -153,6 +154,7 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     for (int32_t a = 0; a < 3; ++a)
         n->period[a] = a < g->dimension ? given->period[a] : 0;
     n->list_free = given->list_free != 0;
+    n->keeps_weights = given->keep_weights != 0;
     n->part_of = g->part_of;
     n->same = g->part_of && g->target_count == g->source_count;
     n->source_count = g->source_count;
@@ -214,6 +216,8 @@ sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *
         sphgi_place_dummy(n, true);
     if (!result && !n->list_free)
         result = sphgi_lists_build(checker.context, n);
+    if (!result && !sphgi_weights_reserve(n))
+        result = SPHG_ERROR_MEMORY;
     n->skin_left = 0;
     if (!result && n->skin > 0)
         result = sphgi_skin_remember(n, &g) ? SPHG_OK : SPHG_ERROR_MEMORY;

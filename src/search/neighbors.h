@@ -38,7 +38,7 @@ struct sphg_neighbors {
     double radius;                 /* H that the pairs were found for */
     double skin;
     double period[3];
-    bool periodic, list_free;
+    bool periodic, list_free, keeps_weights;
     bool part_of; /* targets are the first sources */
     bool same;    /* ... and all of them: one grid serves both */
     int32_t source_count, target_count;
@@ -50,6 +50,7 @@ struct sphg_neighbors {
     struct sphgi_buffer shared;         /* tables of the grids, then lists */
     struct sphgi_found found;
     struct sphgi_buffer sources_then, targets_then; /* rows at the last search, with a skin */
+    struct sphgi_buffer weights, weight_book;       /* weights.h; empty: none are kept */
     bool rebuilt;
     double skin_left;
 

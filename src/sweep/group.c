@@ -91,6 +91,21 @@ static void ready_ids(struct sphgi_worker *w, const struct sphgi_lane_lists *lis
         sphgi_clean_lists(w, &part);
 }
 
+/* s_ij that stand in memory are read instead of formed; what is formed there is kept. */
+static void gather_factors(struct sphgi_worker *w, int32_t begin)
+{
+    const struct sphgi_passes *p = w->passes;
+    const size_t step = SPHGI_GROUP * sphgi_size_of_type(w->sweep->plan->type);
+    char *kept = w->kept ? w->kept + (size_t)begin * step : NULL;
+    if (kept && w->kept_stand) {
+        p->gather_offsets(&w->gather, kept, sphgi_places(w), &w->tile);
+        return;
+    }
+    p->gather_factors(&w->gather, &w->shape, sphgi_places(w), &w->tile);
+    if (kept)
+        p->keep_factors(&w->tile, kept);
+}
+
 static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
     const bool ready = !w->local && w->sweep->set->neighbors->kind == SPHGI_SEARCHED;
@@ -102,7 +117,7 @@ static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *list
     else
         ready_ids(w, lists, begin);
     if (w->factors_at_once)
-        w->passes->gather_factors(&w->gather, &w->shape, sphgi_places(w), &w->tile);
+        gather_factors(w, begin);
     else
         w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);

@@ -58,6 +58,19 @@ static void look_at_volumes(struct sphgi_sweep *sweep, struct sphgi_tally *tally
         sweep->plan->type == SPHG_F64 ? value * unit : (double)((float)value * (float)unit);
 }
 
+static struct sphgi_kept_weights take_weights(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_scheme *scheme = &sweep->plan->scheme;
+    const struct sphgi_weights_of of = {.kernel = scheme->kernel,
+                                        .method = scheme->method == SPHG_PLAIN ? SPHG_KGC
+                                                                               : scheme->method,
+                                        .radius = scheme->radius,
+                                        .volume = sweep->volumes ? -1 : sweep->volume};
+    if (!sphgi_forms_factors_alone(sweep))
+        return (struct sphgi_kept_weights){.number = 0};
+    return sphgi_weights_take(sweep->set->neighbors, &of, sweep->set->same_volumes);
+}
+
 static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *selection,
                              struct sphgi_tally *tally)
 {
@@ -76,6 +89,8 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     sweep->packed = nothing_to_pack || (int64_t)active * PACK_WORTH >= n->source_count;
     const bool ready =
         !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) && open_workers(sweep);
+    if (ready)
+        sweep->kept = take_weights(sweep);
     if (ready && searched)
         sphgi_parallel_for(context, sphgi_group_task, task, groups, LEAST_TARGETS / SPHGI_GROUP);
     else if (ready)
@@ -85,6 +100,7 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     if (!ready)
         return SPHG_ERROR_MEMORY;
     close_workers(sweep, tally);
+    sphgi_weights_give_back(n, &sweep->kept, !tally->bad_volume);
     return SPHG_OK;
 }
 

@@ -127,6 +127,13 @@ static void ask_for_group(const struct sphgi_worker *w, const int32_t *targets)
     }
 }
 
+/* They stand where the ids do. */
+static char *kept_factors(const struct sphgi_worker *w, const uint32_t *ids)
+{
+    const ptrdiff_t at = ids - w->sweep->set->neighbors->found.ids;
+    return w->sweep->kept.factors + (size_t)at * sphgi_size_of_type(w->sweep->plan->type);
+}
+
 /* A whole group, whose lists stand side by side, and no others wait. */
 static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids)
 {
@@ -145,14 +152,21 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
     ask_for_group(w, target);
     w->lists.stride[0] = SPHGI_GROUP;
     w->lists.side_by_side = true;
+    const struct sphgi_kept_weights *kept = &w->sweep->kept;
+    const int32_t group = place / SPHGI_GROUP;
+    w->kept_stand = kept->number && kept->marks[group] == kept->number;
     for (int32_t first = 0; first < SPHGI_GROUP; first += w->passes->lanes) {
         w->lists.ids[0] = ids + first;
+        w->kept = kept->number ? kept_factors(w, w->lists.ids[0]) : NULL;
         for (int32_t l = 0; l < w->passes->lanes; ++l)
             w->lists.count[l] = lengths[first + l];
         w->group.lanes += w->passes->lanes;
         sphgi_group_run(w);
     }
     w->lists.side_by_side = false;
+    w->kept = NULL;
+    if (kept->number)
+        kept->marks[group] = kept->number;
     if (w->summed == SPHGI_WIDTH)
         finish_group(w);
 }

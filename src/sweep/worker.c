@@ -96,6 +96,18 @@ static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
     return (plan->classic || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) && plan->corrects;
 }
 
+static bool is_superset(const struct sphgi_sweep *sweep)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
+}
+
+static bool is_guarded(const struct sphgi_sweep *sweep)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return is_superset(sweep) || n->periodic || !n->dummy_is_far;
+}
+
 /* Linearised methods sum in the units of the positions, classic ones in units of H: their sums hold
  * third powers of the offsets. */
 static void open_scheme(struct sphgi_worker *w)
@@ -114,8 +126,8 @@ static void open_scheme(struct sphgi_worker *w)
                                       .volume = w->sweep->volume,
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
-    w->gather.superset = n->kind == SPHGI_HOST_LISTS || n->skin > 0 || h < n->radius;
-    w->gather.guarded = w->gather.superset || n->periodic || !n->dummy_is_far;
+    w->gather.superset = is_superset(w->sweep);
+    w->gather.guarded = is_guarded(w->sweep);
     w->shape =
         (struct sphgi_shape){.kernel = scheme->kernel,
                              .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
@@ -127,13 +139,12 @@ static void open_scheme(struct sphgi_worker *w)
     w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d, 1 / h};
 }
 
-/* Nor anything else that is formed pair by pair from them, apart from s_ij. */
-static bool are_distances_not_needed(const struct sphgi_worker *w)
+bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
-    const struct sphgi_plan *plan = w->sweep->plan;
-    return w->sweep->packed && !w->gather.guarded && !plan->classic && !plan->wants_value &&
+    const struct sphgi_plan *plan = sweep->plan;
+    return sweep->packed && !is_guarded(sweep) && !plan->classic && !plan->wants_value &&
            !plan->mean_volume && (plan->differentiates || plan->computes) &&
-           w->sweep->set->neighbors->position_type == plan->type;
+           sweep->set->neighbors->position_type == plan->type;
 }
 
 void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
@@ -152,5 +163,5 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
         w->passes->fill(SPHGI_TILE, sweep->volume, w->arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     find_targets_in_rows(w);
-    w->factors_at_once = are_distances_not_needed(w);
+    w->factors_at_once = sphgi_forms_factors_alone(sweep);
 }

@@ -3,6 +3,7 @@
 #ifndef SPHGI_WORKER_H
 #define SPHGI_WORKER_H
 #include "search/find.h"
+#include "search/weights.h"
 #include "plan/plan.h"
 #include "tally.h"
 #include "plan/units.h"
@@ -36,7 +37,8 @@ struct sphgi_sweep {
     const char *packed_rows;      /* streams, as many rows each */
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
-    char *arena;                  /* sums, plan->sums numbers a target */
+    struct sphgi_kept_weights kept;           /* s_ij that this sweep reads and writes */
+    char *arena;                              /* sums, plan->sums numbers a target */
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
     char *memory;
@@ -66,6 +68,8 @@ struct sphgi_worker {
     const void **rows;               /* of each stream */
     unsigned summing;                /* SPHGI_SUM_..., of this pass over the group */
     bool factors_at_once;            /* s_ij come with the pairs, for nobody asks for distances */
+    char *kept;                      /* the group's s_ij, of the lanes at work; NULL: none */
+    bool kept_stand;                 /* they were written by a sweep before */
     bool coefficients_first;         /* they must be known before fields can be summed */
     bool targets_loaded;             /* A_i, V_i, rho_i of the group */
     uint32_t targets_in_rows;        /* a bit per field: A_i stand in packed rows */
@@ -88,6 +92,10 @@ struct sphgi_worker {
 };
 
 enum { SPHGI_WAITING_IDS = 1 << 15 }; /* of lists that wait until the lanes are full */
+
+/* s_ij can be formed as pairs are gathered: nobody asks for distances, nor for anything else that
+ * is made of them. */
+bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep);
 
 /* Bytes of memory of one worker; 0 on overflow. */
 size_t sphgi_worker_size(const struct sphgi_sweep *sweep);

@@ -20,6 +20,7 @@ case $command in
         "$checker" "$work/report.json" table1/KGC/gradient error_max 0 1e-5 \
             probe/ particles 4096 4096
         grep -q '^yardstick ' "$work/output"
+        grep -q 'T_grad +weights .* [0-9]' "$work/output"
         ;;
     limit)
         measure --particles 4096 --repetitions 2

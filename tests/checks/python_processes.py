@@ -24,12 +24,12 @@ class Scheme(c.Structure):
 class Geometry(c.Structure):
     _fields_ = [("sources", View), ("targets", View), ("source_count", c.c_int32),
                 ("target_count", c.c_int32), ("precision", c.c_int), ("list_free", c.c_int32),
-                ("skin", c.c_double), ("period", c.c_double * 3)]
+                ("keep_weights", c.c_int32), ("skin", c.c_double), ("period", c.c_double * 3)]
 
 
 class Sources(c.Structure):
     _fields_ = [("neighbors", c.c_void_p), ("volume", View), ("density", View),
-                ("correction", View)]
+                ("correction", View), ("same_volumes", c.c_int32)]
 
 
 class Info(c.Structure):

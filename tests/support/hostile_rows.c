@@ -151,12 +151,13 @@ static int spoil_shape(victim *own, int number, trial *made)
         ROW("geometry.target_count", COUNT, geometry.target_count),                                \
         ENUM("geometry.precision", geometry.precision, 0, SPHG_F64),                               \
         ROW("geometry.skin", LENGTH, geometry.skin),                                               \
-        ROW("geometry.period", LENGTH, geometry.period[1]), FREE("geometry.list_free")
+        ROW("geometry.period", LENGTH, geometry.period[1]), FREE("geometry.list_free"),         \
+        FREE("geometry.keep_weights")
 #define SOURCES                                                                                    \
     ROW("sources", POINTER, sources_given), ROW("sources.neighbors", BUILT, sources[0].neighbors), \
         ROW("sources.neighbors", INDICES, sources[0].neighbors),                                   \
         VIEW("sources.volume", sources[0].volume, REQUIRED),                                       \
-        ROW("sources.volume", VOLUMES, sources[0].volume)
+        ROW("sources.volume", VOLUMES, sources[0].volume), FREE("sources.same_volumes")
 #define SUBSET                                                                                     \
     FREE("subset"), ROW("subset.begin", RANGE, subset), ROW("subset.end", RANGE, subset),          \
         ROW("subset.indices", PICKED, subset), FREE("subset.mask")

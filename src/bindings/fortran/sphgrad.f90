@@ -141,7 +141,7 @@ module sphgrad
     type(sphg_view) :: sources, targets
     integer(c_int32_t) :: source_count = 0, target_count = 0
     integer(c_int) :: precision = 0
-    integer(c_int32_t) :: list_free = 0
+    integer(c_int32_t) :: list_free = 0, keep_weights = 0
     real(c_double) :: skin = 0
     real(c_double) :: period(3) = 0
   end type sphg_geometry
@@ -169,6 +169,7 @@ module sphgrad
   type, bind(c), public :: sphg_sources
     type(c_ptr) :: neighbors = c_null_ptr
     type(sphg_view) :: volume, density, correction
+    integer(c_int32_t) :: same_volumes = 0
   end type sphg_sources
 
   ! Targets [begin, end), counted from 0 as in C

@@ -120,7 +120,7 @@ class Scheme(c.Structure):
 class Geometry(c.Structure):
     _fields_ = [("sources", View), ("targets", View), ("source_count", c.c_int32),
                 ("target_count", c.c_int32), ("precision", c.c_int), ("list_free", c.c_int32),
-                ("skin", c.c_double), ("period", c.c_double * 3)]
+                ("keep_weights", c.c_int32), ("skin", c.c_double), ("period", c.c_double * 3)]
 
 
 class Lists(c.Structure):
@@ -141,7 +141,7 @@ class ListFault(c.Structure):
 
 class Sources(c.Structure):
     _fields_ = [("neighbors", c.c_void_p), ("volume", View), ("density", View),
-                ("correction", View)]
+                ("correction", View), ("same_volumes", c.c_int32)]
 
 
 class Subset(c.Structure):

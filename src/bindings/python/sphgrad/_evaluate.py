@@ -12,11 +12,13 @@ from ._views import Borrowed, absent, as_array, item_shape
 @dataclasses.dataclass
 class Sources:
     """One source set: its neighbours, volumes V_j (an array, or a number for all), and for some forms
-    densities and a table of corrections."""
+    densities and a table of corrections. same_volumes: the volumes are those of the sweep before, so
+    that weights which the neighbours keep may be read."""
     neighbors: Neighbors
     volume: object = None
     density: object = None
     correction: object = None
+    same_volumes: bool = False
 
 
 @dataclasses.dataclass
@@ -133,7 +135,8 @@ class Call:
         return _c.Sources(
             n._pointer, take(one.volume, n.source_count, (), self.dtype, "volume"),
             take(one.density, n.source_count, (), self.dtype, "density"),
-            take(one.correction, n.source_count, (self.width,), self.dtype, "correction"))
+            take(one.correction, n.source_count, (self.width,), self.dtype, "correction"),
+            bool(one.same_volumes))
 
     def _subset(self, given):
         """slice or (begin, end): a range; bool: a mask; whole numbers: indices."""

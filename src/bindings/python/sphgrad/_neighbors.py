@@ -58,17 +58,19 @@ class Neighbors:
     skin      find pairs up to H + skin and keep them until a particle has moved skin / 2
     precision of fields and results; None: that of the positions. float32 beside float64 positions
     list_free keep no pairs: for one or two uses
+    keep_weights   keep what a kernel gives each pair for the next sweeps (see Sources.same_volumes)
     lists     Lists of yours, or a SciPy CSR matrix, instead of a search. Borrowed: what is used
               where it lies must stay unchanged until the next build
 
     search() takes the next step's positions; what is not given stays as it was."""
 
     def __init__(self, positions, scheme, *, own=None, targets=None, period=None, skin=0.0,
-                 precision=None, list_free=False, lists=None, context=None):
+                 precision=None, list_free=False, keep_weights=False, lists=None, context=None):
         self._destroy = None
         self.context = context if context is not None else default_context()
         self._scheme = as_scheme(scheme)
-        self._options = dict(period=period, skin=skin, precision=precision, list_free=list_free)
+        self._options = dict(period=period, skin=skin, precision=precision, list_free=list_free,
+                             keep_weights=keep_weights)
         pointer = c.c_void_p()
         with self.context._calls() as handle:
             self.context._check(_c.functions.sphg_neighbors_create(handle, c.byref(pointer)))
@@ -110,7 +112,8 @@ class Neighbors:
     def _geometry(self, positions, own, targets, borrowed):
         dimension = positions.shape[1]
         geometry = _c.Geometry(source_count=len(positions), skin=self._options["skin"],
-                               list_free=bool(self._options["list_free"]))
+                               list_free=bool(self._options["list_free"]),
+                               keep_weights=bool(self._options["keep_weights"]))
         geometry.sources = borrowed.input(positions, len(positions), (dimension,), positions.dtype,
                                           "positions", _c.Shape.VECTOR, same=False)
         geometry.targets = absent()
@@ -135,8 +138,8 @@ class Neighbors:
     def _lists(self, lists, geometry, borrowed):
         if not isinstance(lists, Lists):
             lists = Lists(lists.indptr, lists.indices)
-        if self._options["skin"] or self._options["list_free"]:
-            raise ValueError("skin and list_free are for a search, not for lists")
+        if any(self._options[name] for name in ("skin", "list_free", "keep_weights")):
+            raise ValueError("skin, list_free and keep_weights are for a search, not for lists")
         offsets, array = borrowed.numbers(lists.offsets, np.int64, "offsets",
                                           geometry.target_count + 1)
         if array[0] != 0 or (len(array) > 1 and bool((array[1:] < array[:-1]).any())):
