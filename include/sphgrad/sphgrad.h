@@ -1,4 +1,4 @@
-/* sphgrad: corrected first-order SPH derivatives (KGC, MLS, RKPM; linearised and classic).
+/* sphgrad: corrected SPH derivatives, first and second order (KGC, MLS, RKPM; classic ones).
  * SPDX-License-Identifier: MIT
  * "Eq. (n)" = Westhofen, Jeske, Bender 2023, doi:10.1145/3606933
  *
@@ -248,10 +248,16 @@ typedef struct sphg_scheme {
     double threshold;      /* eps in (0, 1); 0: 1e-2. Needs absolute volumes, but for classic
                               methods: lambda grows with them; 100 times too small, in a wrong
                               unit, they give rank 0 everywhere and no error */
+    int32_t order; /* 0, 1: exact on linear fields; 2 (KGC, MLS, RKPM; DIFFERENCE): on quadratic
+                      ones where `rank` is d (d + 3) / 2. Inside a fluid H = 2 spacings suffice, at
+                      surfaces 2.5 to 3; curvature that neighbours do not resolve counts as 0, down
+                      to what order 1 gives. Its threshold is a tenth of eps */
 } sphg_scheme;
 
 /* Numbers per item of a correction table: linearised d (d + 1) / 2, C_i as SYM_TENSOR; classic
- * (d + 1)^2, the interpolant's coefficients and their derivatives; PLAIN 0. */
+ * (d + 1)^2, the interpolant's coefficients and their derivatives; PLAIN 0. Order 2: 15 in 2D, 45 in
+ * 3D, of the inverse [P Q; Q^T R] of -sum s_ij p p^T, p = (x, x x^T / 2 as xx/2 xy xz yy/2 ..) with
+ * x = -x_ij: P and R as upper triangles, Q row by row between them; G_ij = -s_ij [P Q] p. */
 SPHG_API int32_t sphg_correction_width(const sphg_scheme *scheme);
 
 /* W(r) [L^-d] and W'(r)/r [L^-(d + 2)], finite for r >= 0 (spiky: W'/r is unbounded towards 0 and
@@ -470,15 +476,20 @@ typedef struct sphg_field {
                                     pressure systems; classic: self included */
     int32_t mirror;              /* 1: sources of sets whose view is absent carry the value of the
                                     target that looks at them, as walls do pressure: A_j = A_i */
+    sphg_view hessian;           /* [a/L^2] DIFFERENCE, order 2: scalar -> symmetric tensor, vector
+                                    -> d of them, one for each component (y and z start those) */
+    sphg_view laplacian;         /* [a/L^2] DIFFERENCE, order 2: its trace, shape as A. For diffusion
+                                    in time only where no surface is free: unstable there */
 } sphg_field;
 
 /* Sums over the targets of one call whose corrections were computed. */
 typedef struct sphg_stats {
-    int64_t rank[4];    /* targets of rank 0, 1, 2, 3 */
+    int64_t rank[4];    /* targets of rank 0, 1, 2, 3; order 2: of the directions up to d */
     int64_t certified;  /* inverted on the fast path, proven untouched by the threshold */
     int64_t decomposed; /* sent to the eigensolver */
     int64_t empty;      /* of these: nothing to sum (classic: sum w = 0, value and gradient 0) */
     double lambda_min;  /* the smallest; +inf if there were no targets */
+    int64_t quadratic;  /* order 2: targets exact on quadratic fields */
 } sphg_stats;
 
 typedef struct sphg_request {
@@ -497,7 +508,8 @@ typedef struct sphg_request {
 
     /* Wanted of the corrections, where they are computed: not beside a table. */
     sphg_view correction; /* C_i, sphg_correction_width() numbers an item */
-    sphg_view rank;       /* U8: fully corrected directions, 0..d */
+    sphg_view rank;       /* U8: fully corrected directions, 0..d; order 2: d and more where linear
+                             fields are exact, with the directions of curvature that are resolved */
     sphg_view lambda_min; /* smallest normalised moment, >= 0: exact where decomposed, elsewhere a
                              lower bound, at most a factor sqrt(d) too small */
     sphg_stats *stats;

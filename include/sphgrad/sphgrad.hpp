@@ -327,9 +327,9 @@ template <class... Range> output xyz_output(Range &...components)
 
 inline sphg_scheme scheme(double support_radius, sphg_method method = SPHG_KGC, int dimension = 3,
                           sphg_kernel kernel = SPHG_CUBIC_SPLINE, sphg_policy policy = SPHG_BLEND,
-                          double threshold = 0)
+                          double threshold = 0, int order = 1)
 {
-    return {dimension, method, kernel, policy, support_radius, threshold};
+    return {dimension, method, kernel, policy, support_radius, threshold, order};
 }
 
 /* Positions and counts. Precision, skin, period and list_free are set in `options`, whose views and
@@ -414,6 +414,7 @@ struct field {
     input at_targets = {};
     output value = {}, gradient = {}, divergence = {}, curl = {}, square = {};
     bool accumulate = false, mirror = false;
+    output hessian = {}, laplacian = {};
 };
 
 struct request {
@@ -840,6 +841,9 @@ template <class Errors> class basic_context
         made.divergence = check.take(one.divergence, n, down, d, "divergence");
         made.curl = check.take(one.curl, n, d == 2 ? SPHG_SCALAR : SPHG_VECTOR, d, "curl");
         made.square = check.take(one.square, n, SPHG_SCALAR, d, "square");
+        made.hessian = check.take(one.hessian, n,
+                                  (one.shape == SPHG_VECTOR ? d : 1) * d * (d + 1) / 2, "hessian");
+        made.laplacian = check.take(one.laplacian, n, one.shape, d, "laplacian");
         return made;
     }
     using short_function = sphg_result(sphg_context *, const sphg_scheme *, const sphg_sources *,

@@ -141,7 +141,8 @@ static sphg_result check_pair_overlap(const struct exporting *e)
     const struct sphgi_extent extents[] = {
         {"sources[0].volume", plan->sets[0].volume, plan->sets[0].neighbors->source_count, size,
          false},
-        {"target_correction", plan->target_correction, plan->target_count, size, false},
+        sphgi_extent_of("target_correction", &plan->target_correction, plan->target_count, size,
+                        false),
         gradient,
         array_extent("pairs.indices", pairs->indices, pairs->capacity, sizeof *pairs->indices),
         array_extent("pairs.offsets", pairs->offsets, e->subset ? 1 : rows,
@@ -366,6 +367,20 @@ static void classic_gradient(const sphg_scheme *scheme, int32_t d, const double 
         gradient[a] = slope * x_ij[a] * polynomial[0] + w * polynomial[1 + a];
 }
 
+/* -s [P Q] (x, x x^T / 2), x = -x_ij; c: P as a triangle, then Q row by row. */
+static void quadratic_gradient(const sphg_scheme *scheme, int32_t d, const double *x_ij,
+                               double volume, const double *c, double *gradient)
+{
+    const int32_t n = d * (d + 1) / 2;
+    double plain[3]; /* s x_ij */
+    linearised_gradient(scheme, d, x_ij, volume, NULL, plain);
+    linearised_gradient(scheme, d, x_ij, volume, c, gradient);
+    for (int32_t a = 0; a < d; ++a)
+        for (int32_t p = 0, k = 0; p < d; ++p)
+            for (int32_t q = p; q < d; ++q, ++k)
+                gradient[a] -= c[n + a * n + k] * (p == q ? .5 : 1) * plain[p] * x_ij[q];
+}
+
 /* Not inlined: arithmetic must stay between the two changes of the environment. */
 __attribute__((noinline)) static void pair_gradient(const sphg_scheme *scheme, const double *x_ij,
                                                     double volume, const double *correction,
@@ -374,6 +389,8 @@ __attribute__((noinline)) static void pair_gradient(const sphg_scheme *scheme, c
     const int32_t d = scheme->dimension == 2 ? 2 : 3;
     if (sphgi_is_classic(scheme->method) && correction)
         classic_gradient(scheme, d, x_ij, volume, correction, gradient);
+    else if (scheme->order == 2 && scheme->method != SPHG_PLAIN && correction)
+        quadratic_gradient(scheme, d, x_ij, volume, correction, gradient);
     else
         linearised_gradient(scheme, d, x_ij, volume,
                             scheme->method == SPHG_PLAIN ? NULL : correction, gradient);

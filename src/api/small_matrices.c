@@ -223,8 +223,12 @@ static sphg_result check_inversion(struct sphgi_checker checker, const struct sp
         return sphgi_fail(checker.context, SPHG_ERROR_UNSUPPORTED,
                           "%s: scheme.method is %d, only KGC, MLS and RKPM have moments", f,
                           (int)scheme->method);
+    if (scheme->order == 2)
+        return sphgi_fail(checker.context, SPHG_ERROR_UNSUPPORTED,
+                          "%s: scheme.order is 2, which needs more than these moments", f);
     const bool mls = scheme->method == SPHG_MLS;
-    const int32_t numbers = sphgi_correction_width(scheme->method, scheme->dimension);
+    const int32_t numbers =
+        sphgi_correction_width(scheme->method, scheme->dimension, scheme->order);
     sphg_result result = sphgi_check_range(checker, scheme, b->type);
     if (!result)
         result = check_batch(checker, moments, "moments", numbers, b, SPHGI_INPUT, b->type, true);

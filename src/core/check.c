@@ -12,11 +12,13 @@ bool sphgi_is_classic(sphg_method method)
     return method == SPHG_CMLS || method == SPHG_CRKPM;
 }
 
-int32_t sphgi_correction_width(sphg_method method, int32_t dimension)
+int32_t sphgi_correction_width(sphg_method method, int32_t dimension, int32_t order)
 {
     if (method == SPHG_PLAIN)
         return 0;
-    const int32_t d = dimension;
+    const int32_t d = dimension, all = d * (d + 3) / 2;
+    if (order == 2)
+        return all * (all + 1) / 2;
     return sphgi_is_classic(method) ? (d + 1) * (d + 1) : d * (d + 1) / 2;
 }
 
@@ -24,7 +26,8 @@ int32_t sphg_correction_width(const sphg_scheme *scheme)
 {
     if (!scheme || scheme->method < SPHG_KGC || scheme->method > SPHG_PLAIN)
         return 0;
-    return sphgi_correction_width(scheme->method, scheme->dimension == 2 ? 2 : 3);
+    const bool second = scheme->order == 2 && scheme->method <= SPHG_RKPM;
+    return sphgi_correction_width(scheme->method, scheme->dimension == 2 ? 2 : 3, second ? 2 : 1);
 }
 
 sphg_result sphgi_check_pointer(struct sphgi_checker checker, const void *pointer, const char *name)
@@ -62,6 +65,11 @@ sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *
         REFUSE(SPHG_ERROR_ARGUMENT,
                "%s: scheme.threshold is %s, must be at least 0 (the default) and below 1", f,
                sphgi_digits(scheme->threshold).text);
+    if (scheme->order < 0 || scheme->order > 2)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.order is %d, must be 1 (or 0) or 2", f,
+               (int)scheme->order);
+    if (scheme->order == 2 && scheme->method > SPHG_RKPM)
+        REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: scheme.order is 2, which KGC, MLS and RKPM have", f);
     *checked = (struct sphgi_scheme){
         .dimension = scheme->dimension ? scheme->dimension : 3,
         .method = scheme->method,
@@ -69,6 +77,7 @@ sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *
         .policy = scheme->policy,
         .radius = scheme->support_radius,
         .threshold = scheme->threshold > 0 ? scheme->threshold : 1e-2,
+        .order = scheme->order == 2 ? 2 : 1,
     };
     return SPHG_OK;
 }
@@ -187,6 +196,18 @@ static bool extents_overlap(const struct sphgi_extent *a, const struct sphgi_ext
             if (columns_overlap(a, i, b, k))
                 return true;
     return false;
+}
+
+/* Many numbers that follow one another are one large one. */
+struct sphgi_extent sphgi_extent_of(const char *name, const struct sphgi_columns *columns,
+                                    int32_t count, size_t number_size, bool output)
+{
+    struct sphgi_extent extent = {name, *columns, count, number_size, output};
+    if (columns->count > SPHGI_COLUMNS_MOST) {
+        extent.number_size *= (size_t)columns->count;
+        extent.columns.count = 1;
+    }
+    return extent;
 }
 
 /* Components of one output that were set on each other. */

@@ -16,12 +16,13 @@ struct sphgi_scheme {
     sphg_kernel kernel;
     sphg_policy policy;
     double radius, threshold;
+    int32_t order; /* 1 or 2 */
 };
 
 bool sphgi_is_classic(sphg_method method);
 
 /* Numbers per item of a correction table. */
-int32_t sphgi_correction_width(sphg_method method, int32_t dimension);
+int32_t sphgi_correction_width(sphg_method method, int32_t dimension, int32_t order);
 
 sphg_result sphgi_check_pointer(struct sphgi_checker checker, const void *pointer,
                                 const char *name);
@@ -62,6 +63,9 @@ struct sphgi_extent {
     size_t number_size;
     bool output;
 };
+/* Of columns of numbers of that size. */
+struct sphgi_extent sphgi_extent_of(const char *name, const struct sphgi_columns *columns,
+                                    int32_t count, size_t number_size, bool output);
 sphg_result sphgi_check_overlap(struct sphgi_checker checker, const struct sphgi_extent *extents,
                                 int32_t count);
 

@@ -50,6 +50,20 @@ double sphgi_kernel_mu2(sphg_kernel kernel, int32_t dimension)
     return constants[kernel][2 + (dimension == 3)];
 }
 
+double sphgi_kernel_mu4(sphg_kernel kernel, int32_t dimension)
+{
+    static const double of[][2] = {
+        [SPHG_CUBIC_SPLINE] = {635.0 / 112896, 17.0 / 3360},
+        [SPHG_QUINTIC_SPLINE] = {27479.0 / 10221552, 64.0 / 25515},
+        [SPHG_WENDLAND_C2] = {7.0 / 1584, 2.0 / 495},
+        [SPHG_WENDLAND_C4] = {3.0 / 1144, 2.0 / 819},
+        [SPHG_WENDLAND_C6] = {33.0 / 19040, 1.0 / 612},
+        [SPHG_POLY6] = {1.0 / 120, 1.0 / 143},
+        [SPHG_SPIKY] = {5.0 / 1008, 1.0 / 210},
+    };
+    return of[kernel][dimension == 3];
+}
+
 double sphgi_kernel_w(sphg_kernel kernel, double q)
 {
     return kernel_w(kernel, q);

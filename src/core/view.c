@@ -43,9 +43,17 @@ struct sphgi_columns sphgi_flat_columns(const sphg_view *view, int32_t count)
 {
     struct sphgi_columns columns = {
         .stride = view->stride, .count = view->x ? count : 0, .together = true};
-    for (int32_t c = 0; c < columns.count; ++c)
+    for (int32_t c = 0; c < columns.count && c < SPHGI_COLUMNS_MOST; ++c)
         columns.at[c] = (const char *)view->x + (size_t)c * sphgi_size_of_type(view->type);
     return columns;
+}
+
+struct sphgi_columns sphgi_some_columns(const struct sphgi_columns *columns, int32_t first,
+                                        sphg_type type)
+{
+    const sphg_view rest = {columns->at[0] + (size_t)first * sphgi_size_of_type(type), NULL, NULL,
+                            columns->stride, type};
+    return sphgi_flat_columns(&rest, sphgi_min32(SPHGI_COLUMNS_MOST, columns->count - first));
 }
 
 struct sphgi_columns sphgi_dense_columns(const void *data, int32_t count, int32_t item_numbers,

@@ -1,27 +1,36 @@
 /* From moments to corrections (theory.md, section 3), one target a lane. Healthy matrices are
  * inverted by LDL^T under a certificate; lanes that lack it are decomposed. */
 
+/* How much of a direction is corrected. */
+SPHGI_TEMPLATE dvec share_kept(dvec lambda, dvec eps)
+{
+    dvec t = (lambda - eps) / (3 * eps);
+    t = dselect(t < 0, dsplat(0), t);
+    t = dselect(t > 1, dsplat(1), t);
+    return t * t * (3 - 2 * t);
+}
+
 /* What the threshold makes of one eigenvalue. low: what a dropped direction gets (linearised: 1,
  * "uncorrected"; classic: 0). */
-SPHGI_TEMPLATE dvec filtered(dvec lambda, dvec eps, sphg_policy policy, double low, dmask *full)
+SPHGI_TEMPLATE dvec filtered(dvec lambda, dvec eps, sphg_policy policy, double low, dmask *full,
+                             dvec *kept)
 {
     const dvec inverse = 1 / lambda;
     if (policy == SPHG_BLEND) {
-        dvec t = (lambda - eps) / (3 * eps);
-        t = dselect(t < 0, dsplat(0), t);
-        t = dselect(t > 1, dsplat(1), t);
-        const dvec w = t * t * (3 - 2 * t);
+        const dvec w = share_kept(lambda, eps);
         *full = lambda >= 4 * eps;
+        *kept *= dselect(*full, dsplat(1), w);
         const dvec blended = w * inverse + (1 - w) * low;
-        const dvec kept = dselect(*full, inverse, blended);
-        return dselect(lambda <= eps, dsplat(low), kept);
+        const dvec above = dselect(*full, inverse, blended);
+        return dselect(lambda <= eps, dsplat(low), above);
     }
     *full = lambda > eps;
+    *kept *= dselect(*full, dsplat(1), dsplat(0));
     return dselect(lambda <= eps, dsplat(policy == SPHG_TRUNCATE ? 0 : low), inverse);
 }
 
 struct corrected {
-    dvec c[6], lambda_min, rank;
+    dvec c[6], lambda_min, rank, kept;
 };
 
 /* What the threshold leaves of A = Q diag(l) Q^T. Where volumes span many orders, rounding of a
@@ -33,12 +42,12 @@ SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold,
     const dvec trace = three ? m[0] + m[3] + m[5] : m[0] + m[2];
     const dvec floor = 16 * UNIT_ROUNDOFF * trace;
     const dvec given = dsplat(threshold->eps), eps = dselect(floor > given, floor, given);
-    struct corrected out = {.lambda_min = e->l[0], .rank = dsplat(0)};
+    struct corrected out = {.lambda_min = e->l[0], .rank = dsplat(0), .kept = dsplat(1)};
     dvec f[3];
     dmask all = (dmask)dsplat(0) == 0;
     for (int k = 0; k < d; ++k) {
         dmask full;
-        f[k] = filtered(e->l[k], eps, threshold->policy, low, &full);
+        f[k] = filtered(e->l[k], eps, threshold->policy, low, &full, &out.kept);
         all &= full;
         out.rank += dselect(full, dsplat(1), dsplat(0));
         out.lambda_min = smaller(out.lambda_min, e->l[k]);
@@ -133,13 +142,16 @@ SPHGI_TEMPLATE void keep_empty(const struct sphgi_threshold *threshold, int lane
     verdict->lambda_min[lane] = 0;
     if (lambda_min)
         lambda_min[lane] = R(0);
+    if (verdict->kept)
+        ((real *)verdict->kept)[lane] = R(0);
 }
 
-/* Matrices that are decomposed together: numbers, then lambda_min and rank, [number][matrix]. */
+/* Matrices that are decomposed together: numbers, then lambda_min, rank and what is kept,
+ * [number][matrix]. */
 struct packed {
     int count;
     int lane[SPHGI_WIDTH];
-    real m[6 * SPHGI_WIDTH], done[8 * SPHGI_WIDTH];
+    real m[6 * SPHGI_WIDTH], done[9 * SPHGI_WIDTH];
 };
 
 /* The lanes of `open` that have something to decompose. */
@@ -178,6 +190,8 @@ SPHGI_TEMPLATE void unpack(const struct packed *packed, int numbers, real *c, re
         verdict->rank[lane] = (uint8_t)done[7 * SPHGI_WIDTH];
         if (lambda_min)
             lambda_min[lane] = done[6 * SPHGI_WIDTH];
+        if (verdict->kept)
+            ((real *)verdict->kept)[lane] = done[8 * SPHGI_WIDTH];
     }
 }
 
@@ -204,6 +218,7 @@ SPHGI_TEMPLATE void decompose_as(const struct sphgi_threshold *threshold, const 
                 narrowed(to + k * SPHGI_WIDTH, done.c[k]);
             narrowed(to + 6 * SPHGI_WIDTH, done.lambda_min);
             narrowed(to + 7 * SPHGI_WIDTH, done.rank);
+            narrowed(to + 8 * SPHGI_WIDTH, done.kept);
         }
     }
     unpack(&packed, numbers, c, lambda_min, verdict);

@@ -38,7 +38,8 @@ enum { SPHGI_COLUMNS_MOST = 16 };
 struct sphgi_columns {
     const char *at[SPHGI_COLUMNS_MOST];
     ptrdiff_t stride; /* [byte] */
-    int32_t count;    /* components; 0: absent */
+    int32_t count;    /* components; 0: absent. Of more than SPHGI_COLUMNS_MOST only the first has
+                         its place: they follow one another (sphgi_some_columns) */
     bool together;    /* they follow one another in memory */
 };
 
@@ -126,6 +127,14 @@ struct sphgi_threshold {
     double unit; /* of the linearised moments: 1 / H */
 };
 
+/* The second block of order 2 (theory.md, section 9). */
+struct sphgi_second {
+    sphg_policy policy;
+    double eps;                  /* eps_q */
+    double off, diagonal, trace; /* whitening of products of offsets: of x_a x_b, of x_a x_a, and of
+                                    the sum of these */
+};
+
 /* What a source's term in adjoint and symmetric sums is multiplied with. */
 enum sphgi_weight {
     SPHGI_WEIGHT_ONE,
@@ -141,10 +150,12 @@ struct sphgi_scales {
 
 /* What became of the matrices of a group. A bit per lane. */
 struct sphgi_verdict {
-    int32_t lanes;                  /* in: so many count */
-    uint32_t decomposed;            /* the others have full rank */
-    uint32_t empty;                 /* no neighbour, or none that counts */
-    double largest_square;          /* of |A^-1|_F over the lanes that were not decomposed */
+    int32_t lanes;         /* in: so many count */
+    uint32_t decomposed;   /* the others have full rank */
+    uint32_t empty;        /* no neighbour, or none that counts */
+    double largest_square; /* of |A^-1|_F over the lanes that were not decomposed */
+    void *kept; /* of decomposed lanes: the product of what is kept of each direction, 1 where all
+                   are full; NULL: not wanted */
     uint8_t rank[SPHGI_WIDTH];      /* of the decomposed lanes */
     double lambda_min[SPHGI_WIDTH]; /* of the decomposed lanes */
 };
@@ -255,6 +266,9 @@ struct sphgi_passes {
     void (*shape_values)(void *arrays, int32_t count);
     void (*classic_vectors)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                             const void *coefficients);
+    /* G_ij = scale times what order 2 has. */
+    void (*quadratic_gradients)(const struct sphgi_tile *tile, int32_t dimension,
+                                const void *correction, double scale);
     /* G_ij = scale C_i times the vectors; correction NULL: scale alone. */
     void (*pair_gradients)(const struct sphgi_tile *tile, int32_t dimension,
                            enum sphgi_vectors vectors, const void *correction, double scale);
@@ -269,6 +283,11 @@ struct sphgi_passes {
     void (*sum_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);
     void (*sum_classic)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                         void *sums);
+    /* Moments of second, third and fourth order; offsets in units of H, as for the classic ones. */
+    void (*sum_quadratic_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);
+    /* What sum_field gives over s_ij x_ij, and the same over products of the offsets. */
+    void (*sum_quadratic_field)(const struct sphgi_tile *tile, int32_t dimension, const void *rows,
+                                int32_t count, const void *at_target, void *sums, void *second);
     void (*sum_field)(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_vectors vectors,
                       const void *rows, int32_t count, const void *at_target, void *sums);
     /* The same, contracted: (A_j - A_i) . g, of tensors row by row. rows: of each stream */
@@ -304,6 +323,13 @@ struct sphgi_passes {
     void (*invert_classic)(int32_t width, const struct sphgi_threshold *threshold, double mu2,
                            const void *sums, const void *self, void *coefficients, void *lambda_min,
                            struct sphgi_verdict *verdict);
+    /* The linear correction, where `coefficients` begin, becomes the whole one. kept: as decompose
+     * leaves it, elsewhere 1. directions: of curvature that are resolved, all of them where
+     * quadratic fields are exact; written for verdict->lanes. */
+    void (*invert_quadratic)(int32_t width, const struct sphgi_threshold *threshold,
+                             const struct sphgi_second *second, const void *sums, const void *scale,
+                             const void *kept, int32_t lanes, void *coefficients,
+                             uint8_t *directions);
     /* A = Q diag(values) Q^T of one group of matrices, values descending, det Q = 1. */
     void (*eigen)(int32_t width, int32_t dimension, const void *matrices, void *values,
                   void *vectors);
@@ -311,6 +337,11 @@ struct sphgi_passes {
     /* Results. */
     void (*apply)(int32_t width, int32_t dimension, int32_t count, const void *correction,
                   const void *sums, double scale, void *jacobian);
+    /* Gradients, times scale; Hessians and their traces, times its square, unless hessian is NULL:
+     * [component][pair][target]. */
+    void (*apply_quadratic)(int32_t width, int32_t dimension, int32_t count,
+                            const void *coefficients, const void *sums, const void *second,
+                            double scale, void *jacobian, void *hessian, void *laplacian);
     void (*scale)(int32_t width, int32_t count, const void *in, double factor, const void *each,
                   void *out);
     void (*divide)(int32_t width, int32_t count, const void *in, double divisor, void *out);

@@ -32,9 +32,11 @@
 #include "sums.inl.h"
 #include "contracted.inl.h"
 #include "classic.inl.h"
+#include "quadratic_sums.inl.h"
 #include "eigen.inl.h"
 #include "invert.inl.h"
 #include "results.inl.h"
+#include "quadratic.inl.h"
 
 #define CONCATENATE_(a, b) a##b
 #define CONCATENATE(a, b)  CONCATENATE_(a, b)
@@ -66,11 +68,14 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .shape_weights = shape_weights,
     .shape_values = shape_values,
     .classic_vectors = classic_vectors,
+    .quadratic_gradients = quadratic_gradients,
     .pair_gradients = pair_gradients,
     .transposed = transposed,
     .transposed_classic = transposed_classic,
     .sum_moments = sum_moments,
     .sum_classic = sum_classic,
+    .sum_quadratic_moments = sum_quadratic_moments,
+    .sum_quadratic_field = sum_quadratic_field,
     .sum_field = sum_field,
     .sum_divergence = sum_divergence,
     .sum_squares = sum_squares,
@@ -82,8 +87,10 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .invert = invert,
     .decompose = decompose_lanes,
     .invert_classic = invert_classic,
+    .invert_quadratic = invert_quadratic,
     .eigen = eigen_lanes,
     .apply = apply,
+    .apply_quadratic = apply_quadratic,
     .scale = scale_lanes,
     .divide = divide_lanes,
     .valid_volumes = valid_volumes,

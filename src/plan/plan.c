@@ -71,7 +71,7 @@ static sphg_result take_targets(struct sphgi_making *making)
     struct sphgi_plan *plan = making->plan;
     const sphg_request *request = making->request;
     const sphg_sources *own = plan->own_set < 0 ? NULL : &request->sources[plan->own_set];
-    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const int32_t width = sphgi_plan_width(plan);
     sphg_result result = sphgi_take_target_side(
         making, &request->target_volume, own ? &own->volume : NULL, "target_volume",
         "sources.volume", SPHG_SCALAR, 1, &plan->target_volume);
@@ -92,7 +92,7 @@ static sphg_result take_wanted(struct sphgi_making *making)
 {
     struct sphgi_plan *plan = making->plan;
     const sphg_request *request = making->request;
-    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const int32_t width = sphgi_plan_width(plan);
     sphg_result result = sphgi_take_output(making, &request->correction, "correction", plan->type,
                                            (sphg_shape)0, width, &plan->correction);
     if (!result)
@@ -159,7 +159,7 @@ static bool make_room(struct sphgi_making *making)
     const sphg_request *request = making->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
     const size_t streams = sets * (3 * fields + 5);
-    const size_t views = sets * (fields + 3) + 5 * fields + 8;
+    const size_t views = sets * (fields + 3) + 10 * fields + 8;
     const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
                             fields * sizeof(struct sphgi_field_plan),
                             streams * sizeof(struct sphgi_stream),
@@ -250,6 +250,7 @@ sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *sch
     plan->dimension = plan->scheme.dimension;
     plan->classic = sphgi_is_classic(plan->scheme.method);
     plan->weighted = plan->scheme.method == SPHG_CRKPM;
+    plan->quadratic = plan->scheme.order == 2;
     plan->set_count = request->set_count;
     plan->field_count = request->field_count;
     return take_everything(&making);

@@ -33,9 +33,11 @@ struct sphgi_field_plan {
     int32_t divergence_sum;      /* first of 1 (vector) or d (tensor) sums, if contracts */
     int32_t square_sum;          /* of A G G^T its trace, or its triangle where C_i is to come */
     int32_t value_sum;           /* first of components sums of A Phi, -1: not wanted */
+    int32_t second_sum;          /* order 2: first of components times pairs of axes */
     int32_t at_target;           /* first of the lanes that hold A_i */
     struct sphgi_columns target; /* A_i */
-    struct sphgi_columns value, gradient, divergence, curl, square;
+    struct sphgi_columns value, gradient, divergence, curl, square, laplacian;
+    struct sphgi_columns hessian[3]; /* of each component */
 };
 
 struct sphgi_plan {
@@ -55,6 +57,7 @@ struct sphgi_plan {
     bool computes;                /* corrections, in this call */
     bool corrects;                /* results are multiplied with a correction, computed or given */
     bool classic, weighted;       /* weighted: V_j stands in the classic weight */
+    bool quadratic;               /* order 2 */
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
@@ -76,6 +79,18 @@ enum sphgi_purpose {
 
 /* From the fields and views of a plan to all that its second half holds. */
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose);
+
+/* Numbers of a correction. */
+static inline int32_t sphgi_plan_width(const struct sphgi_plan *plan)
+{
+    return sphgi_correction_width(plan->scheme.method, plan->dimension, plan->scheme.order);
+}
+
+/* Sums of moments of order 2: of second, third and fourth order. */
+static inline int32_t sphgi_quadratic_moments(int32_t dimension)
+{
+    return dimension == 3 ? 6 + 10 + 15 : 3 + 4 + 5;
+}
 
 /* Numbers that `square` of a field is summed in. */
 int32_t sphgi_square_sums(const struct sphgi_plan *plan);

@@ -4,6 +4,30 @@
 
 /* ---- Fields --------------------------------------------------------------------------------- */
 
+/* What order 2 has, and what it has not. */
+static sphg_result check_second_order(struct sphgi_making *making, int32_t k)
+{
+    const char *f = making->checker.function;
+    const sphg_field *field = &making->request->fields[k];
+    const bool hessian = !sphgi_is_absent(&field->hessian);
+    if (making->plan->quadratic && field->form == SPHG_DIRECT)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].form is direct: order 2 would read the surface as curvature; "
+                     "use order 1 there",
+                     f, (int)k);
+    if (making->plan->quadratic && field->form != SPHG_DIFFERENCE)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].form is %d, but order 2 is for the difference form; use order "
+                     "1 there",
+                     f, (int)k, (int)field->form);
+    if ((hessian || !sphgi_is_absent(&field->laplacian)) && !making->plan->quadratic)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].%s needs scheme.order 2", f, (int)k,
+                     hessian ? "hessian" : "laplacian");
+    if (hessian && field->shape >= SPHG_SYM_TENSOR)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].hessian of a tensor", f, (int)k);
+    return SPHG_OK;
+}
+
 static sphg_result check_field(struct sphgi_making *making, int32_t k)
 {
     const char *f = making->checker.function;
@@ -29,6 +53,34 @@ static sphg_result check_field(struct sphgi_making *making, int32_t k)
     if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
+    return check_second_order(making, k);
+}
+
+/* The Hessian of each component, as if it had a view of its own. */
+static sphg_result take_hessian(struct sphgi_making *making, int32_t k)
+{
+    struct sphgi_plan *plan = making->plan;
+    const sphg_field *given = &making->request->fields[k];
+    const int32_t d = plan->dimension;
+    const size_t bytes = (size_t)(d * (d + 1) / 2) * sphgi_size_of_type(plan->type);
+    const sphg_view *view = &given->hessian;
+    const void *start[3] = {view->x, view->y, view->z};
+    const bool split = given->shape == SPHG_VECTOR && view->y;
+    if (sphgi_is_absent(view))
+        return SPHG_OK;
+    if (given->shape == SPHG_VECTOR && d == 3 && !view->y != !view->z)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: of fields[%d].hessian.y and .z only one is set",
+                     making->checker.function, (int)k);
+    for (int32_t c = 0; c < (given->shape == SPHG_VECTOR ? d : 1); ++c) {
+        sphg_view one = *view;
+        one.x = split ? start[c] : (const char *)view->x + (size_t)c * bytes;
+        one.y = one.z = NULL;
+        const char *name = sphgi_name_view(making, "fields[%d].hessian, component %d", k, c);
+        const sphg_result result = sphgi_take_output(
+            making, &one, name, plan->type, SPHG_SYM_TENSOR, 0, &plan->fields[k].hessian[c]);
+        if (result)
+            return result;
+    }
     return SPHG_OK;
 }
 
@@ -59,8 +111,15 @@ static sphg_result take_results(struct sphgi_making *making, int32_t k)
         result = sphgi_take_output(making, &given->square,
                                    sphgi_name_view(making, "fields[%d].square", k, 0), plan->type,
                                    SPHG_SCALAR, 0, &field->square);
+    if (!result)
+        result = sphgi_take_output(making, &given->laplacian,
+                                   sphgi_name_view(making, "fields[%d].laplacian", k, 0),
+                                   plan->type, given->shape, 0, &field->laplacian);
+    if (!result)
+        result = take_hessian(making, k);
     field->differentiates = field->gradient.count || field->divergence.count || field->curl.count ||
-                            field->square.count;
+                            field->square.count || field->laplacian.count ||
+                            field->hessian[0].count;
     return result;
 }
 
@@ -179,7 +238,7 @@ static bool set_transposes(const struct sphgi_making *making, int32_t s, sphg_fo
 static sphg_result take_correction_of_set(struct sphgi_making *making, int32_t s)
 {
     struct sphgi_plan *plan = making->plan;
-    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const int32_t width = sphgi_plan_width(plan);
     const sphg_view *view = &making->request->sources[s].correction;
     struct sphgi_columns columns = {.count = 0};
     const bool needed =

@@ -10,7 +10,9 @@ static void decide_sums(struct sphgi_plan *plan)
 {
     const int32_t d = plan->dimension;
     if (plan->computes)
-        plan->sums += plan->classic ? (d == 3 ? 29 : 15) : d * (d + 1) / 2;
+        plan->sums += plan->classic     ? (d == 3 ? 29 : 15)
+                      : plan->quadratic ? sphgi_quadratic_moments(d)
+                                        : d * (d + 1) / 2;
     plan->volume_sum = plan->sums;
     plan->sums += plan->mean_volume ? 2 : 0;
     plan->moment_sums = plan->sums;
@@ -22,6 +24,9 @@ static void decide_sums(struct sphgi_plan *plan)
         struct sphgi_field_plan *field = &plan->fields[k];
         field->sum = plan->sums;
         plan->sums += field->sums_gradient ? field->components * d : 0;
+        field->second_sum = plan->sums;
+        if (plan->quadratic && field->sums_gradient)
+            plan->sums += field->components * d * (d + 1) / 2;
         field->divergence_sum = plan->sums;
         plan->sums += field->contracts ? field->divergence.count : 0;
         field->square_sum = plan->sums;
@@ -39,8 +44,8 @@ static void decide_field(struct sphgi_field_plan *field, sphg_method method)
     field->antisymmetric = plain && field->form == SPHG_ADJOINT;
     field->forward = field->form <= SPHG_DIRECT || field->antisymmetric;
     field->contracts = field->divergence.count && (plain || !field->forward);
-    field->sums_gradient = field->gradient.count || field->curl.count ||
-                           (field->divergence.count && !field->contracts);
+    field->sums_gradient = field->gradient.count || field->curl.count || field->hessian[0].count ||
+                           field->laplacian.count || (field->divergence.count && !field->contracts);
 }
 
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)

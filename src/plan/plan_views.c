@@ -23,8 +23,8 @@ static sphg_result take_view(struct sphgi_making *making, const sphg_view *view,
                               : sphgi_flat_columns(view, expected.numbers);
     if (columns->count)
         making->extents[making->extent_count++] =
-            (struct sphgi_extent){expected.name, *columns, expected.count,
-                                  sphgi_size_of_type(expected.type), expected.use == SPHGI_OUTPUT};
+            sphgi_extent_of(expected.name, columns, expected.count,
+                            sphgi_size_of_type(expected.type), expected.use == SPHGI_OUTPUT);
     return SPHG_OK;
 }
 

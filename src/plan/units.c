@@ -22,22 +22,32 @@ struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
     }
 }
 
-void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[2])
+static struct sphgi_share share_of(double factor, int32_t first, int32_t count)
+{
+    int exponent;
+    struct sphgi_share share = {.first = first, .count = count};
+    share.mantissa = frexp(factor, &exponent);
+    if (share.mantissa == 0.5) { /* a power of two: nothing is rounded */
+        share.mantissa = 1;
+        --exponent;
+    }
+    share.power[0] = ldexp(1, exponent / 2);
+    share.power[1] = ldexp(1, exponent - exponent / 2);
+    return share;
+}
+
+void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES])
 {
     const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
-    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
-    const int32_t values = plan->classic ? plan->dimension + 1 : width;
-    for (int k = 0; k < 2; ++k) {
-        int exponent;
-        struct sphgi_share *share = &shares[k];
-        share->first = k ? values : 0;
-        share->count = k ? width - values : values;
-        share->mantissa = frexp(k ? scales.slope : scales.value, &exponent);
-        if (share->mantissa == 0.5) { /* a power of two: nothing is rounded */
-            share->mantissa = 1;
-            --exponent;
-        }
-        share->power[0] = ldexp(1, exponent / 2);
-        share->power[1] = ldexp(1, exponent - exponent / 2);
+    const int32_t width = sphgi_plan_width(plan), d = plan->dimension, pairs = d * (d + 1) / 2;
+    const int32_t values = plan->classic ? d + 1 : plan->quadratic ? pairs : width;
+    const double h = plan->scheme.radius;
+    shares[0] = share_of(scales.value, 0, values);
+    shares[1] = shares[2] = (struct sphgi_share){.count = 0};
+    if (plan->classic)
+        shares[1] = share_of(scales.slope, values, width - values);
+    if (plan->quadratic) {
+        shares[1] = share_of(scales.value / h, pairs, d * pairs);
+        shares[2] = share_of(scales.value / h / h, pairs + d * pairs, width - pairs - d * pairs);
     }
 }

@@ -14,7 +14,9 @@ struct sphgi_share {
     double mantissa, power[2];
 };
 
-/* [0] of y, or of all numbers of a linearised method, [1] of z_k. */
-void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[2]);
+enum { SPHGI_SHARES = 3 };
+
+/* [0] of y, or of all numbers of a linearised method, [1] of z_k. Order 2: of its three blocks. */
+void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES]);
 
 #endif

@@ -1,11 +1,12 @@
 #include "corrections.h"
 #include "core/kernel.h"
+#include "quadratic.h"
 
 /* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
  * holds, if one is wanted. */
 static void round_as_table(struct sphgi_worker *w, bool wanted)
 {
-    for (int k = 0; k < 2 && w->share[k].count; ++k) {
+    for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         const bool exact = share->mantissa == 1;
         char *ours = sphgi_lane(w, w->coefficients, share->first);
@@ -22,7 +23,7 @@ static void round_as_table(struct sphgi_worker *w, bool wanted)
 
 static void take_from_table(struct sphgi_worker *w)
 {
-    for (int k = 0; k < 2 && w->share[k].count; ++k) {
+    for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         char *raw = sphgi_lane(w, w->raw, share->first);
         for (int p = 0; p < 2; ++p)
@@ -55,10 +56,14 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
     const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
     void *correction = sphgi_lane(w, w->coefficients, 0);
     void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;
+    if (plan->quadratic)
+        sphgi_keep_all(w, verdict);
     w->passes->invert(w->width, &w->threshold, moments, scale, correction, lambda_min, verdict);
     if (verdict->decomposed)
         w->passes->decompose(w->width, &w->threshold, moments, scale, correction, lambda_min,
                              verdict);
+    if (plan->quadratic)
+        sphgi_invert_quadratic(w, scale, verdict);
 }
 
 void sphgi_self_weight(struct sphgi_worker *w, char *to)
@@ -75,15 +80,20 @@ void sphgi_self_weight(struct sphgi_worker *w, char *to)
 static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *verdict)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    if (plan->correction.count)
+    if (plan->quadratic && plan->correction.count)
+        sphgi_store_table(w);
+    else if (plan->correction.count)
         w->passes->store_lanes(w->targets, &plan->correction, sphgi_targets(w),
                                sphgi_lane(w, w->raw, 0), false);
     if (plan->lambda_min.count)
         w->passes->store_lanes(w->targets, &plan->lambda_min, sphgi_targets(w), w->lambda_min,
                                false);
-    for (int32_t l = 0; plan->rank.count && l < w->targets; ++l)
-        *(uint8_t *)(uintptr_t)(plan->rank.at[0] + sphgi_targets(w)[l] * plan->rank.stride) =
+    for (int32_t l = 0; plan->rank.count && l < w->targets; ++l) {
+        const uint8_t rank =
             verdict->decomposed >> l & 1 ? verdict->rank[l] : (uint8_t)plan->dimension;
+        *(uint8_t *)(uintptr_t)(plan->rank.at[0] + sphgi_targets(w)[l] * plan->rank.stride) =
+            plan->quadratic ? sphgi_quadratic_rank(w, l, rank) : rank;
+    }
 }
 
 void sphgi_finish_corrections(struct sphgi_worker *w)
@@ -111,8 +121,11 @@ void sphgi_load_corrections(struct sphgi_worker *w)
                               sphgi_lane(w, w->coefficients, 0));
         return;
     }
-    w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
-                          sphgi_lane(w, w->raw, 0));
+    if (plan->quadratic)
+        sphgi_load_table(w);
+    else
+        w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
+                              sphgi_lane(w, w->raw, 0));
     take_from_table(w);
 }
 

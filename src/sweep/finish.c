@@ -1,6 +1,7 @@
 #include "finish.h"
 #include "corrections.h"
 #include "core/kernel.h"
+#include "quadratic.h"
 
 /* The target's own term of the direct form. */
 static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_plan *field)
@@ -172,7 +173,9 @@ void sphgi_finish_fields(struct sphgi_worker *w)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates) {
-            if (!field->forward)
+            if (plan->quadratic)
+                sphgi_finish_quadratic(w, field);
+            else if (!field->forward)
                 finish_transposed(w, field);
             else if (plan->scheme.method == SPHG_PLAIN)
                 finish_plain(w, field);

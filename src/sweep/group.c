@@ -192,7 +192,7 @@ static void settle(struct sphgi_worker *w)
 static void repeat_coefficients(struct sphgi_worker *w)
 {
     const size_t size = sphgi_size_of_type(w->sweep->plan->type);
-    for (int32_t number = 0; number < 16; ++number) {
+    for (int32_t number = 0; number < sphgi_plan_width(w->sweep->plan); ++number) {
         char *lane = sphgi_lane(w, w->coefficients, number);
         for (int32_t l = 1; l < w->passes->lanes; ++l)
             memcpy(lane + (size_t)l * size, lane, size);

@@ -1,5 +1,6 @@
 #include "sums.h"
 #include "corrections.h"
+#include "quadratic.h"
 #include "core/view.h"
 #include <string.h>
 
@@ -46,6 +47,10 @@ static const char *subtracted(const struct sphgi_worker *w, const struct sphgi_f
 
 static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
+    if (w->sweep->plan->quadratic) {
+        sphgi_sum_quadratic(w, field, subtracted(w, field));
+        return;
+    }
     sum_rows(w, field, vectors_of(w), subtracted(w, field));
     if (field->square.count)
         w->passes->sum_squares(&w->tile, w->sweep->plan->dimension, vectors_of(w),
@@ -210,7 +215,10 @@ static void write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
 static void write_pairs(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    if (w->sweep->pairs->gradient.count)
+    if (w->sweep->pairs->gradient.count && plan->quadratic)
+        w->passes->quadratic_gradients(&w->tile, plan->dimension, sphgi_lane(w, w->coefficients, 0),
+                                       w->inverse_h);
+    else if (w->sweep->pairs->gradient.count)
         w->passes->pair_gradients(
             &w->tile, plan->dimension, vectors_of(w),
             plan->classic || !plan->corrects ? NULL : sphgi_lane(w, w->coefficients, 0),
@@ -247,6 +255,8 @@ void sphgi_evaluate_tile(struct sphgi_worker *w)
     char *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
     if ((w->summing & SPHGI_SUM_MOMENTS) && plan->classic)
         p->sum_classic(tile, plan->dimension, plan->weighted, moments);
+    else if ((w->summing & SPHGI_SUM_MOMENTS) && plan->computes && plan->quadratic)
+        p->sum_quadratic_moments(tile, plan->dimension, moments);
     else if ((w->summing & SPHGI_SUM_MOMENTS) && plan->computes)
         p->sum_moments(tile, plan->dimension, moments);
     if (w->summing & SPHGI_SUM_FIELDS)

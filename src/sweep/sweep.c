@@ -149,7 +149,7 @@ static sphg_result sweep_all(struct sphgi_task *task, struct sphgi_selection *se
     if (!plan->classic || !moments || !fields)
         return sweep_sets(task, selection, moments | fields, tally);
     /* Classic gradients of several sets: all moments first. */
-    const int32_t width = sphgi_correction_width(plan->scheme.method, plan->dimension);
+    const int32_t width = sphgi_plan_width(plan);
     if (!sphgi_reserve(&context->allocator, &context->coefficients, targets * (size_t)width, size))
         return SPHG_ERROR_MEMORY;
     const struct sphgi_columns table =

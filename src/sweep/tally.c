@@ -14,6 +14,7 @@ void sphgi_tally_add(struct sphgi_tally *total, const struct sphgi_tally *part)
     total->stats.certified += part->stats.certified;
     total->stats.decomposed += part->stats.decomposed;
     total->stats.empty += part->stats.empty;
+    total->stats.quadratic += part->stats.quadratic;
     if (part->stats.lambda_min < total->stats.lambda_min)
         total->stats.lambda_min = part->stats.lambda_min;
     if (part->bad_target >= 0 && (total->bad_target < 0 || part->bad_target < total->bad_target)) {

@@ -1,5 +1,6 @@
 #include "worker.h"
 #include "core/kernel.h"
+#include "quadratic.h"
 #include "core/view.h"
 #include <string.h>
 
@@ -28,6 +29,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     const size_t position = sphgi_size_of_type(n->position_type);
     const size_t local = sweep->packed ? 0 : SPHGI_TILE + 1;
     const size_t streams = (size_t)plan->stream_count, row = SPHGI_ROW * size;
+    const size_t numbers = plan->quadratic ? (size_t)sphgi_plan_width(plan) : 16;
     struct layout layout = {0};
 #define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
     CARVE(tally, 1, sizeof(struct sphgi_tally));
@@ -43,8 +45,8 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(reduced, SPHGI_SECTIONS * (size_t)plan->sums * SPHGI_WIDTH, size);
     CARVE(at_target, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
     CARVE(opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
-    CARVE(raw, 16 * SPHGI_WIDTH, size);
-    CARVE(coefficients, 16 * SPHGI_WIDTH, size);
+    CARVE(raw, numbers * SPHGI_WIDTH, size);
+    CARVE(coefficients, numbers * SPHGI_WIDTH, size);
     CARVE(lambda_min, SPHGI_WIDTH, size);
     CARVE(volume, SPHGI_WIDTH, size);
     CARVE(density, SPHGI_WIDTH, size);
@@ -53,6 +55,8 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(jacobian, 27 * SPHGI_WIDTH, size);
     CARVE(contracted, 6 * SPHGI_WIDTH, size);
     CARVE(extra, 8 * SPHGI_WIDTH, size);
+    CARVE(share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
+    CARVE(hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
     CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
 #undef CARVE
     return layout.total;
@@ -108,8 +112,8 @@ static bool is_guarded(const struct sphgi_sweep *sweep)
     return is_superset(sweep) || n->periodic || !n->dummy_is_far;
 }
 
-/* Linearised methods sum in the units of the positions, classic ones in units of H: their sums hold
- * third powers of the offsets. */
+/* Linearised methods sum in the units of the positions, classic ones and order 2 in units of H:
+ * their sums hold third and fourth powers of the offsets. */
 static void open_scheme(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
@@ -118,8 +122,9 @@ static void open_scheme(struct sphgi_worker *w)
     const int32_t d = plan->dimension;
     const double h = scheme->radius, sigma = sphgi_kernel_sigma(scheme->kernel, d);
     const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
+    const bool scaled = plan->classic || plan->quadratic;
     const bool by_value = scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM;
-    w->gather = (struct sphgi_gather){.unit = plan->classic ? 1 / h : 1,
+    w->gather = (struct sphgi_gather){.unit = scaled ? 1 / h : 1,
                                       .cutoff = h,
                                       .periodic = n->periodic,
                                       .volumes = w->sweep->volumes,
@@ -128,22 +133,25 @@ static void open_scheme(struct sphgi_worker *w)
     memcpy(w->gather.period, n->period, sizeof n->period);
     w->gather.superset = is_superset(w->sweep);
     w->gather.guarded = is_guarded(w->sweep);
-    w->shape =
-        (struct sphgi_shape){.kernel = scheme->kernel,
-                             .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
-                             .dimension = d,
-                             .inverse_h = plan->classic ? 1 : 1 / h,
-                             .w_scale = (by_value ? sigma / mu2 : sigma) / h,
-                             .value_scale = sigma};
+    w->shape = (struct sphgi_shape){
+        .kernel = scheme->kernel,
+        .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
+        .dimension = d,
+        .inverse_h = scaled ? 1 : 1 / h,
+        .w_scale = (by_value ? sigma / mu2 : sigma) / (plan->quadratic ? 1 : h),
+        .value_scale = sigma};
     w->gather.target_rows = sphgi_target_row(n, 0);
-    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d, 1 / h};
+    w->threshold =
+        (struct sphgi_threshold){scheme->policy, scheme->threshold, d, plan->quadratic ? 1 : 1 / h};
+    if (plan->quadratic)
+        w->second = sphgi_second_of(scheme);
 }
 
 bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
-    return sweep->packed && !is_guarded(sweep) && !plan->classic && !plan->wants_value &&
-           !plan->mean_volume && (plan->differentiates || plan->computes) &&
+    return sweep->packed && !is_guarded(sweep) && !plan->classic && !plan->quadratic &&
+           !plan->wants_value && !plan->mean_volume && (plan->differentiates || plan->computes) &&
            sweep->set->neighbors->position_type == plan->type;
 }
 

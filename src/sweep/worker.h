@@ -57,16 +57,18 @@ struct sphgi_worker {
     struct sphgi_gather gather;
     struct sphgi_shape shape;
     struct sphgi_threshold threshold;
+    struct sphgi_second second;
     double inverse_h;
     struct sphgi_tile tile;
     struct sphgi_lane_lists lists; /* of the lanes at work */
     struct sphgi_group group;
-    int32_t first, width, targets;   /* the lanes of the group that are at work: first of them, how
-                                        many, and how many of those have a target */
-    int32_t summed;                  /* lanes whose sums are done */
-    struct sphgi_share share[2];     /* of the table of corrections */
-    const void **rows;               /* of each stream */
-    unsigned summing;                /* SPHGI_SUM_..., of this pass over the group */
+    int32_t first, width, targets; /* the lanes of the group that are at work: first of them, how
+                                      many, and how many of those have a target */
+    int32_t summed;                /* lanes whose sums are done */
+    struct sphgi_share share[SPHGI_SHARES]; /* of the table of corrections */
+    const void **rows;                      /* of each stream */
+    unsigned summing;                       /* SPHGI_SUM_..., of this pass over the group */
+    uint8_t directions[SPHGI_WIDTH];        /* of curvature, that are resolved */
     bool factors_at_once;            /* s_ij come with the pairs, for nobody asks for distances */
     char *kept;                      /* the group's s_ij, of the lanes at work; NULL: none */
     bool kept_stand;                 /* they were written by a sweep before */
@@ -88,9 +90,11 @@ struct sphgi_worker {
     char *local_positions, *local_rows, *arrays, *ids, *clean_ids, *local_items, *waiting_ids;
     char *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume, *density;
     char *self, *zeros, *jacobian, *contracted, *extra;
+    char *share_kept, *hessian; /* order 2; Laplacians stand behind the Hessians */
     char *finder_memory;
 };
 
+enum { SPHGI_HESSIANS = 54 };         /* numbers of all of a tensor's components */
 enum { SPHGI_WAITING_IDS = 1 << 15 }; /* of lists that wait until the lanes are full */
 
 /* s_ij can be formed as pairs are gathered: nobody asks for distances, nor for anything else that

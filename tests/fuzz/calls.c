@@ -10,7 +10,7 @@ typedef struct world {
     long blocks;
     sphg_context *context;
     sphg_neighbors *objects[OBJECTS];
-    float x[MOST * 3], volume[MOST], field[MOST], out[MOST * 16], more[MOST * 16];
+    float x[MOST * 3], volume[MOST], field[MOST], out[MOST * 45], more[MOST * 16];
     int32_t order[MOST], indices[MOST * MOST];
     int64_t offsets[MOST + 1];
     uint8_t rank[MOST];
@@ -68,7 +68,7 @@ static sphg_result operate(world *own, fuzz_bytes *from, const sphg_neighbors *o
         return sphg_gradient(own->context, &own->scheme, &sources, chosen, field, out);
     if (kind == 1)
         return sphg_correction(own->context, &own->scheme, &sources, chosen,
-                               sphg_view_f32(own->out, 64), sphg_view_u8(own->rank, 1));
+                               sphg_view_f32(own->out, 180), sphg_view_u8(own->rank, 1));
     if (kind == 2)
         return sphg_force(own->context, &own->scheme, &sources, chosen, SPHG_SCALAR, field, out);
     sphg_pairs pairs = {.offsets = own->offsets, .capacity = fuzz_byte(from)};
@@ -125,6 +125,7 @@ static sphg_result question(world *own, fuzz_bytes *from, const sphg_neighbors *
 static sphg_result step(world *own, fuzz_bytes *from)
 {
     sphg_neighbors **object = &own->objects[fuzz_byte(from) % OBJECTS];
+    int method;
     switch (fuzz_byte(from) % 8) {
     case 0:
         sphg_neighbors_destroy(*object);
@@ -136,7 +137,9 @@ static sphg_result step(world *own, fuzz_bytes *from)
         return sphg_neighbors_create(own->context, object);
     case 2:
         own->scheme.dimension = 2 + fuzz_byte(from) % 2;
-        own->scheme.method = (sphg_method)(fuzz_byte(from) % 6);
+        method = fuzz_byte(from);
+        own->scheme.method = (sphg_method)(method % 6);
+        own->scheme.order = method / 6 % 3;
         own->scheme.support_radius = (1 + fuzz_byte(from)) / 16.;
         return SPHG_OK;
     case 3:

@@ -8,8 +8,8 @@ typedef struct host {
     const fuzz_instance *instance;
     sphg_type type;
     int dimension, count, shape;
-    double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 16];
-    double results[4][MOST * 16];
+    double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 45];
+    double results[6][MOST * 45];
     int64_t offsets[MOST + 1];
     int32_t lengths[MOST], indices[INDICES];
     const int32_t *rows[MOST];
@@ -71,7 +71,8 @@ static int32_t *moved_to_the_end(host *on, sphg_lists *lists)
 static sphg_result evaluate(fuzz_bytes *from, host *on)
 {
     const int d = on->dimension, width = sphg_correction_width(&on->scheme);
-    const int form = fuzz_byte(from) % 4, tame = fuzz_byte(from) % 2;
+    const int given = fuzz_byte(from) % 4, tame = fuzz_byte(from) % 2;
+    const int form = on->scheme.order == 2 ? SPHG_DIFFERENCE : given;
     on->shape = 1 + fuzz_byte(from) % 4;
     const int item = on->shape == 1   ? 1
                      : on->shape == 2 ? d
@@ -81,7 +82,7 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
     sphg_sources sources = {.neighbors = on->instance->neighbors};
     sources.volume = numbers(from, on, on->volume, 1, fuzz_byte(from) % 4);
     sources.density = numbers(from, on, on->density, 1, tame);
-    if (width && form > 1)
+    if (width && given > 1)
         sources.correction = numbers(from, on, on->table, width, tame);
     sphg_field field = {.shape = (sphg_shape)on->shape,
                         .form = (sphg_form)form,
@@ -95,9 +96,14 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
         field.curl = fuzz_view(on->type, on->results[2], d == 3 ? 3 : 1);
     if (on->shape == SPHG_SCALAR && form == SPHG_DIRECT && fuzz_byte(from) % 2)
         field.square = fuzz_view(on->type, on->results[1], 1);
+    if (on->scheme.order == 2 && on->shape < 3)
+        field.hessian =
+            fuzz_view(on->type, on->results[4], d * (d + 1) / 2 * (on->shape == 1 ? 1 : d));
+    if (on->scheme.order == 2)
+        field.laplacian = fuzz_view(on->type, on->results[5], item);
     sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-    if (width && form < 2)
+    if (width && given < 2)
         request.correction = fuzz_view(on->type, on->results[3], width);
     return sphg_evaluate(on->instance->context, &on->scheme, &request);
 }
@@ -116,6 +122,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     on.count = fuzz_below(&from, MOST + 1);
     on.scheme.dimension = on.dimension;
     on.scheme.method = (sphg_method)(fuzz_byte(&from) % 6);
+    on.scheme.order = flags & 8 && on.scheme.method <= SPHG_RKPM ? 2 : 1;
     on.scheme.kernel = (sphg_kernel)(fuzz_byte(&from) % 7);
     on.scheme.policy = (sphg_policy)(fuzz_byte(&from) % 4);
     on.scheme.support_radius = (1 + fuzz_byte(&from)) / 16.;

@@ -140,7 +140,8 @@ static int spoil_shape(victim *own, int number, trial *made)
         ENUM("scheme.kernel", scheme.kernel, SPHG_CUBIC_SPLINE, SPHG_SPIKY),                       \
         ENUM("scheme.policy", scheme.policy, SPHG_BLEND, SPHG_IDENTITY),                           \
         ROW("scheme.support_radius", RADIUS, scheme.support_radius),                               \
-        ROW("scheme.threshold", THRESHOLD, scheme.threshold)
+        ROW("scheme.threshold", THRESHOLD, scheme.threshold),                                      \
+        ENUM("scheme.order", scheme.order, 0, 2)
 #define GEOMETRY                                                                                   \
     ROW("geometry", POINTER, geometry_given),                                                      \
         VIEW("geometry.sources", geometry.sources, REQUIRED | VECTOR | HOSTILE_LEADING),           \
@@ -295,10 +296,19 @@ static const argument of_square[] = {
     VIEW("fields.at_sources", at_sources[0], 0),
     VIEW("fields.square", field.square, OUTPUT),
 };
+static const argument of_quadratic[] = {
+    VIEW("sources.volume", sources[0].volume, REQUIRED),
+    ROW("sources.volume", VOLUMES, sources[0].volume),
+    VIEW("fields.at_sources", at_sources[0], REQUIRED),
+    VIEW("fields.gradient", field.gradient, OUTPUT | VECTOR),
+    VIEW("fields.hessian", field.hessian, OUTPUT),
+    VIEW("fields.laplacian", field.laplacian, OUTPUT),
+};
 static const probe probes_sphg_evaluate[] = {PROBE(NULL, call_evaluate, of_evaluate),
                                              PROBE(prepare_two_sided, call_evaluate, of_two_sided),
                                              PROBE(prepare_direct, call_evaluate, of_direct),
-                                             PROBE(prepare_square, call_evaluate, of_square)};
+                                             PROBE(prepare_square, call_evaluate, of_square),
+                                             PROBE(prepare_quadratic, call_evaluate, of_quadratic)};
 
 static const argument of_correction[] = {
     CONTEXT,

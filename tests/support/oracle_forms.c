@@ -20,6 +20,11 @@ oracle *oracle_of(const oracle_scene *scene)
     return reference;
 }
 
+const oracle_scene *oracle_scene_of(const oracle *reference)
+{
+    return &reference->scene;
+}
+
 const oracle_point *oracle_at(oracle *reference, int i)
 {
     if (!reference->solved[i])

@@ -167,6 +167,18 @@ void prepare_square(victim *own)
     own->request.fields = &own->field;
 }
 
+/* Hessians, one after the other where tensors have room for more. */
+void prepare_quadratic(victim *own)
+{
+    const int d = own->test->dimension;
+    own->scheme.order = 2;
+    own->request.correction = sphg_absent();
+    own->field.hessian = own->tensor_out;
+    own->field.hessian.stride = own->tensor_out.stride / (d * d) * (d * (d + 1) / 2);
+    own->field.laplacian = own->scalar_out;
+    own->request.fields = &own->field;
+}
+
 void prepare_with_table(victim *own)
 {
     own->sources[0].correction = own->table;

@@ -33,6 +33,7 @@ void prepare_two_sided(victim *own);
 /* DIRECT, of a vector, with all its results. */
 void prepare_direct(victim *own);
 void prepare_square(victim *own);
+void prepare_quadratic(victim *own);
 void prepare_with_table(victim *own);
 void prepare_by_mls(victim *own);
 /* So that the arrays of pairs suffice. */

@@ -135,6 +135,7 @@ module sphgrad
     integer(c_int32_t) :: dimension = 0
     integer(c_int) :: method = 0, kernel = 0, policy = 0
     real(c_double) :: support_radius = 0, threshold = 0
+    integer(c_int32_t) :: order = 0
   end type sphg_scheme
 
   type, bind(c), public :: sphg_geometry
@@ -184,6 +185,7 @@ module sphgrad
     type(c_ptr) :: at_sources = c_null_ptr
     type(sphg_view) :: at_targets, value, gradient, divergence, curl, square
     integer(c_int32_t) :: mirror = 0
+    type(sphg_view) :: hessian, laplacian
   end type sphg_field
 
   ! rank(k + 1): targets of rank k
@@ -191,6 +193,7 @@ module sphgrad
     integer(c_int64_t) :: rank(4) = 0
     integer(c_int64_t) :: certified = 0, decomposed = 0, empty = 0
     real(c_double) :: lambda_min = 0
+    integer(c_int64_t) :: quadratic = 0
   end type sphg_stats
 
   type, bind(c), public :: sphg_request

@@ -129,6 +129,18 @@ static void all_operators()
     request.rank = rank, request.lambda_min = lambda, request.stats = &stats;
     context.evaluate(scheme, request);
     CHECK(stats.rank[3] == 216 && lambda[0] > 0 && value[100] > 0 && square[100] > 0);
+    sphgrad::field curved;
+    std::vector<std::array<double, 6>> hessian(n);
+    std::vector<double> laplacian(n);
+    curved.at_sources = {pressure};
+    curved.hessian = hessian, curved.laplacian = laplacian;
+    sphg_scheme second = scheme;
+    second.order = 2;
+    sphgrad::request of_second{{sphgrad::sources(neighbors, sphgrad::same(1.0))}, {curved}};
+    of_second.stats = &stats;
+    context.evaluate(second, of_second);
+    CHECK(stats.quadratic > 0 && std::isfinite(laplacian[100]) &&
+          near(hessian[100][0] + hessian[100][3] + hessian[100][5], laplacian[100]));
 
     std::vector<std::int64_t> offsets;
     std::vector<std::int32_t> indices;

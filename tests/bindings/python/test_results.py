@@ -92,6 +92,28 @@ class Results(Case):
         self.assertEqual(found.stats.rank, (0, 0, 0, len(x)))
         self.assertTrue((found.rank == 3).all() and (found.lambda_min > 0).all())
 
+    def test_order_2_is_exact_on_quadratic_fields(self):
+        x = cloud()
+        n = sg.Neighbors(x, sg.Scheme(1.5 * H, order=2))
+        values = np.stack([x[:, 0] ** 2, x[:, 1] * x[:, 2], 2 * x[:, 2]], axis=1)
+        apart = np.zeros((len(x), 3, 8), x.dtype)[:, :, :6]  # no view can say where these are
+        found = sg.evaluate(n, [sg.Field(values, gradient=True, hessian=apart, laplacian=True),
+                                sg.Field(values[:, 0].copy(), hessian=True)],
+                            volume=1, rank=True, stats=True, correction=True)
+        full = found.rank == 9
+        self.assertEqual(found.stats.quadratic, full.sum())
+        self.assertGreater(full.sum(), 20)
+        exact = np.zeros((3, 6))
+        exact[0, 0], exact[1, 4] = 2, 1
+        first = found.fields[0]
+        self.assertLess(abs(first.hessian[full] - exact).max(), 1e-4)
+        self.assertLess(abs(first.laplacian[full] - (2, 0, 0)).max(), 1e-4)
+        self.assertLess(abs(first.gradient[full, 0, 0] - 2 * x[full, 0]).max(), 1e-4)
+        self.same(found.fields[1].hessian, first.hessian[:, 0])
+        self.assertEqual(found.correction.shape, (len(x), 45))
+        again = sg.jacobian(n, values, 1, target_correction=found.correction)
+        self.same(again, first.gradient)
+
     def test_symmetric_form_conserves_momentum(self):
         x = cloud()
         found = sg.gradient(sg.Sources(sg.Neighbors(x, H), 1, np.full(len(x), 2.0),

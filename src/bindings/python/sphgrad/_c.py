@@ -114,7 +114,8 @@ class ContextInfo(c.Structure):
 
 class Scheme(c.Structure):
     _fields_ = [("dimension", c.c_int32), ("method", c.c_int), ("kernel", c.c_int),
-                ("policy", c.c_int), ("support_radius", c.c_double), ("threshold", c.c_double)]
+                ("policy", c.c_int), ("support_radius", c.c_double), ("threshold", c.c_double),
+                ("order", c.c_int32)]
 
 
 class Geometry(c.Structure):
@@ -153,12 +154,12 @@ class Field(c.Structure):
     _fields_ = [("shape", c.c_int), ("form", c.c_int), ("accumulate", c.c_int32),
                 ("at_sources", c.POINTER(View)), ("at_targets", View), ("value", View),
                 ("gradient", View), ("divergence", View), ("curl", View), ("square", View),
-                ("mirror", c.c_int32)]
+                ("mirror", c.c_int32), ("hessian", View), ("laplacian", View)]
 
 
 class Stats(c.Structure):
     _fields_ = [("rank", c.c_int64 * 4), ("certified", c.c_int64), ("decomposed", c.c_int64),
-                ("empty", c.c_int64), ("lambda_min", c.c_double)]
+                ("empty", c.c_int64), ("lambda_min", c.c_double), ("quadratic", c.c_int64)]
 
 
 class Request(c.Structure):

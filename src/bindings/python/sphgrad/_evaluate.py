@@ -28,7 +28,8 @@ class Field:
     values is an array of A_j, or a list of one per source set, None where a set has none. Its shape is
     seen from the array: (n,) scalar, (n, d) vector, (n, d (d + 1) / 2) symmetric tensor, (n, d, d)
     tensor; `shape` names it where one item stands for all. at_targets: A_i, where the targets are not
-    part of a source set. value, gradient, divergence, curl, square: True, or the array to write to.
+    part of a source set. value, gradient, divergence, curl, square, hessian, laplacian: True, or the
+    array to write to; a Hessian is (n, d (d + 1) / 2), of a vector (n, d, d (d + 1) / 2).
     form: "difference", "direct", "symmetric" or "adjoint"."""
     values: object
     form: _c.Form = _c.Form.DIFFERENCE
@@ -41,6 +42,8 @@ class Field:
     accumulate: bool = False
     mirror: bool = False
     shape: object = None
+    hessian: object = None
+    laplacian: object = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,6 +54,7 @@ class Stats:
     decomposed: int
     empty: int
     lambda_min: float
+    quadratic: int = 0
 
 
 @dataclasses.dataclass
@@ -60,6 +64,8 @@ class FieldResult:
     divergence: object = None
     curl: object = None
     square: object = None
+    hessian: object = None
+    laplacian: object = None
 
 
 @dataclasses.dataclass
@@ -74,7 +80,7 @@ class Evaluation:
 
 def stats_of(stats):
     return Stats(tuple(stats.rank), stats.certified, stats.decomposed, stats.empty,
-                 stats.lambda_min)
+                 stats.lambda_min, stats.quadratic)
 
 
 def _sets(sources, volume=None):
@@ -98,6 +104,8 @@ _OUTPUT_SHAPES = {
     ("divergence", _c.Shape.SYM_TENSOR): _c.Shape.VECTOR,
     ("divergence", _c.Shape.TENSOR): _c.Shape.VECTOR,
     ("square", _c.Shape.SCALAR): _c.Shape.SCALAR,
+    ("hessian", _c.Shape.SCALAR): _c.Shape.SYM_TENSOR,
+    ("hessian", _c.Shape.VECTOR): _c.Shape.SYM_TENSOR,
 }
 
 
@@ -233,12 +241,12 @@ def _field(call, field):
     result.at_targets = call.borrowed.input(field.at_targets, call.count, items, call.dtype,
                                             "at_targets", shape)
     found = FieldResult()
-    for name in ("value", "gradient", "divergence", "curl", "square"):
+    for name in ("value", "gradient", "divergence", "curl", "square", "hessian", "laplacian"):
         wanted = getattr(field, name)
         if wanted is None or wanted is False:
             setattr(result, name, absent())
             continue
-        if name == "value":
+        if name in ("value", "laplacian"):
             out = shape
         elif name == "curl" and shape == _c.Shape.VECTOR:
             out = _c.Shape.VECTOR if call.dimension == 3 else _c.Shape.SCALAR
@@ -246,8 +254,10 @@ def _field(call, field):
             out = _OUTPUT_SHAPES.get((name, shape))
         if out is None:
             raise ValueError(f"{name} of a {shape.name.lower()} is not defined")
-        array, view = call.output(wanted, item_shape(out, call.dimension), name, out,
-                                  zeros=field.accumulate)
+        items = item_shape(out, call.dimension)
+        if name == "hessian" and shape == _c.Shape.VECTOR:  # one of each component
+            items, out = (call.dimension,) + items, None
+        array, view = call.output(wanted, items, name, out, zeros=field.accumulate)
         setattr(result, name, view)
         setattr(found, name, array)
     return result, found

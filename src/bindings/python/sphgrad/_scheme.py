@@ -13,13 +13,15 @@ class Scheme:
     method: "kgc", "mls", "rkpm", "cmls", "crkpm" or "plain". kernel: "cubic_spline",
     "quintic_spline", "wendland_c2", "wendland_c4", "wendland_c6", "poly6" or "spiky". policy: "blend",
     "replace", "truncate" or "identity". threshold: 0 for 1e-2. dimension: 2 or 3; None: that of the
-    positions. dataclasses.replace() makes others of it."""
+    positions. order: 2 for derivatives that are exact on quadratic fields ("kgc", "mls", "rkpm").
+    dataclasses.replace() makes others of it."""
     support_radius: float
     method: _c.Method = _c.Method.KGC
     kernel: _c.Kernel = _c.Kernel.CUBIC_SPLINE
     policy: _c.Policy = _c.Policy.BLEND
     threshold: float = 0.0
     dimension: int = None
+    order: int = 1
 
     def __post_init__(self):
         for name, kind in (("method", _c.Method), ("kernel", _c.Kernel), ("policy", _c.Policy)):
@@ -33,7 +35,7 @@ class Scheme:
         if dimension and self.dimension not in (None, dimension):
             raise ValueError(f"the scheme has {self.dimension} dimensions, the positions {dimension}")
         return _c.Scheme(dimension or self.dimension or 3, self.method, self.kernel, self.policy,
-                         self.support_radius, self.threshold)
+                         self.support_radius, self.threshold, self.order)
 
     def correction_width(self, dimension=None):
         """Numbers per particle of a correction table."""

@@ -47,6 +47,8 @@ def _expressible(array, shape):
     inner, axes = array.strides[1:], array.shape[1:]
     if shape == Shape.VECTOR:
         return True
+    if shape is None and len(axes) == 2 and inner[0] != axes[1] * size:
+        return False  # Hessians of a vector
     return not inner or axes[-1] == 1 or inner[-1] == size
 
 

@@ -1,0 +1,374 @@
+/* The second block of order 2 (theory.md, section 9): from moments of second, third and fourth
+ * order to the correction, and from sums and correction to gradients and Hessians. One target a
+ * lane. */
+
+enum { PAIRS_MOST = 6 };
+
+/* Index of the product of two pairs among the sums of fourth order. */
+SPHGI_TEMPLATE int fourth_index(int k, int l, bool three)
+{
+    static const int of_three[6][6] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},
+                                       {2, 4, 5, 7, 8, 9},    {3, 6, 7, 10, 11, 12},
+                                       {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
+    return three ? of_three[k][l] : k + l;
+}
+
+/* The axes of pair number k. */
+SPHGI_TEMPLATE void axes_of(int k, bool three, int *a, int *b)
+{
+    static const int of_three[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+    static const int of_two[3][2] = {{0, 0}, {0, 1}, {1, 1}};
+    *a = three ? of_three[k][0] : of_two[k][0];
+    *b = three ? of_three[k][1] : of_two[k][1];
+}
+
+SPHGI_TEMPLATE bool is_square(int k, bool three)
+{
+    int a, b;
+    axes_of(k, three, &a, &b);
+    return a == b;
+}
+
+/* v, numbers of the pairs x_a x_b, in the basis in which a full neighbourhood has the unit matrix.
+ * squares: what those of x_a x_a are multiplied with before. */
+SPHGI_TEMPLATE void whiten(const struct sphgi_second *second, real squares, vec *v, bool three)
+{
+    const int n = three ? 6 : 3;
+    const vec off = splat(R(second->off)), diagonal = splat(R(second->diagonal) * squares);
+    vec trace = splat(R(0));
+    for (int k = 0; k < n; ++k)
+        if (is_square(k, three))
+            trace += v[k];
+    trace *= splat(R(second->trace) * squares);
+    for (int k = 0; k < n; ++k)
+        if (is_square(k, three))
+            v[k] = diagonal * v[k] + trace;
+        else
+            v[k] *= off;
+}
+
+/* ---- Symmetric matrices of the pairs: [k][l], the lower half counts -------------------------- */
+
+/* A = L D L^T, solved for one unit vector after the other: only so the bound of the certificate
+ * holds (theory.md, section 9). Gives the lanes whose pivots are all positive. */
+SPHGI_TEMPLATE mask inverse_by_columns(vec a[PAIRS_MOST][PAIRS_MOST], vec shift,
+                                       vec x[PAIRS_MOST][PAIRS_MOST], bool three)
+{
+    const int n = three ? 6 : 3;
+    vec l[PAIRS_MOST][PAIRS_MOST], pivot[PAIRS_MOST], inverse[PAIRS_MOST];
+    mask positive = first_lanes(LANES);
+    for (int j = 0; j < n; ++j) {
+        pivot[j] = a[j][j] + shift;
+        for (int k = 0; k < j; ++k)
+            pivot[j] -= l[j][k] * l[j][k] * pivot[k];
+        positive &= less(splat(R(0)), pivot[j]);
+        inverse[j] = R(1) / pivot[j];
+        for (int i = j + 1; i < n; ++i) {
+            vec t = a[i][j];
+            for (int k = 0; k < j; ++k)
+                t -= l[i][k] * l[j][k] * pivot[k];
+            l[i][j] = t * inverse[j];
+        }
+    }
+    for (int c = 0; c < n; ++c) {
+        vec y[PAIRS_MOST];
+        y[c] = splat(R(1));
+        for (int i = c + 1; i < n; ++i) {
+            y[i] = -l[i][c];
+            for (int k = c + 1; k < i; ++k)
+                y[i] -= l[i][k] * y[k];
+        }
+        for (int i = n - 1; i >= c; --i) {
+            vec t = y[i] * inverse[i];
+            for (int k = i + 1; k < n; ++k)
+                t -= l[k][i] * x[k][c];
+            x[i][c] = t;
+        }
+    }
+    return positive;
+}
+
+SPHGI_TEMPLATE vec trace_of(vec a[PAIRS_MOST][PAIRS_MOST], int n)
+{
+    vec sum = a[0][0];
+    for (int k = 1; k < n; ++k)
+        sum += a[k][k];
+    return sum;
+}
+
+SPHGI_TEMPLATE vec frobenius_square(vec a[PAIRS_MOST][PAIRS_MOST], int n)
+{
+    vec diagonal = splat(R(0)), off = splat(R(0));
+    for (int k = 0; k < n; ++k) {
+        diagonal += a[k][k] * a[k][k];
+        for (int l = 0; l < k; ++l)
+            off += a[k][l] * a[k][l];
+    }
+    return diagonal + R(2) * off;
+}
+
+/* ---- One vector of targets ------------------------------------------------------------------- */
+
+struct block {
+    vec k[3][PAIRS_MOST];          /* K = M2^-1 M3 */
+    vec s[PAIRS_MOST][PAIRS_MOST]; /* S = M4 - M3^T K */
+    vec trace2, trace4;
+};
+
+SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sums, vec factor,
+                              struct block *b, bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3;
+    const real *third = sums + n * SPHGI_WIDTH, *fourth = third + (three ? 10 : 4) * SPHGI_WIDTH;
+    vec m2[6], inverse[6], square, m3[3][PAIRS_MOST];
+    for (int k = 0; k < n; ++k)
+        m2[k] = factor * load(sums + k * SPHGI_WIDTH);
+    certified_inverse(m2, R(0), three, inverse, &square);
+    b->trace2 = three ? m2[0] + m2[3] + m2[5] : m2[0] + m2[2];
+    for (int a = 0; a < d; ++a) {
+        for (int k = 0; k < n; ++k) {
+            int p, q;
+            axes_of(k, three, &p, &q);
+            m3[a][k] = factor * load(third + triple_index(a, p, q, d) * SPHGI_WIDTH);
+        }
+        whiten(second, R(1), m3[a], three);
+    }
+    for (int k = 0; k < n; ++k) {
+        for (int l = 0; l < n; ++l)
+            b->s[k][l] = factor * load(fourth + fourth_index(k, l, three) * SPHGI_WIDTH);
+        whiten(second, R(1), b->s[k], three);
+    }
+    for (int l = 0; l < n; ++l) {
+        vec column[PAIRS_MOST];
+        for (int k = 0; k < n; ++k)
+            column[k] = b->s[k][l];
+        whiten(second, R(1), column, three);
+        for (int k = 0; k < n; ++k)
+            b->s[k][l] = column[k];
+    }
+    b->trace4 = trace_of(b->s, n);
+    for (int k = 0; k < n; ++k)
+        for (int a = 0; a < d; ++a) {
+            vec sum = inverse[pair_index(a, 0, d)] * m3[0][k];
+            for (int c = 1; c < d; ++c)
+                sum += inverse[pair_index(a, c, d)] * m3[c][k];
+            b->k[a][k] = sum;
+        }
+    for (int k = 0; k < n; ++k)
+        for (int l = 0; l <= k; ++l)
+            for (int a = 0; a < d; ++a)
+                b->s[k][l] -= m3[a][k] * b->k[a][l];
+}
+
+/* The shift s: 0 from t = 4 eps_q on, 4 eps_q up to t = eps_q; other policies know no between. */
+SPHGI_TEMPLATE vec shift_of(const struct sphgi_second *second, vec t, vec eps)
+{
+    const vec zero = splat(R(0)), one = splat(R(1));
+    if (second->policy != SPHG_BLEND)
+        return select(less(eps, t), zero, R(4) * eps);
+    const vec part = vmin(vmax((t - eps) / (R(3) * eps), zero), one);
+    const vec open = where(less(t, R(4) * eps), one - part * part * (R(3) - R(2) * part));
+    return R(4) * eps * open;
+}
+
+/* What is resolved of the curvature: F, and how many directions that comes to. */
+SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, vec kept,
+                           vec f[PAIRS_MOST][PAIRS_MOST], bool three)
+{
+    const int n = three ? 6 : 3;
+    const vec zero = splat(R(0)), given = splat(R(second->eps));
+    vec norm = zero;
+    for (int a = 0; a < (three ? 3 : 2); ++a)
+        for (int k = 0; k < n; ++k)
+            norm += b->k[a][k] * b->k[a][k];
+    const vec floor = R(16 * UNIT_ROUNDOFF) * (b->trace4 + norm * b->trace2);
+    const vec eps = select(less(given, floor), floor, given);
+    const mask positive = inverse_by_columns(b->s, zero, f, three);
+    const vec square = frobenius_square(f, n);
+    const vec t = where(positive & less(zero, square), R(1) / vsqrt(square));
+    const vec shift = shift_of(second, t, eps);
+    const mask whole = at_most(shift, zero);
+    vec left = splat(R(n)); /* tr F S / kept = n - s tr (S + s)^-1 */
+    if (bits_of(~whole) & ALL) {
+        vec shifted[PAIRS_MOST][PAIRS_MOST];
+        mask sound = inverse_by_columns(b->s, shift, shifted, three);
+        if (second->policy == SPHG_IDENTITY)
+            sound = first_lanes(0);
+        for (int k = 0; k < n; ++k)
+            for (int l = 0; l <= k; ++l)
+                f[k][l] = select(whole, f[k][l], where(sound, shifted[k][l]));
+        const vec lost = splat(R(n)) - shift * trace_of(shifted, n);
+        left = select(whole, left, where(sound, lost));
+    }
+    const mask some = less(zero, kept);
+    for (int k = 0; k < n; ++k)
+        for (int l = 0; l <= k; ++l) {
+            f[k][l] = where(some, kept * f[k][l]);
+            f[l][k] = f[k][l];
+        }
+    const mask exact = whole & ~less(kept, splat(R(1)));
+    return select(exact, splat(R(n)), vmin(kept * left, splat(R(n - 1))));
+}
+
+/* P = C + K F K^T, Q = -K F, R = F: the inverse of all moments, in the basis of derivatives. */
+SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct block *b,
+                                vec f[PAIRS_MOST][PAIRS_MOST], mask some, vec factor, real *out,
+                                bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3;
+    real *cross = out + n * SPHGI_WIDTH, *rest = cross + d * n * SPHGI_WIDTH;
+    vec q[3][PAIRS_MOST];
+    for (int a = 0; a < d; ++a)
+        for (int k = 0; k < n; ++k) {
+            vec sum = b->k[a][0] * f[0][k];
+            for (int l = 1; l < n; ++l)
+                sum += b->k[a][l] * f[l][k];
+            q[a][k] = where(some, -sum);
+        }
+    for (int a = 0; a < d; ++a)
+        for (int c = a; c < d; ++c) {
+            real *p = out + pair_index(a, c, d) * SPHGI_WIDTH;
+            vec sum = splat(R(0));
+            for (int k = 0; k < n; ++k)
+                sum += q[a][k] * b->k[c][k];
+            store(p, load(p) - factor * where(some, sum));
+        }
+    for (int a = 0; a < d; ++a) {
+        whiten(second, R(2), q[a], three);
+        for (int k = 0; k < n; ++k)
+            store(cross + (a * n + k) * SPHGI_WIDTH, factor * q[a][k]);
+    }
+    for (int k = 0; k < n; ++k)
+        whiten(second, R(2), f[k], three);
+    for (int l = 0; l < n; ++l) {
+        vec column[PAIRS_MOST];
+        for (int k = 0; k < n; ++k)
+            column[k] = f[k][l];
+        whiten(second, R(2), column, three);
+        for (int k = 0; k <= l; ++k)
+            store(rest + pair_index(k, l, n) * SPHGI_WIDTH, factor * column[k]);
+    }
+}
+
+SPHGI_TEMPLATE void quadratic_as(const struct sphgi_second *second, const real *sums,
+                                 const real *scale, const real *kept, real *out,
+                                 uint8_t *directions, int32_t lanes, bool three)
+{
+    vec factor = splat(R(1)), f[PAIRS_MOST][PAIRS_MOST];
+    if (scale)
+        factor = load(scale);
+    struct block block;
+    const mask some = less(splat(R(0)), load(kept));
+    eliminate(second, sums, factor, &block, three);
+    const vec resolved = resolve(second, &block, load(kept), f, three);
+    join_blocks(second, &block, f, some, factor, out, three);
+    for (int l = 0; l < LANES && l < lanes; ++l)
+        directions[l] = resolved[l] > R(0) ? (uint8_t)(resolved[l] + R(.5)) : 0;
+}
+
+static void invert_quadratic(int32_t width, const struct sphgi_threshold *threshold,
+                             const struct sphgi_second *second, const void *sums, const void *scale,
+                             const void *kept, int32_t lanes, void *coefficients,
+                             uint8_t *directions)
+{
+    for (int32_t l = 0; l < width; l += LANES) {
+        const real *each = scale ? (const real *)scale + l : NULL;
+        const real *in = (const real *)sums + l, *share = (const real *)kept + l;
+        real *out = (real *)coefficients + l;
+        if (threshold->dimension == 3)
+            quadratic_as(second, in, each, share, out, directions + l, lanes - l, true);
+        else
+            quadratic_as(second, in, each, share, out, directions + l, lanes - l, false);
+    }
+}
+
+/* ---- Pairs ----------------------------------------------------------------------------------- */
+
+/* G_ij = w (P e + Q (e e^T)), e = -x, w = -s, the products of one axis halved. */
+SPHGI_TEMPLATE void quadratic_gradients_as(const struct sphgi_tile *tile, const real *c, vec scale,
+                                           bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3;
+    const real *cross = c + n * SPHGI_WIDTH;
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec x[3], g[3], p[PAIRS_MOST];
+        offsets_at(tile, k, three, x);
+        vectors_at(tile, k, SPHGI_FACTORS, three, g);
+        pair_products(g, x, three, p);
+        for (int a = 0; a < d; ++a) {
+            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * g[0];
+            for (int b = 1; b < d; ++b)
+                sum += load(c + pair_index(a, b, d) * SPHGI_WIDTH) * g[b];
+            for (int m = 0; m < n; ++m)
+                sum -= load(cross + (a * n + m) * SPHGI_WIDTH) *
+                       ((is_square(m, three) ? R(.5) : R(1)) * p[m]);
+            store(array_of(tile->arrays, SPHGI_GX) + a * SPHGI_TILE + k, scale * sum);
+        }
+    }
+}
+
+static void quadratic_gradients(const struct sphgi_tile *tile, int32_t dimension,
+                                const void *correction, double scale)
+{
+    if (dimension == 3)
+        quadratic_gradients_as(tile, correction, splat(R(scale)), true);
+    else
+        quadratic_gradients_as(tile, correction, splat(R(scale)), false);
+}
+
+/* ---- Results -------------------------------------------------------------------------------- */
+
+/* (g, h) = [P Q; Q^T R] (b1, b2), b2 over x_a x_a halved. */
+SPHGI_TEMPLATE void apply_quadratic_as(int32_t count, const real *c, const real *sums,
+                                       const real *second, real scale, real *j, real *h,
+                                       real *trace, bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3;
+    const real *cross = c + n * SPHGI_WIDTH, *rest = cross + d * n * SPHGI_WIDTH;
+    const vec once = splat(scale), twice = splat(scale * scale);
+    for (int32_t i = 0; i < count; ++i) {
+        vec b[3], e[PAIRS_MOST];
+        for (int a = 0; a < d; ++a)
+            b[a] = load(sums + (i * d + a) * SPHGI_WIDTH);
+        for (int k = 0; k < n; ++k)
+            e[k] = (is_square(k, three) ? R(.5) : R(1)) * load(second + (i * n + k) * SPHGI_WIDTH);
+        for (int a = 0; a < d; ++a) {
+            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * b[0];
+            for (int p = 1; p < d; ++p)
+                sum += load(c + pair_index(a, p, d) * SPHGI_WIDTH) * b[p];
+            for (int k = 0; k < n; ++k)
+                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * e[k];
+            store(j + (i * d + a) * SPHGI_WIDTH, once * sum);
+        }
+        vec squares = splat(R(0));
+        for (int k = 0; h && k < n; ++k) {
+            vec sum = load(cross + k * SPHGI_WIDTH) * b[0];
+            for (int a = 1; a < d; ++a)
+                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * b[a];
+            for (int p = 0; p < n; ++p)
+                sum += load(rest + pair_index(k, p, n) * SPHGI_WIDTH) * e[p];
+            sum = twice * sum;
+            if (is_square(k, three))
+                squares += sum;
+            store(h + (i * n + k) * SPHGI_WIDTH, sum);
+        }
+        if (h)
+            store(trace + i * SPHGI_WIDTH, squares);
+    }
+}
+
+static void apply_quadratic(int32_t width, int32_t dimension, int32_t count,
+                            const void *coefficients, const void *sums, const void *second,
+                            double scale, void *jacobian, void *hessian, void *laplacian)
+{
+    for (int32_t l = 0; l < width; l += LANES) {
+        const real *c = (const real *)coefficients + l;
+        const real *one = (const real *)sums + l, *two = (const real *)second + l;
+        real *j = (real *)jacobian + l, *h = hessian ? (real *)hessian + l : NULL;
+        real *trace = (real *)laplacian + l;
+        if (dimension == 3)
+            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, true);
+        else
+            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, false);
+    }
+}

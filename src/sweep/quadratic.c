@@ -1,0 +1,111 @@
+#include "quadratic.h"
+#include "core/kernel.h"
+#include "core/view.h"
+#include <math.h>
+
+static int32_t pairs_of(const struct sphgi_plan *plan)
+{
+    return plan->dimension * (plan->dimension + 1) / 2;
+}
+
+/* Products of the offsets have the moments m4 (2 I + 1 1^T) in a full neighbourhood, which
+ * whitening turns into the unit matrix. */
+struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme)
+{
+    const int32_t d = scheme->dimension;
+    const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
+    const double m4 = scheme->method == SPHG_KGC ? mu2 : sphgi_kernel_mu4(scheme->kernel, d) / mu2;
+    const double deviator = 1 / sqrt(2 * m4), whole = 1 / sqrt((d + 2) * m4);
+    return (struct sphgi_second){.policy = scheme->policy,
+                                 .eps = scheme->threshold / 10,
+                                 .off = 1 / sqrt(m4),
+                                 .diagonal = deviator,
+                                 .trace = (whole - deviator) / d};
+}
+
+void sphgi_sum_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *field,
+                         const char *at_target)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const size_t size = sphgi_size_of_type(plan->type);
+    for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
+        const int32_t first = k * SPHGI_ROW;
+        w->passes->sum_quadratic_field(
+            &w->tile, plan->dimension, w->rows[field->stream + k],
+            sphgi_min32(SPHGI_ROW, field->components - first),
+            at_target + (size_t)first * SPHGI_WIDTH * size,
+            sphgi_lane(w, w->reduced, field->sum + first * plan->dimension),
+            sphgi_lane(w, w->reduced, field->second_sum + first * pairs_of(plan)));
+    }
+}
+
+void sphgi_keep_all(struct sphgi_worker *w, struct sphgi_verdict *verdict)
+{
+    verdict->kept = sphgi_lane(w, w->share_kept, 0);
+    w->passes->fill(w->width, 1, verdict->kept);
+}
+
+void sphgi_invert_quadratic(struct sphgi_worker *w, const void *scale,
+                            const struct sphgi_verdict *verdict)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const int32_t all = pairs_of(plan);
+    w->passes->invert_quadratic(w->width, &w->threshold, &w->second,
+                                sphgi_lane(w, w->reduced, plan->moment_sum), scale, verdict->kept,
+                                w->targets, sphgi_lane(w, w->coefficients, 0), w->directions);
+    for (int32_t l = 0; l < w->targets; ++l) {
+        const bool linear = !(verdict->decomposed >> l & 1) || verdict->rank[l] == plan->dimension;
+        w->tally->stats.quadratic += linear && w->directions[l] == all;
+    }
+}
+
+uint8_t sphgi_quadratic_rank(const struct sphgi_worker *w, int32_t lane, uint8_t rank)
+{
+    return rank < w->sweep->plan->dimension ? rank : (uint8_t)(rank + w->directions[lane]);
+}
+
+void sphgi_store_table(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    for (int32_t first = 0; first < plan->correction.count; first += SPHGI_COLUMNS_MOST) {
+        const struct sphgi_columns part = sphgi_some_columns(&plan->correction, first, plan->type);
+        w->passes->store_lanes(w->targets, &part, sphgi_targets(w), sphgi_lane(w, w->raw, first),
+                               false);
+    }
+}
+
+void sphgi_load_table(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    for (int32_t first = 0; first < plan->target_correction.count; first += SPHGI_COLUMNS_MOST) {
+        const struct sphgi_columns part =
+            sphgi_some_columns(&plan->target_correction, first, plan->type);
+        w->passes->load_lanes(w->width, &part, sphgi_targets(w), sphgi_lane(w, w->raw, first));
+    }
+}
+
+static void store_second(struct sphgi_worker *w, const struct sphgi_field_plan *field,
+                         const char *laplacian)
+{
+    for (int32_t c = 0; c < 3; ++c)
+        if (field->hessian[c].count)
+            w->passes->store_lanes(w->targets, &field->hessian[c], sphgi_targets(w),
+                                   sphgi_lane(w, w->hessian, c * pairs_of(w->sweep->plan)),
+                                   field->accumulate);
+    if (field->laplacian.count)
+        w->passes->store_lanes(w->targets, &field->laplacian, sphgi_targets(w), laplacian,
+                               field->accumulate);
+}
+
+void sphgi_finish_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const bool second = field->hessian[0].count || field->laplacian.count;
+    char *laplacian = sphgi_lane(w, w->hessian, SPHGI_HESSIANS);
+    w->passes->apply_quadratic(
+        w->width, plan->dimension, field->components, sphgi_lane(w, w->coefficients, 0),
+        sphgi_lane(w, w->reduced, field->sum), sphgi_lane(w, w->reduced, field->second_sum),
+        w->inverse_h, w->jacobian, second ? w->hessian : NULL, laplacian);
+    if (second)
+        store_second(w, field, laplacian);
+}

@@ -1,0 +1,807 @@
+/* Order 2: against the oracle, exact on quadratic fields where the rank says so, on linear ones
+ * wherever order 1 is, continuous, and never worse than finite. */
+#include "support/oracle_quadratic.h"
+#include "support/scenes.h"
+#include <string.h>
+
+enum { PAIRS_MOST = 6 };
+
+static int pairs_of(int d)
+{
+    return d * (d + 1) / 2;
+}
+
+static int full_rank(int d)
+{
+    return d + pairs_of(d);
+}
+
+/* ---- Results ----------------------------------------------------------------------------------
+ */
+
+typedef struct curved {
+    fixture_array gradient, divergence, curl, hessian, laplacian, rank, table;
+    sphg_stats stats;
+} curved;
+
+static stage second_order(stage on)
+{
+    on.scheme.order = 2;
+    return on;
+}
+
+static curved outputs_of(const stage *on, sphg_shape shape)
+{
+    const int n = on->points.count, d = on->points.dimension, width = fixture_width(shape, d);
+    const sphg_type type = test_field_type(on->test);
+    const int tensor = shape >= SPHG_SYM_TENSOR, vector = shape == SPHG_VECTOR;
+    curved made = {
+        .gradient = fixture_output(type, n, tensor ? 0 : width * d),
+        .divergence = fixture_output(type, n, tensor ? d : vector),
+        .curl = fixture_output(type, n,
+                               !vector  ? 0
+                               : d == 2 ? 1
+                                        : 3),
+        .hessian = fixture_output(type, n, tensor ? 0 : width * pairs_of(d)),
+        .laplacian = fixture_output(type, n, width),
+        .rank = fixture_output(SPHG_U8, n, 1),
+        .table = fixture_output(type, n, sphg_correction_width(&on->scheme)),
+    };
+    return made;
+}
+
+static sphg_view wanted(const fixture_array *array)
+{
+    return array->width ? fixture_view(array) : sphg_absent();
+}
+
+typedef struct how {
+    const fixture_array *table;
+    const sphg_subset *subset;
+    int no_table; /* leave out correction, rank and stats */
+} how;
+
+static curved apply(const stage *on, sphg_shape shape, const double *numbers, how asked)
+{
+    const int width = fixture_width(shape, on->points.dimension);
+    curved found = outputs_of(on, shape);
+    fixture_array values =
+        fixture_numbers(test_field_type(on->test), on->points.count, width, numbers);
+    sphg_view at_sources = fixture_view(&values);
+    sphg_sources sources = stage_sources(on);
+    sphg_field field = {.shape = shape, .at_sources = &at_sources};
+    field.gradient = wanted(&found.gradient);
+    field.divergence = wanted(&found.divergence);
+    field.curl = wanted(&found.curl);
+    field.hessian = wanted(&found.hessian);
+    field.laplacian = wanted(&found.laplacian);
+    sphg_request request = {.sources = &sources, .fields = &field, .set_count = 1};
+    request.field_count = 1;
+    request.subset = asked.subset;
+    if (asked.table) {
+        request.target_correction = fixture_view(asked.table);
+    } else if (!asked.no_table) {
+        request.correction = fixture_view(&found.table);
+        request.rank = fixture_view(&found.rank);
+        request.stats = &found.stats;
+    }
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static void require_same_bits(const curved *a, const curved *b, const char *where)
+{
+    TEST_REQUIRE(fixture_same_bits(&a->gradient, &b->gradient), "gradient, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->divergence, &b->divergence), "divergence, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->curl, &b->curl), "curl, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->hessian, &b->hessian), "Hessian, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->laplacian, &b->laplacian), "Laplacian, %s", where);
+}
+
+/* ---- The oracle --------------------------------------------------------------------------------
+ */
+
+static double ratio_of(const fixture_array *found, int i, const quad *exact, quad bound)
+{
+    double numbers[27];
+    for (int k = 0; k < found->width; k++)
+        numbers[k] = fixture_get(found, i, k);
+    return oracle_ratio(found->width, numbers, exact, bound);
+}
+
+static void compare(const stage *on, sphg_shape shape, const curved *found, const double *numbers,
+                    int i)
+{
+    const oracle_field field = {shape, SPHG_DIFFERENCE, numbers, NULL};
+    const oracle_curved exact = oracle_apply_second(on->reference, &field, i);
+    if (exact.undecided)
+        return;
+    const struct {
+        const char *what;
+        const fixture_array *array;
+        const quad *numbers;
+        quad bound;
+    } rows[] = {{"gradient", &found->gradient, exact.gradient, exact.gradient_bound},
+                {"divergence", &found->divergence, exact.divergence, exact.gradient_bound},
+                {"curl", &found->curl, exact.curl, exact.gradient_bound},
+                {"Hessian", &found->hessian, exact.hessian, exact.hessian_bound},
+                {"Laplacian", &found->laplacian, exact.laplacian, exact.hessian_bound}};
+    for (int k = 0; k < 5; k++) {
+        const char *where = test_text("%s of particle %d, %s, %s", rows[k].what, i, on->name,
+                                      test_method_name(on->test->method));
+        const double ratio = ratio_of(rows[k].array, i, rows[k].numbers, rows[k].bound);
+        if (exact.touched)
+            TEST_WITHIN(quadratic_ratio_touched, ratio, where);
+        else
+            TEST_WITHIN(quadratic_ratio_full, ratio, where);
+    }
+}
+
+static void results_match_the_oracle(const test_case *test)
+{
+    for (int s = 0; s < scenes_hard_count; s++) {
+        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
+            const double *numbers = stage_random_field(&on, (sphg_shape)shape, 3);
+            const curved found = apply(&on, (sphg_shape)shape, numbers, (how){0});
+            const int step = on.points.count < 6 ? 1 : on.points.count / 6;
+            for (int i = 0; i < on.points.count; i += step)
+                compare(&on, (sphg_shape)shape, &found, numbers, i);
+        }
+    }
+}
+
+static void every_policy_and_instruction_set_matches_the_oracle(const test_case *test)
+{
+    static const int chosen[] = {0, 5, 10};
+    for (int s = 0; s < 3; s++)
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
+            for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+                const stage made = stage_of_scene(test, &scenes_hard[chosen[s]]);
+                stage on = second_order(stage_under(&made, (sphg_policy)policy, .0625));
+                on.context = fixture_context_on((sphg_isa)isa);
+                if (!on.context)
+                    continue;
+                on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
+                const double *numbers = stage_random_field(&on, SPHG_VECTOR, 5);
+                const curved found = apply(&on, SPHG_VECTOR, numbers, (how){0});
+                for (int i = 0; i < on.points.count; i += 1 + on.points.count / 4)
+                    compare(&on, SPHG_VECTOR, &found, numbers, i);
+            }
+}
+
+static void rank_is_the_oracles(const test_case *test)
+{
+    int open = 0, all = 0;
+    for (int s = 0; s < scenes_hard_count; s++) {
+        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const double *numbers = stage_random_field(&on, SPHG_SCALAR, 4);
+        const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+        int64_t full = 0;
+        for (int i = 0; i < on.points.count; i++)
+            full += fixture_get(&found.rank, i, 0) == full_rank(on.points.dimension);
+        TEST_REQUIRE(found.stats.quadratic == full, "%lld of %lld, %s",
+                     (long long)found.stats.quadratic, (long long)full, on.name);
+        for (int i = 0; i < on.points.count; i += 1 + on.points.count / 9, all++) {
+            oracle_second second;
+            const oracle_point *point = oracle_at(on.reference, i);
+            oracle_solve_second(&on.scene, point, &second);
+            const quad blur = 32 * on.scene.unit * second.size;
+            const quad part = second.left - (int)(double)second.left;
+            const int near_limit =
+                second.kept > 0 && (quad_abs(second.t - 4 * second.eps) <= blur ||
+                                    quad_abs(part - (quad).5) <= blur * second.norm_f * 9);
+            if (oracle_rank_is_open(&on.scene, point) || near_limit)
+                open++;
+            else
+                TEST_REQUIRE(fixture_get(&found.rank, i, 0) == second.rank,
+                             "%g, not %d: particle %d, %s", fixture_get(&found.rank, i, 0),
+                             second.rank, i, on.name);
+        }
+    }
+    TEST_REQUIRE(open * 4 < all, "%d of %d decided by rounding", open, all);
+}
+
+/* ---- Exactness
+ * ------------------------------------------------------------------------------------ */
+
+/* A = c.x + x^T Q x / 2 of small whole numbers, so that values are exact in f32, too. */
+static const double slopes[] = {3, -2, 1}, curvatures[] = {2, -4, 6, 4, -2, 8};
+
+static double *polynomial(const cloud *points, int degree)
+{
+    const int d = points->dimension;
+    double *numbers = test_memory((size_t)points->count * sizeof *numbers);
+    for (int i = 0; i < points->count; i++) {
+        const double *x = points->x + i * d;
+        for (int a = 0, k = 0; a < d; a++) {
+            numbers[i] += slopes[a] * x[a];
+            for (int b = a; degree == 2 && b < d; b++, k++)
+                numbers[i] += curvatures[k] * x[a] * x[b] * (a == b ? .5 : 1);
+        }
+    }
+    return numbers;
+}
+
+static void gradient_at(const cloud *points, int i, int degree, double *gradient)
+{
+    const int d = points->dimension;
+    const double *x = points->x + i * d;
+    memcpy(gradient, slopes, (size_t)d * sizeof *gradient);
+    for (int a = 0, k = 0; degree == 2 && a < d; a++)
+        for (int b = a; b < d; b++, k++) {
+            gradient[a] += curvatures[k] * x[b];
+            gradient[b] += a == b ? 0 : curvatures[k] * x[a];
+        }
+}
+
+static double distance_to(const fixture_array *found, int i, const double *exact)
+{
+    double square = 0;
+    for (int k = 0; k < found->width; k++)
+        square += pow(fixture_get(found, i, k) - exact[k], 2);
+    return sqrt(square);
+}
+
+static stage exact_stage(const test_case *test, double jitter, double support)
+{
+    random_state random = random_seeded(99);
+    const int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 9 : 6, .25, jitter, &random);
+    cloud_snap(&points, 0x1p-6);
+    return second_order(stage_of(test, test_text("jitter %g", jitter), points, support * .25));
+}
+
+/* In units of u / lambda_q, which t bounds, the gradient over H times the curvature. */
+static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
+{
+    static const double jitters[] = {0, .2, .4}, supports[] = {2, 2.5, 3};
+    const double size = 15;
+    for (int k = 0; k < 9; k++) {
+        const stage on = exact_stage(test, jitters[k % 3], supports[k / 3]);
+        const int n = on.points.count, d = on.points.dimension;
+        const double h = on.scheme.support_radius;
+        const curved found = apply(&on, SPHG_SCALAR, polynomial(&on.points, 2), (how){0});
+        int full = 0;
+        for (int i = 0; i < n; i++) {
+            double exact[3];
+            oracle_second second;
+            if (fixture_get(&found.rank, i, 0) < full_rank(d))
+                continue;
+            full++;
+            gradient_at(&on.points, i, 2, exact);
+            oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
+            const double scale = on.scene.unit / (double)second.t;
+            const double slope = distance_to(&found.gradient, i, exact) / (h * size + 6 * h);
+            TEST_WITHIN(quadratic_exactness, slope / scale / 4, test_text("gradient, %s", on.name));
+            TEST_WITHIN(quadratic_exactness,
+                        distance_to(&found.hessian, i, curvatures) / (size + 24 / h) / scale / 4,
+                        test_text("Hessian, %s", on.name));
+        }
+        TEST_REQUIRE(full > (supports[k / 3] > 2.4 ? .9 : .2) * n, "only %d of %d, %s, H %g", full,
+                     n, on.name, supports[k / 3]);
+    }
+}
+
+static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
+{
+    for (int k = 0; k < 3; k++) {
+        const stage on = exact_stage(test, .2 * k, 2);
+        const curved found = apply(&on, SPHG_SCALAR, polynomial(&on.points, 1), (how){0});
+        const double none[PAIRS_MOST] = {0}, h = on.scheme.support_radius;
+        int partial = 0;
+        for (int i = 0; i < on.points.count; i++) {
+            const int rank = (int)fixture_get(&found.rank, i, 0);
+            oracle_second second;
+            if (rank < on.points.dimension)
+                continue;
+            partial += rank < full_rank(on.points.dimension);
+            oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
+            const double scale = on.scene.unit * (1 + (double)second.norm_f);
+            TEST_WITHIN(quadratic_exactness, distance_to(&found.gradient, i, slopes) / scale / 4,
+                        test_text("gradient, %s", on.name));
+            TEST_WITHIN(quadratic_exactness, distance_to(&found.hessian, i, none) * h / scale / 24,
+                        test_text("Hessian, %s", on.name));
+        }
+        TEST_REQUIRE(partial > 0, "nobody lacks curvature, %s", on.name);
+    }
+}
+
+static void constants_have_exactly_no_derivative(const test_case *test)
+{
+    const stage on = exact_stage(test, .2, 2);
+    double *numbers = test_memory((size_t)on.points.count * sizeof *numbers);
+    for (int i = 0; i < on.points.count; i++)
+        numbers[i] = .1;
+    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    for (int i = 0; i < on.points.count; i++)
+        for (int k = 0; k < found.hessian.width; k++)
+            assert_true(fixture_get(&found.hessian, i, k) == 0 &&
+                        fixture_get(&found.gradient, i, k % test->dimension) == 0 &&
+                        fixture_get(&found.laplacian, i, 0) == 0);
+}
+
+/* ---- Gates: errors on a lattice, by an implementation of its own
+ * ------------------------------------ */
+
+typedef struct lattice_gate {
+    double support;
+    sphg_method method;
+    double gradient_boundary, gradient_inside, hessian_boundary, laplacian_boundary;
+} lattice_gate;
+
+static double volume_of(const cloud *points, const sphg_scheme *scheme, int i)
+{
+    double sum = 0, w;
+    for (int j = 0; j < points->count; j++) {
+        double square = 0;
+        for (int a = 0; a < points->dimension; a++)
+            square +=
+                pow(points->x[i * points->dimension + a] - points->x[j * points->dimension + a], 2);
+        sphg_kernel_value(scheme, sqrt(square), &w, NULL);
+        sum += w;
+    }
+    return 1 / sum;
+}
+
+/* per_axis^d particles on [-1, 1]^d with V = 1 / sum W. */
+static stage gate_stage(const test_case *test, int per_axis, double support)
+{
+    const int d = test->dimension;
+    const double spacing = 2. / per_axis;
+    cloud points = cloud_lattice(d, per_axis, spacing);
+    for (int k = 0; k < points.count * d; k++)
+        points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing;
+    stage on = second_order(stage_of(test, "lattice", points, support * spacing * (1 + 1e-6)));
+    double *volumes = test_memory((size_t)points.count * sizeof *volumes);
+    for (int i = 0; i < points.count; i++)
+        volumes[i] = volume_of(&on.points, &on.scheme, i);
+    return stage_with_volumes(&on, volumes);
+}
+
+static int is_boundary(const stage *on, int i, int layers)
+{
+    const int d = on->points.dimension;
+    for (int a = 0; a < d; a++)
+        if (1 - fabs(on->points.x[i * d + a]) < layers * on->points.spacing)
+            return 1;
+    return 0;
+}
+
+static double relative(double found, double expected)
+{
+    return fabs(found / expected - 1);
+}
+
+/* (cos 2x, cos y - sin 3x) */
+static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
+{
+    static const lattice_gate gates[] = {
+        {2, SPHG_KGC, .09080, .011212, 3.6060, 3.5942},
+        {2.5, SPHG_KGC, .02228, .016812, 1.3417, 1.3263},
+        {3, SPHG_KGC, .02481, .023671, 1.3422, 1.3263},
+        {2, SPHG_RKPM, .09077, .011212, 3.6074, 3.5913},
+        {2.5, SPHG_RKPM, .02226, .014516, 1.3416, 1.3263},
+        {3, SPHG_RKPM, .02303, .021837, 1.3420, 1.3263},
+        {2.5, SPHG_MLS, .02226, .014516, 1.3416, 1.3263},
+        {3, SPHG_MLS, .02309, .021838, 1.3421, 1.3263},
+    };
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++) {
+        if (gates[g].method != test->method)
+            continue;
+        const stage on = gate_stage(test, 40, gates[g].support);
+        double *v = test_memory((size_t)on.points.count * 2 * sizeof *v);
+        for (int i = 0; i < on.points.count; i++) {
+            const double *x = on.points.x + 2 * i;
+            v[2 * i] = cos(2 * x[0]);
+            v[2 * i + 1] = cos(x[1]) - sin(3 * x[0]);
+        }
+        const curved found = apply(&on, SPHG_VECTOR, v, (how){0});
+        double gradient[2] = {0}, hessian[2] = {0}, laplacian[2] = {0};
+        for (int i = 0; i < on.points.count; i++) {
+            const double x = on.points.x[2 * i], y = on.points.x[2 * i + 1];
+            const double j[] = {-2 * sin(2 * x), 0, -3 * cos(3 * x), -sin(y)};
+            const double h[] = {-4 * cos(2 * x), 0, 0, 9 * sin(3 * x), 0, -cos(y)};
+            const int inside = !is_boundary(&on, i, 2);
+            double square = 0, l = 0;
+            for (int k = 0; k < 6; k++)
+                square += pow(fixture_get(&found.hessian, i, k) - h[k], 2) * (k % 3 == 1 ? 2 : 1);
+            for (int c = 0; c < 2; c++)
+                l = fmax(l, fabs(fixture_get(&found.laplacian, i, c) - h[3 * c] - h[3 * c + 2]));
+            gradient[inside] = fmax(gradient[inside], distance_to(&found.gradient, i, j));
+            hessian[inside] = fmax(hessian[inside], sqrt(square));
+            laplacian[inside] = fmax(laplacian[inside], l);
+        }
+        TEST_REQUIRE(relative(gradient[0], gates[g].gradient_boundary) < 3e-4 &&
+                         relative(gradient[1], gates[g].gradient_inside) < 3e-4 &&
+                         relative(hessian[0], gates[g].hessian_boundary) < 3e-4 &&
+                         relative(laplacian[0], gates[g].laplacian_boundary) < 3e-4,
+                     "H %g: %.5f %.6f %.4f %.4f", gates[g].support, gradient[0], gradient[1],
+                     hessian[0], laplacian[0]);
+    }
+}
+
+/* cos y - sin 3x + cos 2z */
+static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
+{
+    static const lattice_gate gates[] = {
+        {2, SPHG_KGC, .53061, .124337, 0, 0},
+        {2.5, SPHG_KGC, .20406, .170676, 0, 0},
+        {3, SPHG_KGC, .2724, .2473, 0, 4.863},
+        {2, SPHG_RKPM, .53055, .124337, 0, 0},
+    };
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++) {
+        if (gates[g].method != test->method)
+            continue;
+        const stage on = gate_stage(test, 12, gates[g].support);
+        double *a = test_memory((size_t)on.points.count * sizeof *a), worst[2] = {0}, l = 0;
+        for (int i = 0; i < on.points.count; i++) {
+            const double *x = on.points.x + 3 * i;
+            a[i] = cos(x[1]) - sin(3 * x[0]) + cos(2 * x[2]);
+        }
+        const curved found = apply(&on, SPHG_SCALAR, a, (how){0});
+        for (int i = 0; i < on.points.count; i++) {
+            const double *x = on.points.x + 3 * i;
+            const double exact[] = {-3 * cos(3 * x[0]), -sin(x[1]), -2 * sin(2 * x[2])};
+            const double trace = -cos(x[1]) + 9 * sin(3 * x[0]) - 4 * cos(2 * x[2]);
+            const int inside = !is_boundary(&on, i, 2);
+            worst[inside] = fmax(worst[inside], distance_to(&found.gradient, i, exact));
+            l = fmax(l, fabs(fixture_get(&found.laplacian, i, 0) - trace));
+        }
+        TEST_REQUIRE(relative(worst[0], gates[g].gradient_boundary) < 3e-4 &&
+                         relative(worst[1], gates[g].gradient_inside) < 3e-4 &&
+                         (gates[g].laplacian_boundary == 0 ||
+                          relative(l, gates[g].laplacian_boundary) < 3e-4),
+                     "H %g: %.5f %.6f %.4f", gates[g].support, worst[0], worst[1], l);
+        if (gates[g].support == 2)
+            TEST_REQUIRE(found.stats.quadratic == 1000, "%lld full",
+                         (long long)found.stats.quadratic);
+    }
+}
+
+/* ---- Ways to the same bits ----------------------------------------------------------------------
+ */
+
+static void tables_give_the_bits_of_one_sweep(const test_case *test)
+{
+    for (int s = 0; s < scenes_hard_count; s += 5) {
+        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const double *numbers = stage_random_field(&on, SPHG_VECTOR, 6);
+        const curved fused = apply(&on, SPHG_VECTOR, numbers, (how){.no_table = 1});
+        const curved found = apply(&on, SPHG_VECTOR, numbers, (how){0});
+        const curved read = apply(&on, SPHG_VECTOR, numbers, (how){.table = &found.table});
+        require_same_bits(&fused, &found, on.name);
+        require_same_bits(&found, &read, on.name);
+    }
+}
+
+static void laplacians_are_traces_of_hessians(const test_case *test)
+{
+    const stage on = exact_stage(test, .3, 2.5);
+    const int d = test->dimension, step = pairs_of(d);
+    const curved found = apply(&on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 7), (how){0});
+    for (int i = 0; i < on.points.count; i++)
+        for (int c = 0; c < d; c++) {
+            double trace = fixture_get(&found.hessian, i, c * step);
+            for (int a = 1; a < d; a++) {
+                const int k = c * step + a * d - a * (a - 1) / 2;
+                trace += fixture_get(&found.hessian, i, k);
+                if (test_field_type(test) == SPHG_F32)
+                    trace = (double)(float)trace;
+            }
+            TEST_REQUIRE(trace == fixture_get(&found.laplacian, i, c), "particle %d", i);
+        }
+}
+
+static void pairs_found_anew_give_the_same_bits(const test_case *test)
+{
+    const stage on = exact_stage(test, .3, 2.5);
+    stage other = on;
+    const double *numbers = stage_random_field(&on, SPHG_VECTOR, 8);
+    const curved kept = apply(&on, SPHG_VECTOR, numbers, (how){0});
+    const fixture_array positions = fixture_positions(test, &other.points);
+    sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
+    geometry.list_free = 1;
+    other.neighbors = fixture_search(on.context, &on.scheme, &geometry);
+    const curved again = apply(&other, SPHG_VECTOR, numbers, (how){0});
+    require_same_bits(&kept, &again, "list-free");
+    TEST_REQUIRE(fixture_same_bits(&kept.table, &again.table), "tables");
+    int32_t chosen[12];
+    for (int k = 0; k < 12; k++)
+        chosen[k] = k * 3;
+    const sphg_subset few = sphg_listed(chosen, 12);
+    const curved some = apply(&on, SPHG_VECTOR, numbers, (how){.subset = &few});
+    for (int k = 0; k < 12; k++)
+        for (int c = 0; c < some.hessian.width; c++)
+            TEST_REQUIRE(fixture_get(&some.hessian, chosen[k], c) ==
+                             fixture_get(&kept.hessian, chosen[k], c),
+                         "target %d", chosen[k]);
+    TEST_REQUIRE(fixture_is_canary(&some.hessian, 1), "who is not selected is written");
+}
+
+/* Half of the particles each: sums of both, moments of third and fourth order included. */
+static void two_source_sets_are_one_cloud(const test_case *test)
+{
+    const stage on = exact_stage(test, .1, 3);
+    const int n = on.points.count, half = n / 2;
+    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 9);
+    const curved whole = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved found = outputs_of(&on, SPHG_SCALAR);
+    stage moved = on;
+    const fixture_array positions = fixture_positions(test, &moved.points);
+    const fixture_array values = fixture_numbers(test_field_type(test), n, 1, numbers);
+    const sphg_view all = fixture_view(&positions), volume = fixture_view(&on.volume);
+    sphg_sources sets[2] = {{0}, {0}};
+    sphg_view at_sources[2];
+    for (int s = 0; s < 2; s++) {
+        const int first = s ? half : 0, count = s ? n - half : half;
+        sphg_view part = all;
+        part.x = (const char *)all.x + first * all.stride;
+        sphg_geometry geometry = sphg_targets_apart(all, n, part, count);
+        geometry.precision = test_field_type(test);
+        sets[s].neighbors = fixture_search(on.context, &on.scheme, &geometry);
+        sets[s].volume = volume;
+        sets[s].volume.x = (const char *)volume.x + first * volume.stride;
+        at_sources[s] = fixture_view(&values);
+        at_sources[s].x = (const char *)at_sources[s].x + first * at_sources[s].stride;
+    }
+    sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources};
+    field.at_targets = fixture_view(&values);
+    field.gradient = fixture_view(&found.gradient);
+    field.hessian = fixture_view(&found.hessian);
+    sphg_request request = {.sources = sets, .fields = &field, .set_count = 2, .field_count = 1};
+    request.target_volume = volume;
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    fixture_require_close(&whole.gradient, &found.gradient, "gradient of two sets");
+    fixture_require_close(&whole.hessian, &found.hessian, "Hessian of two sets");
+}
+
+/* ---- Pairs
+ * ----------------------------------------------------------------------------------------- */
+
+static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
+{
+    const stage on = exact_stage(test, .3, 2.5);
+    const int n = on.points.count, d = test->dimension;
+    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 10);
+    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    int64_t *offsets = test_memory((size_t)(n + 1) * sizeof *offsets);
+    sphg_pairs pairs = {.offsets = offsets, .capacity = 0};
+    sphg_sources sources = stage_sources(&on);
+    FIXTURE_OK(on.context,
+               sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
+    fixture_array gradients = fixture_output(test_field_type(test), (int)pairs.count, d);
+    pairs.capacity = pairs.count;
+    pairs.indices = test_memory((size_t)pairs.count * sizeof *pairs.indices);
+    pairs.gradient = fixture_view(&gradients);
+    FIXTURE_OK(on.context, sphg_pair_gradients(on.context, &on.scheme, &sources, NULL,
+                                               fixture_view(&found.table), &pairs));
+    fixture_array sums = fixture_output(SPHG_F64, n, d), alone = fixture_output(SPHG_F64, n, d);
+    const double *table = fixture_doubles(&found.table);
+    for (int i = 0; i < n; i++)
+        for (int a = 0; a < d; a++) {
+            double sum = 0, one[3], x_ij[3], other = 0;
+            for (int64_t k = offsets[i]; k < offsets[i + 1]; k++) {
+                const int j = pairs.indices[k];
+                for (int b = 0; b < d; b++)
+                    x_ij[b] = on.points.x[i * d + b] - on.points.x[j * d + b];
+                sphg_pair_gradient(&on.scheme, x_ij, fixture_get(&on.volume, j, 0),
+                                   table + (ptrdiff_t)i * found.table.width, one);
+                sum += (numbers[j] - numbers[i]) * fixture_get(&gradients, (int)k, a);
+                other += (numbers[j] - numbers[i]) * one[a];
+            }
+            fixture_put(&sums, i * d + a, sum);
+            fixture_put(&alone, i * d + a, other);
+        }
+    const fixture_array f64 = fixture_numbers(SPHG_F64, n, d, fixture_doubles(&found.gradient));
+    double worst = 0, size = 0;
+    for (int i = 0; i < n; i++)
+        for (int a = 0; a < d; a++) {
+            const double g = fixture_get(&f64, i, a);
+            size = fmax(size, fabs(g));
+            worst = fmax(worst, fmax(fabs(fixture_get(&sums, i, a) - g),
+                                     fabs(fixture_get(&alone, i, a) - g)));
+        }
+    TEST_WITHIN(order_of_summation, worst / size / on.scene.unit, "gradients of pairs");
+}
+
+/* ---- Continuity
+ * -------------------------------------------------------------------------------------- */
+
+/* A neighbour slides in from beyond H along a line: nothing jumps, and a step half as long changes
+ * half as much. */
+static double largest_step(const test_case *test, sphg_policy policy, int steps)
+{
+    random_state random = random_seeded(31);
+    const int d = test->dimension, per_axis = d == 2 ? 3 : 2, n = (d == 2 ? 9 : 8) + 1;
+    const cloud block = cloud_jittered(d, per_axis, .5, .1, &random);
+    cloud points = {.dimension = d, .count = n, .spacing = .5};
+    points.x = test_memory((size_t)(n * d) * sizeof *points.x);
+    memcpy(points.x, block.x, (size_t)((n - 1) * d) * sizeof *points.x);
+    sphg_context *context = fixture_context_of(1);
+    sphg_scheme scheme = fixture_scheme(test, 1.05);
+    scheme.order = 2;
+    scheme.policy = policy;
+    const double h = scheme.support_radius;
+    double value[10], gradient[10][3], hessian[10][6], before[10][9], worst = 0;
+    for (int i = 0; i < n; i++)
+        value[i] = .125 * sin(2. * i);
+    const double volume = d == 2 ? .25 : .125;
+    sphg_neighbors *neighbors = NULL;
+    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+    for (int step = 0; step <= steps; step++) {
+        for (int a = 0; a < d; a++)
+            points.x[(n - 1) * d + a] = a ? .31 : 2.5 - 2.2 * step / steps;
+        sphg_geometry geometry = sphg_all(sphg_view_f64(points.x, 8 * d), n);
+        geometry.list_free = 1;
+        FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+        const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f64(&volume)};
+        const sphg_view at_sources = sphg_view_f64(value, 8);
+        sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
+        field.gradient = sphg_view_f64(gradient[0], sizeof gradient[0]);
+        field.hessian = sphg_view_f64(hessian[0], sizeof hessian[0]);
+        const sphg_request request = {
+            .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+        FIXTURE_OK(context, sphg_evaluate(context, &scheme, &request));
+        for (int i = 0; i < n; i++)
+            for (int k = 0; k < d + pairs_of(d); k++) {
+                const double now = k < d ? gradient[i][k] : h * hessian[i][k - d];
+                if (step)
+                    worst = fmax(worst, fabs(now - before[i][k]));
+                before[i][k] = now;
+            }
+    }
+    sphg_neighbors_destroy(neighbors);
+    return worst;
+}
+
+static void a_sliding_neighbour_makes_no_jump(const test_case *test)
+{
+    const double once = largest_step(test, SPHG_BLEND, 10000);
+    const double twice = largest_step(test, SPHG_BLEND, 20000);
+    const double jump = largest_step(test, SPHG_TRUNCATE, 10000);
+    TEST_REQUIRE(twice < .04 && twice < .6 * once, "%g, then %g", once, twice);
+    TEST_REQUIRE(jump > 10 * once, "%g where it should jump", jump);
+}
+
+/* ---- Degenerate clouds
+ * -------------------------------------------------------------------------------- */
+
+static void require_finite(const fixture_array *found, const char *where)
+{
+    for (int k = 0; k < found->count * found->width; k++)
+        TEST_REQUIRE(isfinite(fixture_get(found, k / found->width, k % found->width)), "%s", where);
+}
+
+/* Zeros included. */
+static void require_close(const fixture_array *a, const fixture_array *b, const char *where)
+{
+    if (memcmp(a->data, b->data, (size_t)(a->count * a->width) * (a->type == SPHG_F64 ? 8 : 4)) !=
+        0)
+        fixture_require_close(a, b, where);
+}
+
+/* Where the linear rank is short, order 2 is order 1. */
+static void degenerate_clouds_have_the_result_of_order_1(const test_case *test)
+{
+    const int d = test->dimension;
+    const cloud clouds[] = {cloud_single(d),
+                            cloud_pair(d, .3),
+                            cloud_line(d, 5, .125),
+                            cloud_plane(d, d == 2 ? 8 : 5, .25),
+                            cloud_coincident(d, 4, 0, .25),
+                            cloud_coincident(d, 3, 1, .25)};
+    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
+        const stage made = stage_of(test, test_text("cloud %d", (int)c), clouds[c], .6);
+        const stage on = second_order(made);
+        const double *numbers = stage_random_field(&on, SPHG_SCALAR, 11);
+        const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+        const stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
+        const stage_result linear = stage_apply(&made, &field, NULL);
+        require_finite(&found.gradient, on.name);
+        require_finite(&found.hessian, on.name);
+        require_finite(&found.table, on.name);
+        require_close(&linear.gradient, &found.gradient, on.name);
+        for (int i = 0; i < on.points.count; i++) {
+            TEST_REQUIRE(fixture_get(&found.rank, i, 0) < d, "rank of %d, %s", i, on.name);
+            for (int k = 0; k < found.hessian.width; k++)
+                TEST_REQUIRE(fixture_get(&found.hessian, i, k) == 0, "Hessian of %d, %s", i,
+                             on.name);
+        }
+    }
+}
+
+/* Few neighbours, more than a plane, fewer than curvature asks for. */
+static void few_neighbours_give_numbers(const test_case *test)
+{
+    const int d = test->dimension;
+    for (int count = 2; count < 14; count++) {
+        random_state random = random_seeded((uint64_t)count);
+        const stage on = second_order(
+            stage_of(test, test_text("%d", count), cloud_random(d, count, 1, &random), 3));
+        const curved found =
+            apply(&on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 12), (how){0});
+        require_finite(&found.gradient, on.name);
+        require_finite(&found.hessian, on.name);
+        for (int i = 0; i < count; i++)
+            TEST_REQUIRE(fixture_get(&found.rank, i, 0) <= count - 1, "rank of %d, %s", i, on.name);
+    }
+}
+
+/* ---- What is refused
+ * ------------------------------------------------------------------------------------ */
+
+static void require_refused(const stage *on, sphg_field field, sphg_scheme scheme,
+                            const char *words)
+{
+    const fixture_array values =
+        fixture_numbers(test_field_type(on->test), on->points.count, PAIRS_MOST,
+                        stage_random_field(on, SPHG_SYM_TENSOR, 13));
+    const sphg_view at_sources = fixture_view(&values);
+    const sphg_sources sources = stage_sources(on);
+    field.at_sources = &at_sources;
+    const sphg_request request = {
+        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+    const sphg_result result = sphg_evaluate(on->context, &scheme, &request);
+    const char *message = sphg_last_message(on->context);
+    TEST_REQUIRE(result == SPHG_ERROR_UNSUPPORTED && strstr(message, words), "%d: %s", (int)result,
+                 message);
+}
+
+static void what_order_2_lacks_is_refused_by_name(const test_case *test)
+{
+    const stage on = exact_stage(test, .2, 2);
+    const curved found = outputs_of(&on, SPHG_SCALAR);
+    sphg_scheme first = on.scheme;
+    first.order = 1;
+    sphg_field field = {.shape = SPHG_SCALAR, .hessian = fixture_view(&found.hessian)};
+    require_refused(&on, field, first, "hessian needs scheme.order 2");
+    field = (sphg_field){.shape = SPHG_SCALAR, .laplacian = fixture_view(&found.laplacian)};
+    require_refused(&on, field, first, "laplacian needs scheme.order 2");
+    field = (sphg_field){.shape = SPHG_SCALAR, .gradient = fixture_view(&found.gradient)};
+    field.form = SPHG_DIRECT;
+    require_refused(&on, field, on.scheme, "direct");
+    field.form = SPHG_ADJOINT;
+    require_refused(&on, field, on.scheme, "form is 3");
+    field = (sphg_field){.shape = SPHG_SYM_TENSOR, .hessian = fixture_view(&found.hessian)};
+    require_refused(&on, field, on.scheme, "hessian of a tensor");
+    sphg_scheme other = on.scheme;
+    other.method = SPHG_CMLS;
+    field = (sphg_field){.shape = SPHG_SCALAR, .gradient = fixture_view(&found.gradient)};
+    require_refused(&on, field, other, "KGC, MLS and RKPM");
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(results_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED,
+               0),
+    TEST_ENTRY(every_policy_and_instruction_set_matches_the_oracle, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(rank_is_the_oracles, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(quadratic_fields_are_exact_at_full_rank, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(linear_fields_are_exact_wherever_order_1_is, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(constants_have_exactly_no_derivative, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(lattice_errors_are_the_known_ones_in_2d, TEST_BIT(TEST_F64), TEST_2D,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(lattice_errors_are_the_known_ones_in_3d, TEST_BIT(TEST_F64), TEST_3D,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
+    TEST_ENTRY(tables_give_the_bits_of_one_sweep, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(laplacians_are_traces_of_hessians, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(pairs_found_anew_give_the_same_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(two_source_sets_are_one_cloud, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(gradients_of_pairs_sum_to_the_gradient, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(a_sliding_neighbour_makes_no_jump, 0, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(degenerate_clouds_have_the_result_of_order_1, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(few_neighbours_give_numbers, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(what_order_2_lacks_is_refused_by_name, TEST_ALL_PRECISIONS, 0, 0, 0),
+};
+TEST_MAIN(entries)
