@@ -170,6 +170,63 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
             }
 }
 
+/* Where a few volumes outweigh the others, rounding of the large moments raises the threshold. */
+static void uneven_volumes_match_the_oracle(const test_case *test)
+{
+    const stage even = stage_of_scene(test, &scenes_hard[0]);
+    const double heavy = test_unit_roundoff(test) > 1e-10 ? 0x1p17 : 0x1p46;
+    double *volumes = test_memory((size_t)even.points.count * sizeof *volumes);
+    for (int i = 0; i < even.points.count; i++)
+        volumes[i] = fixture_get(&even.volume, i, 0) * (i % 9 == 4 ? heavy : 1);
+    const stage on = second_order(stage_with_volumes(&even, volumes));
+    const double *numbers = stage_random_field(&on, SPHG_VECTOR, 15);
+    const curved found = apply(&on, SPHG_VECTOR, numbers, (how){0});
+    int raised = 0;
+    for (int i = 0; i < on.points.count; i += 3) {
+        oracle_second second;
+        oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
+        raised += second.kept > 0 && second.shift > 0 && second.eps > .0015;
+        compare(&on, SPHG_VECTOR, &found, numbers, i);
+    }
+    TEST_REQUIRE(raised > 0, "nowhere does rounding raise the threshold (%d)", raised);
+}
+
+/* MLS without volumes takes the mean of the neighbours': of like ones that is their own. */
+static void volumes_that_are_alike_need_not_be_told(const test_case *test)
+{
+    random_state random = random_seeded(17);
+    const int d = test->dimension;
+    const cloud points = cloud_jittered(d, d == 2 ? 9 : 5, .25, .1, &random);
+    const stage on = second_order(stage_of(test, "like volumes", points, .75));
+    const double volume = pow(.25, d);
+    const float narrow = (float)volume;
+    const int f64 = test_field_type(test) == SPHG_F64;
+    const fixture_array values = fixture_numbers(test_field_type(test), points.count, 1,
+                                                 stage_random_field(&on, SPHG_SCALAR, 16));
+    const sphg_view at_sources = fixture_view(&values);
+    curved found[2];
+    for (int mean = 0; mean < 2; mean++) {
+        found[mean] = outputs_of(&on, SPHG_SCALAR);
+        const sphg_view same = f64 ? sphg_same_f64(&volume) : sphg_same_f32(&narrow);
+        fixture_array positions = fixture_positions(test, (cloud *)&on.points);
+        sphg_geometry geometry = sphg_targets_apart(fixture_view(&positions), points.count,
+                                                    fixture_view(&positions), points.count);
+        geometry.precision = test_field_type(test);
+        const sphg_sources sources = {
+            .neighbors = fixture_search(on.context, &on.scheme, &geometry), .volume = same};
+        sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
+        field.at_targets = at_sources;
+        field.gradient = fixture_view(&found[mean].gradient);
+        field.hessian = fixture_view(&found[mean].hessian);
+        sphg_request request = {
+            .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+        request.target_volume = mean ? sphg_absent() : same;
+        FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    }
+    fixture_require_close(&found[0].gradient, &found[1].gradient, "gradient by mean volumes");
+    fixture_require_close(&found[0].hessian, &found[1].hessian, "Hessian by mean volumes");
+}
+
 static void rank_is_the_oracles(const test_case *test)
 {
     int open = 0, all = 0;
@@ -776,6 +833,10 @@ static const test_entry entries[] = {
                0),
     TEST_ENTRY(every_policy_and_instruction_set_matches_the_oracle, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(uneven_volumes_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
+    TEST_ENTRY(volumes_that_are_alike_need_not_be_told, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_MLS), 0),
     TEST_ENTRY(rank_is_the_oracles, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(quadratic_fields_are_exact_at_full_rank, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),

@@ -115,15 +115,41 @@ struct block {
     vec trace2, trace4;
 };
 
+/* M2 K = M3 by L D L^T. Not by the inverse: K multiplies sums as large as M2, and where volumes are
+ * uneven only the residual of a solution is as small as they need it. */
+SPHGI_TEMPLATE void solve_for_pairs(const vec *m2, vec m3[3][PAIRS_MOST], vec k[3][PAIRS_MOST],
+                                    bool three)
+{
+    const int n = three ? 6 : 3;
+    const vec i0 = R(1) / m2[0], l1 = m2[1] * i0, none = splat(R(0));
+    const vec d1 = m2[three ? 3 : 2] - l1 * m2[1], i1 = R(1) / d1;
+    vec l2 = none, l3 = none, i2 = none;
+    if (three) {
+        const vec t = m2[4] - l1 * m2[2];
+        l2 = m2[2] * i0;
+        l3 = t * i1;
+        i2 = R(1) / (m2[5] - l2 * m2[2] - l3 * t);
+    }
+    for (int c = 0; c < n; ++c) {
+        const vec y0 = m3[0][c], y1 = m3[1][c] - l1 * y0;
+        vec z2 = none;
+        if (three) {
+            z2 = (m3[2][c] - l2 * y0 - l3 * y1) * i2;
+            k[2][c] = z2;
+        }
+        k[1][c] = y1 * i1 - l3 * z2;
+        k[0][c] = y0 * i0 - l1 * k[1][c] - l2 * z2;
+    }
+}
+
 SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sums, vec factor,
                               struct block *b, bool three)
 {
     const int d = three ? 3 : 2, n = three ? 6 : 3;
     const real *third = sums + n * SPHGI_WIDTH, *fourth = third + (three ? 10 : 4) * SPHGI_WIDTH;
-    vec m2[6], inverse[6], square, m3[3][PAIRS_MOST];
+    vec m2[6], m3[3][PAIRS_MOST];
     for (int k = 0; k < n; ++k)
         m2[k] = factor * load(sums + k * SPHGI_WIDTH);
-    certified_inverse(m2, R(0), three, inverse, &square);
     b->trace2 = three ? m2[0] + m2[3] + m2[5] : m2[0] + m2[2];
     for (int a = 0; a < d; ++a) {
         for (int k = 0; k < n; ++k) {
@@ -147,13 +173,7 @@ SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sum
             b->s[k][l] = column[k];
     }
     b->trace4 = trace_of(b->s, n);
-    for (int k = 0; k < n; ++k)
-        for (int a = 0; a < d; ++a) {
-            vec sum = inverse[pair_index(a, 0, d)] * m3[0][k];
-            for (int c = 1; c < d; ++c)
-                sum += inverse[pair_index(a, c, d)] * m3[c][k];
-            b->k[a][k] = sum;
-        }
+    solve_for_pairs(m2, m3, b->k, three);
     for (int k = 0; k < n; ++k)
         for (int l = 0; l <= k; ++l)
             for (int a = 0; a < d; ++a)
