@@ -358,9 +358,10 @@ inline geometry targets_apart(input targets, input sources)
     return made;
 }
 
-/* CSR lists of your own, borrowed until the next build. For rows and functions see sphg_lists. */
+/* CSR lists of your own, borrowed until the next build, or copied by it. For rows and functions see
+ * sphg_lists. */
 template <class Offsets, class Indices>
-sphg_lists lists(const Offsets &offsets, const Indices &indices)
+sphg_lists lists(const Offsets &offsets, const Indices &indices, bool copy = false)
 {
     static_assert(std::is_same_v<detail::element_t<const Offsets>, std::int64_t> &&
                       std::is_same_v<detail::element_t<const Indices>, std::int32_t>,
@@ -368,6 +369,7 @@ sphg_lists lists(const Offsets &offsets, const Indices &indices)
     sphg_lists made = {};
     made.offsets = std::data(offsets);
     made.indices = std::data(indices);
+    made.copy = copy;
     return made;
 }
 

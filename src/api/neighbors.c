@@ -164,7 +164,7 @@ sphg_result sphg_neighbors_get_order(sphg_context *context, const sphg_neighbors
     if (!result && neighbors->source_count > 0)
         result = sphgi_check_pointer(checker, order, "order");
     if (!result && neighbors->source_count > 0) {
-        if (neighbors->kind == SPHGI_HOST_LISTS)
+        if (neighbors->kind != SPHGI_SEARCHED)
             result = order_of_lists(context, neighbors, order);
         else
             memcpy(order, neighbors->sources.order.data,

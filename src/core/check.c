@@ -397,6 +397,15 @@ sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *li
     return SPHG_OK;
 }
 
+sphg_result sphgi_refuse_list(struct sphgi_checker checker, int32_t target, int64_t index)
+{
+    if (index == SPHGI_BAD_LENGTH)
+        REFUSE(SPHG_ERROR_INDEX, "%s: the list of target %d has a negative length or is NULL",
+               checker.function, (int)target);
+    REFUSE(SPHG_ERROR_INDEX, "%s: the list of target %d holds %lld, which is no source",
+           checker.function, (int)target, (long long)index);
+}
+
 sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *subset,
                                int32_t target_count)
 {

@@ -52,6 +52,9 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
                                  const struct sphgi_scheme *scheme, bool searched);
 sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *lists,
                               int32_t target_count);
+/* A list turned out to be wrong: it holds `index`, which is no source, or has no valid length. */
+#define SPHGI_BAD_LENGTH INT64_MIN
+sphg_result sphgi_refuse_list(struct sphgi_checker checker, int32_t target, int64_t index);
 sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *subset,
                                int32_t target_count);
 

@@ -229,6 +229,12 @@ struct sphgi_passes {
                     const void *targets, int32_t count, int32_t self, uint32_t *ids,
                     int32_t *lengths);
 
+    /* Of `count` ids of a list, those within reach of the target's row stay: they move together, or
+     * if `pack` is not set, the dummy takes the place of the others. Padded to SPHGI_LANES_MOST with
+     * the dummy, for which there is room. Returns how many there are now. */
+    int32_t (*keep_near)(const struct sphgi_find *find, const void *target, uint32_t *ids,
+                         int32_t count, bool pack);
+
     /* Pairs behind tile->ids into the arrays; targets: row number of each lane's; lanes: of the
      * tile. [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,

@@ -26,6 +26,7 @@
 #endif
 #include "cells.inl.h"
 #include "search.inl.h"
+#include "near.inl.h"
 #include "shape.inl.h"
 #include "gather_factors.inl.h"
 #include "kept_factors.inl.h"
@@ -60,6 +61,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .gather_offsets = gather_offsets,
     .keep_factors = keep_factors,
     .find = find,
+    .keep_near = keep_near,
     .weave = weave,
     .interleave = interleave,
     .clean_ids = clean_ids,

@@ -230,6 +230,52 @@ sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *
 
 /* ---- The host's lists ------------------------------------------------------------------------ */
 
+/* Copies in the order of the host. */
+static bool copy_rows(sphg_neighbors *n, const struct sphgi_geometry *g)
+{
+    const size_t sources = (size_t)g->source_count, targets = (size_t)g->target_count;
+    if (!sphgi_reserve(&n->allocator, &n->sources.rows, sources + 1, g->row_size) ||
+        (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g->row_size)))
+        return false;
+    memcpy(n->sources.rows.data, g->source_rows, sources * g->row_size);
+    if (!n->part_of)
+        memcpy(n->targets.rows.data, g->target_rows, targets * g->row_size);
+    return true;
+}
+
+/* Each stands where it stands. */
+static bool number(const sphg_neighbors *n, struct sphgi_buffer *buffer, int32_t count)
+{
+    if (!sphgi_reserve(&n->allocator, buffer, (size_t)count, sizeof(int32_t)))
+        return false;
+    int32_t *numbers = buffer->data;
+    for (int32_t k = 0; k < count; ++k)
+        numbers[k] = k;
+    return true;
+}
+
+/* What a search would have made: grids in the order of the host, of no blocks. */
+static bool open_grids(sphg_neighbors *n, const struct sphgi_geometry *g)
+{
+    n->sources.block_count = n->targets.block_count = 0;
+    n->sources.count = n->source_count;
+    n->targets.count = n->target_count;
+    n->sources.lattice =
+        sphgi_lattice_of(n->dimension, n->radius, &g->periods, g->largest, n->position_type);
+    return number(n, &n->sources.order, n->source_count) &&
+           (n->part_of || number(n, &n->targets.order, n->target_count)) &&
+           number(n, &n->target_place, n->target_count);
+}
+
+static sphg_result copy_lists(struct sphgi_checker checker, sphg_neighbors *n,
+                              const struct sphgi_geometry *g, const sphg_lists *lists)
+{
+    if (!open_grids(n, g))
+        return SPHG_ERROR_MEMORY;
+    sphgi_place_dummy(n, true);
+    return sphgi_lists_copy(checker, n, lists);
+}
+
 sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *n,
                                  const struct sphgi_scheme *scheme, const sphg_geometry *given,
                                  const sphg_lists *lists)
@@ -241,18 +287,20 @@ sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *n
     n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
     n->same = n->part_of;
-    const size_t sources = (size_t)g.source_count, targets = (size_t)g.target_count;
-    if (!sphgi_reserve(&n->allocator, &n->sources.rows, sources + 1, g.row_size) ||
-        (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g.row_size)))
+    if (!copy_rows(n, &g))
         return sphgi_fail_memory(checker.context, checker.function);
-    memcpy(n->sources.rows.data, g.source_rows, sources * g.row_size);
-    sphgi_place_dummy(n, false);
-    if (!n->part_of)
-        memcpy(n->targets.rows.data, g.target_rows, targets * g.row_size);
-    n->lists = *lists;
-    if (lists->offsets)
-        n->found.pairs = lists->offsets[n->target_count];
-    n->kind = SPHGI_HOST_LISTS;
+    if (lists->copy) {
+        result = copy_lists(checker, n, &g, lists);
+        if (result)
+            return result == SPHG_ERROR_MEMORY
+                       ? sphgi_fail_memory(checker.context, checker.function)
+                       : result;
+    } else {
+        sphgi_place_dummy(n, false);
+        n->lists = *lists;
+        n->found.pairs = lists->offsets ? lists->offsets[n->target_count] : 0;
+    }
+    n->kind = lists->copy ? SPHGI_COPIED_LISTS : SPHGI_HOST_LISTS;
     n->rebuilt = true;
     n->skin_left = 0;
     return SPHG_OK;

@@ -19,6 +19,41 @@ static void widen(struct extent *extent, const struct sphgi_grid *grid)
     }
 }
 
+static double number_at(const sphg_neighbors *n, const struct sphgi_grid *grid, int32_t row,
+                        int32_t axis)
+{
+    const size_t at = SPHGI_ROW * (size_t)row + (size_t)axis;
+    return n->position_type == SPHG_F64 ? ((const double *)grid->rows.data)[at]
+                                        : (double)((const float *)grid->rows.data)[at];
+}
+
+/* Of rows that were not sorted into blocks. */
+static void widen_by_rows(struct extent *extent, const sphg_neighbors *n,
+                          const struct sphgi_grid *grid)
+{
+    for (int32_t a = 0; a < n->dimension; ++a) {
+        double low = 0, high = 0;
+        for (int32_t k = 0; k < grid->count; ++k) {
+            const double x = number_at(n, grid, k, a);
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+        }
+        const double inverse = n->sources.lattice.axis[a].inverse, most = 2.0 * SPHGI_CUT_MOST;
+        const int64_t from = (int64_t)fmax(floor(low * inverse), -most);
+        const int64_t to = (int64_t)fmin(ceil(high * inverse), most);
+        extent->low[a] = from < extent->low[a] ? from : extent->low[a];
+        extent->high[a] = to > extent->high[a] ? to : extent->high[a];
+    }
+}
+
+static void widen_by(struct extent *extent, const sphg_neighbors *n, const struct sphgi_grid *grid)
+{
+    if (grid->block_count)
+        widen(extent, grid);
+    else
+        widen_by_rows(extent, n, grid);
+}
+
 /* Below the lowest x by 64 cells, and by as much as that x has digits for; NaN if cells do not tell
  * places, or if squares of differences could leave the range of the type. */
 static double far_x(const sphg_neighbors *n)
@@ -26,9 +61,9 @@ static double far_x(const sphg_neighbors *n)
     const struct sphgi_lattice *lattice = &n->sources.lattice;
     const double most = n->type == SPHG_F64 ? 0x1p500 : 0x1p60;
     struct extent extent = {{0}, {0}};
-    widen(&extent, &n->sources);
+    widen_by(&extent, n, &n->sources);
     if (!n->same)
-        widen(&extent, &n->targets);
+        widen_by(&extent, n, &n->targets);
     const double width = 1 / lattice->axis[0].inverse;
     for (int32_t a = 0; a < lattice->dimension; ++a)
         if (extent.low[a] <= -SPHGI_CUT_MOST || extent.high[a] >= SPHGI_CUT_MOST)

@@ -1,5 +1,5 @@
 #include "lists.h"
-#include "find.h"
+#include "copy.h"
 #include "core/parallel.h"
 #include <string.h>
 
@@ -15,27 +15,33 @@ enum {
 struct build {
     sphg_context *context;
     sphg_neighbors *neighbors;
-    char *memory; /* of the workers */
+    const sphg_lists *lists; /* the host's that are copied; NULL: a search */
+    bool all_apart;          /* what is kept must take the least room */
+    char *memory;            /* of the workers */
     size_t memory_each;
     int32_t step; /* groups: every one, or a sample */
     atomic_int_least64_t ids, pairs;
     atomic_bool crowded;
+    atomic_int bad_target; /* the lowest whose list is wrong, or INT32_MAX */
 };
 
 /* A worker's groups that wait to be stored. */
 struct waiting {
     struct build *build;
-    struct sphgi_finder finder;
+    struct sphgi_finder finder; /* one of these two */
+    struct sphgi_copier copier;
+    uint32_t dummy;
     uint32_t *ids; /* WAITING_IDS */
     int32_t used, groups;
     int32_t group[WAITING_GROUPS], place[WAITING_GROUPS], steps[WAITING_GROUPS];
     int64_t pairs;
 };
 
-static size_t memory_of_worker(const sphg_neighbors *n)
+static size_t memory_of_worker(const struct build *build)
 {
     return sphgi_round_up(sizeof(struct waiting), SPHGI_ALIGNMENT) +
-           WAITING_IDS * sizeof(uint32_t) + sphgi_finder_size(n);
+           WAITING_IDS * sizeof(uint32_t) +
+           (build->lists ? sphgi_copier_size() : sphgi_finder_size(build->neighbors));
 }
 
 static struct waiting *open_worker(struct build *build, int32_t number)
@@ -47,8 +53,13 @@ static struct waiting *open_worker(struct build *build, int32_t number)
     w->ids = (uint32_t *)(void *)memory;
     w->used = w->groups = 0;
     w->pairs = 0;
-    sphgi_finder_open(&w->finder, build->context, build->neighbors,
-                      memory + WAITING_IDS * sizeof(uint32_t));
+    w->dummy = (uint32_t)build->neighbors->source_count * SPHGI_ID_STEP;
+    memory += WAITING_IDS * sizeof(uint32_t);
+    if (build->lists)
+        sphgi_copier_open(&w->copier, build->context, build->neighbors, build->lists, number,
+                          memory);
+    else
+        sphgi_finder_open(&w->finder, build->context, build->neighbors, memory);
     return w;
 }
 
@@ -138,14 +149,14 @@ static void store_group(struct waiting *w, int32_t group, const uint32_t *const 
         count[k] = lengths[k];
     }
     const int64_t woven = (int64_t)sphgi_round_up((size_t)longest, 4) * SPHGI_GROUP;
-    if (woven > 2 * ids_apart(count)) {
+    if (woven > 2 * ids_apart(count) || w->build->all_apart) {
         store_apart(w, group, lists, count);
         return;
     }
     uint32_t *to = place_for(w, group, woven, longest);
     if (to)
         sphgi_passes_of(w->build->context, SPHG_F32)
-            ->weave(lists, lengths, longest, w->finder.find.dummy, to);
+            ->weave(lists, lengths, longest, w->dummy, to);
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
@@ -163,6 +174,14 @@ static void append(void *data, const uint32_t *ids, int32_t count)
     list->count += count;
 }
 
+static void find_target(struct waiting *w, int32_t target, struct list *list)
+{
+    if (w->build->lists)
+        sphgi_copy_target(&w->copier, target, append, list);
+    else
+        sphgi_find_target(&w->finder, target, append, list);
+}
+
 /* Twice through: a list's place must be known before it can be filled. */
 static void find_crowded_group(struct waiting *w, int32_t group)
 {
@@ -171,22 +190,28 @@ static void find_crowded_group(struct waiting *w, int32_t group)
     int64_t lengths[SPHGI_GROUP] = {0};
     for (int32_t k = 0; k < targets; ++k) {
         struct list counted = {NULL, 0};
-        sphgi_find_target(&w->finder, first + k, append, &counted);
+        find_target(w, first + k, &counted);
         lengths[k] = counted.count;
-        w->pairs += counted.count;
+        w->pairs += w->build->lists ? w->copier.listed : counted.count;
     }
     atomic_store(&w->build->crowded, true);
     uint32_t *to = place_apart(w, group, lengths);
     for (int32_t k = 0; to && k < targets; ++k) {
         struct list list = {to, 0};
-        sphgi_find_target(&w->finder, first + k, append, &list);
+        find_target(w, first + k, &list);
         for (; list.count < padded(list.count); ++list.count)
-            to[list.count] = w->finder.find.dummy;
+            to[list.count] = w->dummy;
         to += list.count;
     }
 }
 
 /* ---- All groups ----------------------------------------------------------------------------- */
+
+static bool lists_of(struct waiting *w, int32_t group, const uint32_t **lists, int32_t *lengths)
+{
+    return w->build->lists ? sphgi_copy_group(&w->copier, group, lists, lengths)
+                           : sphgi_find_group(&w->finder, group, lists, lengths);
+}
 
 static void find_group(struct waiting *w, int32_t group)
 {
@@ -194,15 +219,29 @@ static void find_group(struct waiting *w, int32_t group)
     uint16_t *kept = (uint16_t *)n->found.lengths.data + (size_t)group * SPHGI_GROUP;
     const uint32_t *lists[SPHGI_GROUP];
     int32_t lengths[SPHGI_GROUP];
-    if (!sphgi_find_group(&w->finder, group, lists, lengths)) {
+    if (!lists_of(w, group, lists, lengths)) {
         find_crowded_group(w, group);
         return;
     }
+    bool pairs_alone = true;
     for (int32_t k = 0; k < sphgi_targets_in(n, group); ++k) {
         kept[k] = (uint16_t)lengths[k];
-        w->pairs += lengths[k];
+        pairs_alone &= lengths[k] <= SPHGI_CHUNK; /* of lists that are copied */
+        w->pairs += w->build->lists ? 0 : lengths[k];
     }
+    if (w->build->lists)
+        w->pairs += w->copier.listed;
+    if (w->build->lists && !pairs_alone)
+        atomic_store(&w->build->crowded, true);
     store_group(w, group, lists, lengths);
+}
+
+static void note_bad_target(struct build *build, int32_t target)
+{
+    int lowest = atomic_load(&build->bad_target);
+    while (target < lowest &&
+           !atomic_compare_exchange_weak(&build->bad_target, &lowest, (int)target))
+        ;
 }
 
 static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
@@ -213,6 +252,8 @@ static void build_task(void *data, int32_t begin, int32_t end, int32_t worker)
         find_group(w, k * build->step);
     store_waiting(w);
     atomic_fetch_add(&build->pairs, w->pairs);
+    if (build->lists)
+        note_bad_target(build, w->copier.bad_target);
 }
 
 /* Every step-th group, keeping what fits. */
@@ -224,6 +265,7 @@ static void find_groups(struct build *build, int32_t step)
     atomic_store(&build->ids, 0);
     atomic_store(&build->pairs, 0);
     atomic_store(&build->crowded, false);
+    atomic_store(&build->bad_target, INT32_MAX);
     sphgi_parallel_for(build->context, build_task, build, (groups + step - 1) / step, LEAST_GROUPS);
     found->ids_used = atomic_load(&build->ids);
     found->pairs = atomic_load(&build->pairs);
@@ -271,6 +313,14 @@ static int64_t with_margin(const struct sphgi_found *found, int64_t ids)
     return ids + ids / (found->most_pairs < 0 ? 64 : 8) + MARGIN;
 }
 
+/* What lists that are copied take at most if all stand apart. They must be kept wherever they fall,
+ * for nobody can find them again: there is room for that once there were so many. */
+static int64_t most_apart(const struct sphgi_found *found, const sphg_neighbors *n)
+{
+    const int64_t groups = sphgi_group_count(n->target_count);
+    return found->pairs + (SPHGI_GROUP * (SPHGI_PAD + 1) + SPHGI_GROUP) * groups;
+}
+
 /* Before anything is known: as many as a sample of the groups suggests. */
 static bool guess(struct build *build)
 {
@@ -281,7 +331,13 @@ static bool guess(struct build *build)
     find_groups(build, step);
     const double sampled = (groups + step - 1) / step;
     const double each = groups ? (double)n->found.ids_used / sampled : 0;
-    return place_lists(n, with_margin(&n->found, (int64_t)(each * groups)));
+    int64_t ids = (int64_t)(each * groups);
+    if (build->lists) {
+        const double pairs = groups ? (double)n->found.pairs / sampled * groups : 0;
+        n->found.pairs = (int64_t)pairs;
+        ids = most_apart(&n->found, n) > ids ? most_apart(&n->found, n) : ids;
+    }
+    return place_lists(n, with_margin(&n->found, ids));
 }
 
 static bool are_more_than_ever(const sphg_neighbors *n)
@@ -299,18 +355,26 @@ static void remember_most(sphg_neighbors *n)
     found->most_sources = sphgi_max32(found->most_sources, n->source_count);
 }
 
+static bool open_build(struct build *build)
+{
+    sphg_context *context = build->context;
+    sphg_neighbors *n = build->neighbors;
+    build->memory_each = sphgi_round_up(memory_of_worker(build), SPHGI_ALIGNMENT);
+    if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
+                       build->memory_each) ||
+        !sphgi_reserve(&n->allocator, &n->found.lengths, (size_t)n->target_count,
+                       sizeof(uint16_t)) ||
+        !place_lists(n, 0))
+        return false;
+    build->memory = context->workers.data;
+    return n->found.most_pairs >= 0 || guess(build);
+}
+
 sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
 {
     struct sphgi_found *found = &n->found;
     struct build build = {.context = context, .neighbors = n};
-    build.memory_each = sphgi_round_up(memory_of_worker(n), SPHGI_ALIGNMENT);
-    if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
-                       build.memory_each) ||
-        !sphgi_reserve(&n->allocator, &found->lengths, (size_t)n->target_count, sizeof(uint16_t)) ||
-        !place_lists(n, 0))
-        return SPHG_ERROR_MEMORY;
-    build.memory = context->workers.data;
-    if (found->most_pairs < 0 && !guess(&build))
+    if (!open_build(&build))
         return SPHG_ERROR_MEMORY;
     find_groups(&build, 1);
     if (found->ids_used > found->room && are_more_than_ever(n)) {
@@ -320,4 +384,38 @@ sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
     }
     remember_most(n);
     return SPHG_OK;
+}
+
+/* Room for a number of tables that depends on counts alone. */
+static bool reserve_tables(sphg_neighbors *n)
+{
+    const size_t groups = (size_t)sphgi_group_count(n->target_count);
+    const size_t bytes = tables_of(&n->sources) + tables_of(&n->targets) +
+                         groups * sizeof(int64_t) + 2 * SPHGI_ALIGNMENT;
+    return sphgi_reserve(&n->allocator, &n->shared, bytes, 1);
+}
+
+sphg_result sphgi_lists_copy(struct sphgi_checker checker, sphg_neighbors *n,
+                             const sphg_lists *lists)
+{
+    struct sphgi_found *found = &n->found;
+    struct build build = {.context = checker.context, .neighbors = n, .lists = lists};
+    if (!reserve_tables(n) || !open_build(&build))
+        return SPHG_ERROR_MEMORY;
+    find_groups(&build, 1);
+    const int64_t apart = most_apart(found, n);
+    const int64_t needed = apart > found->ids_used ? apart : found->ids_used;
+    if (needed > found->room && (are_more_than_ever(n) || apart > found->room)) {
+        if (!place_lists(n, with_margin(found, needed)))
+            return SPHG_ERROR_MEMORY;
+        find_groups(&build, 1);
+    } else if (found->ids_used > found->room) {
+        build.all_apart = true;
+        find_groups(&build, 1);
+    }
+    remember_most(n);
+    const int32_t bad = atomic_load(&build.bad_target);
+    return bad == INT32_MAX
+               ? SPHG_OK
+               : sphgi_refuse_list(checker, bad, sphgi_fault_of_list(n, lists, bad));
 }

@@ -21,14 +21,20 @@ struct sphgi_found {
     struct sphgi_buffer lengths; /* uint16_t per target; unused in groups kept apart */
     int64_t room;                /* ids that there is room for */
     int64_t pairs, ids_used;     /* of the last search, whether they were kept or not */
-    bool crowded;                /* lengths of some lists are not known */
+    bool crowded;                /* lengths of some lists are not known, or not all of them pairs */
     int64_t most_pairs;          /* of any search; < 0: none yet */
     int32_t most_targets, most_sources;
 };
 
 enum { SPHGI_STEPS_BITS = 16, SPHGI_APART = (1 << SPHGI_STEPS_BITS) - 1 };
 
-enum sphgi_neighbors_kind { SPHGI_NEVER_BUILT, SPHGI_SEARCHED, SPHGI_HOST_LISTS };
+enum sphgi_neighbors_kind {
+    SPHGI_NEVER_BUILT,
+    SPHGI_SEARCHED,
+    SPHGI_HOST_LISTS,  /* borrowed: rows stand in the host's order, and there are no groups */
+    SPHGI_COPIED_LISTS /* the host's, kept like found ones; rows stand in its order, which `order` and
+                          `target_place` say like any other */
+};
 
 struct sphg_neighbors {
     struct sphgi_allocator allocator;
@@ -113,6 +119,21 @@ static inline int64_t sphgi_host_row(const sphg_lists *lists, int32_t target, in
     }
     *ids = NULL;
     return lists->row(target, worker, ids, lists->user);
+}
+
+/* Which numbers of a host's list count, and what they are. */
+static inline struct sphgi_cleaning sphgi_cleaning_of(const sphg_neighbors *neighbors,
+                                                      const sphg_lists *lists)
+{
+    return (struct sphgi_cleaning){.mask =
+                                       lists->index_mask ? (uint32_t)lists->index_mask : UINT32_MAX,
+                                   .sources = (uint32_t)neighbors->source_count};
+}
+
+/* What a target's list may hold of itself. */
+static inline uint32_t sphgi_self_of(const sphg_neighbors *neighbors, int32_t target)
+{
+    return neighbors->part_of ? (uint32_t)target : UINT32_MAX;
 }
 
 static inline bool sphgi_is_host_row(const int32_t *ids, int64_t count)

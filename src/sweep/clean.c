@@ -5,15 +5,12 @@
 static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    return (struct sphgi_cleaning){.mask = n->lists.index_mask ? (uint32_t)n->lists.index_mask
-                                                               : UINT32_MAX,
-                                   .sources = (uint32_t)n->source_count};
+    return sphgi_cleaning_of(n, &n->lists);
 }
 
-/* What a target's list may hold of itself. */
 static uint32_t self_of(const struct sphgi_worker *w, int32_t target)
 {
-    return w->sweep->set->neighbors->part_of ? (uint32_t)target : UINT32_MAX;
+    return sphgi_self_of(w->sweep->set->neighbors, target);
 }
 
 /* Remembers the first target whose list holds what is no source, and what that is. */
@@ -75,7 +72,7 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t position = SPHGI_ROW * sphgi_size_of_type(n->position_type);
     const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
-    const int32_t *order = n->kind == SPHGI_SEARCHED ? n->sources.order.data : NULL;
+    const int32_t *order = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
     char *positions = w->local_positions + (size_t)at * position;
     int32_t *items = (int32_t *)(void *)w->local_items + at;
     uint32_t rows[SPHGI_CHUNK];

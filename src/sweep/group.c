@@ -108,7 +108,7 @@ static void gather_factors(struct sphgi_worker *w, int32_t begin)
 
 static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
-    const bool ready = !w->local && w->sweep->set->neighbors->kind == SPHGI_SEARCHED;
+    const bool ready = !w->local && w->sweep->set->neighbors->kind != SPHGI_HOST_LISTS;
     if (!ready || w->sweep->pairs)
         for (int32_t l = 0; l < w->passes->lanes; ++l)
             w->pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));

@@ -40,7 +40,7 @@ static void use_packed_rows(struct sphgi_worker *w)
     const size_t rows = (size_t)n->source_count + 1, size = row_size(sweep->plan->type);
     w->gather.rows = sweep->volumes ? sweep->packed_positions : n->sources.rows.data;
     w->gather.dummy = (uint32_t)(SPHGI_ID_STEP * (rows - 1));
-    w->items = n->kind == SPHGI_SEARCHED ? n->sources.order.data : NULL;
+    w->items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
     for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
         w->rows[s] = sweep->packed_rows + (size_t)s * rows * size;
 }

@@ -78,7 +78,7 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     sphg_context *context = sweep->context;
     const sphg_neighbors *n = sweep->set->neighbors;
     const int32_t items = selection->end - selection->begin;
-    const bool searched = n->kind == SPHGI_SEARCHED, some = searched && selection->subset;
+    const bool searched = n->kind != SPHGI_HOST_LISTS, some = searched && selection->subset;
     sweep->position_passes = sphgi_passes_of(context, n->position_type);
     look_at_volumes(sweep, tally);
     if (some && !sphgi_selection_open(context, selection, n))
@@ -192,17 +192,6 @@ static sphg_result report_volume(struct sphgi_checker checker, const struct sphg
                       checker.function, (int)k, sphgi_digits(value).text, rule);
 }
 
-static sphg_result report_index(struct sphgi_checker checker, const struct sphgi_tally *tally)
-{
-    if (tally->bad_index == SPHGI_BAD_LENGTH)
-        return sphgi_fail(checker.context, SPHG_ERROR_INDEX,
-                          "%s: the list of target %d has a negative length or is NULL",
-                          checker.function, (int)tally->bad_target);
-    return sphgi_fail(checker.context, SPHG_ERROR_INDEX,
-                      "%s: the list of target %d holds %lld, which is no source", checker.function,
-                      (int)tally->bad_target, (long long)tally->bad_index);
-}
-
 int32_t sphgi_selected_rows(const sphg_subset *subset, int32_t target_count, int32_t *row_of_target)
 {
     const struct sphgi_selection selection = sphgi_selection_of(subset, target_count);
@@ -233,7 +222,7 @@ sphg_result sphgi_sweep_run(struct sphgi_checker checker, const struct sphgi_pla
     if (plan->stats)
         *plan->stats = sphgi_tally_stats(&tally, plan->type);
     if (tally.bad_target >= 0)
-        return report_index(checker, &tally);
+        return sphgi_refuse_list(checker, tally.bad_target, tally.bad_index);
     if (tally.bad_volume && !context->config.trusted)
         return report_volume(checker, plan);
     return SPHG_OK;

@@ -3,8 +3,6 @@
 #define SPHGI_TALLY_H
 #include "passes/passes.h"
 
-#define SPHGI_BAD_LENGTH INT64_MIN
-
 struct sphgi_tally {
     sphg_stats stats;
     int32_t bad_target; /* first target whose list is wrong, -1: none */

@@ -1,5 +1,6 @@
 #include "traverse.h"
 #include "rows.h"
+#include "core/check.h"
 #include "search/find.h"
 #include <string.h>
 

@@ -224,7 +224,8 @@ static const argument of_use_lists[] = {CONTEXT,
                                         SPECIAL("lists.lengths", spoil_groups),
                                         SPECIAL("lists.row", spoil_groups),
                                         FREE("lists.user"),
-                                        FREE("lists.index_mask")};
+                                        FREE("lists.index_mask"),
+                                        FREE("lists.copy")};
 static const probe probes_sphg_neighbors_use_lists[] = {
     PROBE(NULL, call_use_lists, of_use_lists),
     PROBE(prepare_with_targets, call_use_lists, of_use_lists)};

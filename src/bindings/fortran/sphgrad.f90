@@ -152,7 +152,7 @@ module sphgrad
       lengths = c_null_ptr
     type(c_funptr) :: row = c_null_funptr
     type(c_ptr) :: user = c_null_ptr
-    integer(c_int32_t) :: index_mask = 0
+    integer(c_int32_t) :: index_mask = 0, copy = 0
   end type sphg_lists
 
   type, bind(c), public :: sphg_neighbors_info

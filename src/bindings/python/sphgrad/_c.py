@@ -127,7 +127,7 @@ class Geometry(c.Structure):
 class Lists(c.Structure):
     _fields_ = [("offsets", c.c_void_p), ("indices", c.c_void_p), ("rows", c.c_void_p),
                 ("lengths", c.c_void_p), ("row", c.c_void_p), ("user", c.c_void_p),
-                ("index_mask", c.c_int32)]
+                ("index_mask", c.c_int32), ("copy", c.c_int32)]
 
 
 class NeighborsInfo(c.Structure):

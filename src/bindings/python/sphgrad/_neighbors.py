@@ -31,10 +31,12 @@ class ListFault:
 @dataclasses.dataclass
 class Lists:
     """Your own lists as CSR: the sources around target i are indices[offsets[i]:offsets[i + 1]]. Each
-    pair stands there from both ends; i itself is skipped. index_mask: bits of an index that count."""
+    pair stands there from both ends; i itself is skipped. index_mask: bits of an index that count.
+    copy: the library keeps a copy, in the form of its own lists, instead of borrowing the arrays."""
     offsets: object
     indices: object
     index_mask: int = 0
+    copy: bool = False
 
 
 def _positions(value, name):
@@ -148,7 +150,7 @@ class Neighbors:
         if len(found) < array[-1]:
             raise ValueError(f"indices has {len(found)} items, offsets name {array[-1]}")
         return _c.Lists(offsets=offsets, indices=indices if len(found) else None,
-                        index_mask=lists.index_mask)
+                        index_mask=lists.index_mask, copy=bool(lists.copy))
 
     def _build(self, positions, own, targets, lists, scheme=None):
         positions = _positions(positions, "positions")
@@ -173,7 +175,7 @@ class Neighbors:
             self._scheme, self.dtype, self.dimension = scheme, dtype, positions.shape[1]
             self.target_count, self.source_count = geometry.target_count, geometry.source_count
             self.part_of = targets is None
-            self._borrowed = borrowed if c_lists is not None else None
+            self._borrowed = borrowed if c_lists is not None and not c_lists.copy else None
 
     @property
     def info(self):
