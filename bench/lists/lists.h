@@ -15,6 +15,7 @@ enum lists_supply {
     SUPPLY_CSR,       /* the host's offsets and indices */
     SUPPLY_ROWS,      /* the host's pointer and length for each target */
     SUPPLY_FUNCTION,  /* a function of the host's, called for each target */
+    SUPPLY_COPIED,    /* the host's offsets and indices, copied by the build */
     SUPPLIES
 };
 

@@ -48,6 +48,8 @@ static sphg_lists lists_of(struct stage *stage, enum lists_supply supply)
 {
     if (supply == SUPPLY_CSR)
         return (sphg_lists){.offsets = stage->offsets, .indices = stage->indices};
+    if (supply == SUPPLY_COPIED)
+        return (sphg_lists){.offsets = stage->offsets, .indices = stage->indices, .copy = 1};
     if (supply == SUPPLY_ROWS)
         return (sphg_lists){.rows = stage->rows, .lengths = stage->lengths};
     return (sphg_lists){.row = row_of, .user = stage};

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 const char *const supply_names[SUPPLIES] = {"kept lists", "list-free", "host's CSR", "host's rows",
-                                            "host's row function"};
+                                            "host's row function", "host's CSR, copied"};
 const char *const lists_work_names[LISTS_WORKS] = {"build", "matrices", "gradient", "fused"};
 
 static double time_of_pair(const struct lists *lists, const struct samples *samples)
