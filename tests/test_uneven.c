@@ -89,6 +89,32 @@ static void require_same(const results *a, const results *b, const char *how)
     TEST_REQUIRE(fixture_same_bits(&a->rank, &b->rank), "%s: rank", how);
 }
 
+/* Indices that come with gradients, and those of some of the targets, stand in the same order. */
+static void require_same_order(const uneven *on, const sphg_scheme *scheme,
+                               const sphg_sources *sources, const sphg_pairs *expected)
+{
+    const fixture_array gradient =
+        fixture_output(on->volume.type, (int)expected->count, scheme->dimension);
+    const size_t bytes = (size_t)(expected->count + 1) * sizeof(int32_t);
+    int64_t *offsets = test_memory((COUNT + 1) * sizeof *offsets);
+    sphg_pairs pairs = *expected;
+    pairs.indices = test_memory(bytes);
+    pairs.gradient = fixture_view(&gradient);
+    FIXTURE_OK(on->context,
+               sphg_pair_gradients(on->context, scheme, sources, NULL, sphg_absent(), &pairs));
+    TEST_REQUIRE(!memcmp(pairs.indices, expected->indices, bytes), "indices beside gradients");
+    const sphg_subset some = sphg_range(COUNT / 3, COUNT - 5);
+    const int64_t first = expected->offsets[some.begin];
+    pairs.gradient = sphg_absent();
+    pairs.offsets = offsets;
+    FIXTURE_OK(on->context,
+               sphg_pair_gradients(on->context, scheme, sources, &some, sphg_absent(), &pairs));
+    TEST_REQUIRE(pairs.count == expected->offsets[some.end] - first &&
+                     !memcmp(pairs.indices, expected->indices + first,
+                             (size_t)pairs.count * sizeof(int32_t)),
+                 "indices of some");
+}
+
 /* The pairs in the library's order, as a host's lists. */
 static sphg_lists lists_of(const uneven *on, const sphg_neighbors *neighbors)
 {
@@ -104,6 +130,7 @@ static sphg_lists lists_of(const uneven *on, const sphg_neighbors *neighbors)
     pairs.capacity = pairs.count;
     FIXTURE_OK(on->context,
                sphg_pair_gradients(on->context, &plain, &sources, NULL, sphg_absent(), &pairs));
+    require_same_order(on, &plain, &sources, &pairs);
     return (sphg_lists){.offsets = offsets, .indices = pairs.indices};
 }
 

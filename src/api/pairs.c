@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SORT_GRAIN = 256, INSERTION_MOST = 128 };
+enum { SORT_GRAIN = 256, LIST_GRAIN = 32 /* groups */, INSERTION_MOST = 128 };
 
 /* ---- Rows in ascending order ---------------------------------------------------------------- */
 
@@ -175,8 +175,13 @@ static sphg_result check_pairs(struct exporting *e)
 static bool are_lengths_counts(const struct exporting *e)
 {
     const sphg_neighbors *n = e->plan->sets[0].neighbors;
-    return n->kind == SPHGI_SEARCHED && !n->list_free && !n->found.crowded && n->skin == 0 &&
+    return n->kind != SPHGI_HOST_LISTS && !n->list_free && !n->found.crowded && n->skin == 0 &&
            e->plan->scheme.radius == n->radius;
+}
+
+static int32_t self_pairs(const struct exporting *e)
+{
+    return e->plan->classic && e->plan->own_set >= 0;
 }
 
 static void count_by_lengths(struct exporting *e)
@@ -185,7 +190,7 @@ static void count_by_lengths(struct exporting *e)
     const struct sphgi_selection selection = sphgi_selection_of(e->subset, e->plan->target_count);
     const int32_t *place = n->target_place.data;
     const uint16_t *lengths = n->found.lengths.data;
-    const int32_t self = e->plan->classic && e->plan->own_set >= 0;
+    const int32_t self = self_pairs(e);
     for (int32_t k = selection.begin; k < selection.end; ++k) {
         const int32_t target = sphgi_selected(&selection, k);
         if (target >= 0)
@@ -225,6 +230,90 @@ static sphg_result count_pairs(struct exporting *e)
     return result;
 }
 
+/* ---- Lists as they are ----------------------------------------------------------------------- */
+
+struct listing {
+    const struct exporting *e;
+    const sphg_neighbors *neighbors;
+    struct sphgi_selection selection;
+};
+
+/* One kept list becomes a row. */
+static void write_row(const struct exporting *e, const sphg_neighbors *n, int32_t place,
+                      const uint32_t *ids, int32_t stride)
+{
+    const int32_t *order = n->sources.order.data;
+    const int32_t target = ((const int32_t *)sphgi_target_grid(n)->order.data)[place];
+    const int32_t count = ((const uint16_t *)n->found.lengths.data)[place];
+    int32_t *row = e->pairs->indices + e->offsets[e->row_of_target[target]];
+    for (int32_t k = 0; k < count; ++k, ids += stride)
+        row[k] = order[*ids / SPHGI_ID_STEP];
+    if (self_pairs(e))
+        row[count] = target;
+}
+
+/* Targets [first, last) of a group. */
+static void write_rows(const struct exporting *e, const sphg_neighbors *n, int32_t group,
+                       int32_t first, int32_t last)
+{
+    const uint32_t *ids = sphgi_kept_ids(n, group);
+    const bool apart = sphgi_kept_steps(n, group) == SPHGI_APART;
+    const uint32_t *lengths = ids;
+    ids += apart ? SPHGI_GROUP : 0;
+    for (int32_t k = 0; k < last; ++k) {
+        if (k >= first)
+            write_row(e, n, group * SPHGI_GROUP + k, ids, apart ? 1 : SPHGI_GROUP);
+        ids += apart ? sphgi_round_up(lengths[k], SPHGI_PAD) : 1;
+    }
+}
+
+static void group_rows_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct listing *listing = data;
+    (void)worker;
+    for (int32_t group = begin; group < end; ++group)
+        write_rows(listing->e, listing->neighbors, group, 0,
+                   sphgi_targets_in(listing->neighbors, group));
+}
+
+static void target_rows_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct listing *listing = data;
+    const sphg_neighbors *n = listing->neighbors;
+    (void)worker;
+    for (int32_t k = begin; k < end; ++k) {
+        const int32_t target = sphgi_selected(&listing->selection, listing->selection.begin + k);
+        if (target < 0)
+            continue;
+        const int32_t place = ((const int32_t *)n->target_place.data)[target];
+        const int32_t lane = place % SPHGI_GROUP;
+        write_rows(listing->e, n, place / SPHGI_GROUP, lane, lane + 1);
+    }
+}
+
+static bool are_all_kept(const sphg_neighbors *n)
+{
+    bool kept = true;
+    for (int32_t group = 0; group < sphgi_group_count(n->target_count); ++group)
+        kept &= n->found.groups[group] >= 0;
+    return kept;
+}
+
+/* All targets in the order of storage, or those that are asked for in their own. */
+static void write_lists(struct exporting *e)
+{
+    const sphg_neighbors *n = e->plan->sets[0].neighbors;
+    struct listing listing = {e, n, sphgi_selection_of(e->subset, n->target_count)};
+    sphg_context *context = e->checker.context;
+    if (!e->subset)
+        sphgi_parallel_for(context, group_rows_task, &listing, sphgi_group_count(n->target_count),
+                           LIST_GRAIN);
+    else
+        sphgi_parallel_for(context, target_rows_task, &listing,
+                           listing.selection.end - listing.selection.begin,
+                           LIST_GRAIN * SPHGI_GROUP);
+}
+
 static sphg_result fill_pairs(struct exporting *e)
 {
     sphg_context *context = e->checker.context;
@@ -238,7 +327,11 @@ static sphg_result fill_pairs(struct exporting *e)
             return sphgi_fail_memory(context, e->checker.function);
         sink.indices = context->coefficients.data;
     }
-    const sphg_result result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
+    sphg_result result = SPHG_OK;
+    if (!sink.gradient.count && are_lengths_counts(e) && are_all_kept(e->plan->sets[0].neighbors))
+        write_lists(e);
+    else
+        result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
     struct sorting sorting = {e->offsets, sink.indices, e->gradient,
                               sphgi_size_of_type(e->plan->type)};
     if (!result && !e->pairs->any_order)

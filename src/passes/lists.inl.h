@@ -209,65 +209,116 @@ static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cle
 
 /* ---- ... side by side ------------------------------------------------------------------------ */
 
-typedef int32_t some_ints __attribute__((vector_size(sizeof(some_ids)), aligned(4), may_alias));
-enum { BLOCK = 16, PARTS = BLOCK / SOME_IDS }; /* a number of steps of any vector */
+typedef uint32_t lane_ids __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
 
-/* The numbers of a tile become ids in place. left: pairs of each lane from here on. */
-SPHGI_TEMPLATE void clean_block(uint32_t *ids, some_ints *left, const some_ids *self,
-                                struct cleaning *how)
+/* Four numbers of a list from step k on, of which its end may leave fewer; behind it nothing is
+ * read.
+ */
+SPHGI_TEMPLATE four_ids four_at_end(const uint32_t *list, int32_t count, int32_t k)
 {
-    for (int p = 0; p < PARTS; ++p) {
-        const some_ids is_pair = (some_ids)(left[p] > 0);
-        some_ids number = *(const some_ids *)(ids + p * SOME_IDS) & how->mask;
-        const some_ids seen = number & is_pair;
-        raise_ids(&how->largest, &seen);
-        number |= (some_ids)(number == self[p]) | ~is_pair;
-        lower_ids(&number, &how->sources);
-        *(some_ids *)(ids + p * SOME_IDS) = number + number; /* SPHGI_ID_STEP */
-        left[p] -= BLOCK / LANES;
-    }
+    const int32_t left = count < k ? 0 : count < k + 4 ? count - k : 4;
+#if defined(__AVX2__)
+    static const int32_t there[] = {-1, -1, -1, -1, 0, 0, 0, 0};
+    const __m128i kept = _mm_loadu_si128((const __m128i *)(const void *)(there + 4 - left));
+    return (four_ids)_mm_maskload_epi32((const int *)list + k, kept);
+#else
+    four_ids some = {0};
+    for (int32_t i = 0; i < left; ++i)
+        some[i] = list[k + i];
+    return some;
+#endif
 }
 
-/* Four steps of all lanes. Behind the end of a list nothing is read: its last numbers stand in
- * `tail`. */
-SPHGI_TEMPLATE void turn_hosts(const struct sphgi_lane_lists *lists, const uint32_t (*tail)[4],
-                               int32_t k, uint32_t *to)
+/* Four steps of all lanes. */
+SPHGI_TEMPLATE void turn_hosts(const four_ids *list, lane_ids *step)
 {
-    static const int32_t there[SPHGI_LANES_MOST] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-    const uint32_t *row[LANES];
-    for (int32_t l = 0; l < LANES; ++l)
-        row[l] = k + 4 <= lists->count[l] ? lists->ids[l] + k : tail[l];
-#if VECTOR_BYTES == 16 && REAL_IS_F64
-    (void)there;
-    for (int32_t l = 0; l < LANES; ++l)
-        for (int32_t i = 0; i < 4; ++i)
-            to[i * LANES + l] = row[l][i];
+#if VECTOR_BYTES >= 32 && !REAL_IS_F64
+#if VECTOR_BYTES == 64
+#define FOUR(l)                                                                                    \
+    (vec) _mm512_inserti64x4(                                                                      \
+        _mm512_castsi256_si512(_mm256_set_m128i((__m128i)list[l + 4], (__m128i)list[l])),          \
+        _mm256_set_m128i((__m128i)list[l + 12], (__m128i)list[l + 8]), 1)
 #else
-    for (int32_t l = 0; l < LANES; l += TURNED)
-        turn_lanes(row + l, there, 0, (const four_ids *)tail, LANES, to + l);
+#define FOUR(l) (vec) _mm256_set_m128i((__m128i)list[l + 4], (__m128i)list[l])
 #endif
+    const struct four v = turned(FOUR(0), FOUR(1), FOUR(2), FOUR(3));
+#undef FOUR
+    step[0] = (lane_ids)v.x;
+    step[1] = (lane_ids)v.y;
+    step[2] = (lane_ids)v.z;
+    step[3] = (lane_ids)v.w;
+#else
+    for (int i = 0; i < 4; ++i) {
+        lane_ids one = {0};
+        for (int l = 0; l < LANES; ++l)
+            one[l] = list[l][i];
+        step[i] = one;
+    }
+#endif
+}
+
+struct lane_cleaning {
+    lane_ids mask, sources, self, largest, left;
+};
+
+/* A step's numbers become ids. */
+SPHGI_TEMPLATE lane_ids clean_step(lane_ids number, int32_t k, struct lane_cleaning *how)
+{
+    number &= how->mask;
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+    const __m512i sources = (__m512i)how->sources, v = (__m512i)number;
+    const __mmask16 pairs = _mm512_cmpgt_epi32_mask((__m512i)how->left, _mm512_set1_epi32(k));
+    const __mmask16 others = _mm512_mask_cmpneq_epi32_mask(pairs, v, (__m512i)how->self);
+    how->largest =
+        (lane_ids)_mm512_mask_max_epu32((__m512i)how->largest, pairs, (__m512i)how->largest, v);
+    number = (lane_ids)_mm512_mask_min_epu32(sources, others, sources, v);
+#else
+    typedef int32_t lane_ints __attribute__((vector_size(4 * LANES)));
+    const lane_ids pairs = (lane_ids)((lane_ints)how->left > (lane_ints){0} + k);
+    const lane_ids seen = number & pairs;
+    const lane_ids larger = (lane_ids)(seen > how->largest);
+    how->largest = (seen & larger) | (how->largest & ~larger);
+    const lane_ids valid =
+        (lane_ids)(number < how->sources) & pairs & ~(lane_ids)(number == how->self);
+    number = (number & valid) | (how->sources & ~valid);
+#endif
+    return number + number; /* SPHGI_ID_STEP */
+}
+
+SPHGI_TEMPLATE void clean_four(const four_ids *list, int32_t k, struct lane_cleaning *how,
+                               uint32_t *to)
+{
+    lane_ids step[4] = {{0}};
+    turn_hosts(list, step);
+    for (int i = 0; i < 4; ++i)
+        *(lane_ids *)(to + i * LANES) = clean_step(step[i], k + i, how);
 }
 
 static bool interleave_hosts(const struct sphgi_lane_lists *lists, const struct sphgi_cleaning *how,
                              const uint32_t *self, struct sphgi_tile *tile)
 {
-    const some_ids zero = {0};
-    struct cleaning own = {zero + how->mask, zero + how->sources, zero, zero};
-    some_ids selves[PARTS];
-    some_ints left[PARTS];
-    uint32_t tail[LANES][4] = {{0}};
-    for (int32_t l = 0; l < LANES; ++l)
-        for (int32_t k = lists->count[l] & -4; k < lists->count[l]; ++k)
-            tail[l][k % 4] = lists->ids[l][k];
-    for (int32_t i = 0; i < BLOCK; ++i) {
-        selves[i / SOME_IDS][i % SOME_IDS] = self[i % LANES];
-        left[i / SOME_IDS][i % SOME_IDS] = lists->count[i % LANES] - i / LANES;
+    const lane_ids zero = {0};
+    struct lane_cleaning own = {zero + how->mask, zero + how->sources, *(const lane_ids *)self,
+                                zero, *(const lane_ids *)(const void *)lists->count};
+    uint32_t *to = tile->own_ids;
+    int32_t shortest = tile->steps, k = 0;
+    four_ids list[LANES];
+    for (int l = 0; l < LANES; ++l)
+        shortest = lists->count[l] < shortest ? lists->count[l] : shortest;
+    for (; k + 4 <= shortest; k += 4, to += 4 * LANES) {
+        for (int l = 0; l < LANES; ++l)
+            list[l] = *(const four_ids *)(lists->ids[l] + k);
+        clean_four(list, k, &own, to);
+    }
+    for (; k < tile->steps; k += 4, to += 4 * LANES) {
+        for (int l = 0; l < LANES; ++l)
+            list[l] = four_at_end(lists->ids[l], lists->count[l], k);
+        clean_four(list, k, &own, to);
     }
     tile->ids = tile->own_ids;
     tile->id_stride = LANES;
-    for (int32_t k = 0; k < tile->steps; k += 4)
-        turn_hosts(lists, (const uint32_t(*)[4])tail, k, tile->own_ids + k * LANES);
-    for (int32_t k = 0; k < tile->steps * LANES; k += BLOCK)
-        clean_block(tile->own_ids + k, left, selves, &own);
-    return is_any_beyond(&own);
+    bool beyond = false;
+    for (int l = 0; l < LANES; ++l)
+        beyond |= own.largest[l] >= how->sources;
+    return beyond;
 }

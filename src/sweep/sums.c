@@ -1,5 +1,6 @@
 #include "sums.h"
 #include "corrections.h"
+#include "pair_rows.h"
 #include "quadratic.h"
 #include "core/view.h"
 #include <string.h>
@@ -157,60 +158,6 @@ static void sum_fields(struct sphgi_worker *w)
             sum_transposed(w, symmetric);
 }
 
-/* The pairs of one lane of the tile, without what lies beyond the cutoff: their places in the
- * arrays, and their ids. Returns how many. */
-static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at, uint32_t *ids)
-{
-    const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
-    const uint32_t *id = w->tile.ids + lane;
-    int32_t kept = 0;
-    for (int32_t k = 0; k < count; ++k, id += w->tile.id_stride) {
-        at[kept] = k * lanes + lane;
-        ids[kept] = *id;
-        kept += *id != w->gather.dummy;
-    }
-    return kept;
-}
-
-#define COPY_NUMBERS(type)                                                                         \
-    for (int32_t k = 0; k < count; ++k, to += stride)                                              \
-    *(type *)(void *)to = ((const type *)(const void *)from)[at[k]]
-
-static void copy_numbers(const char *from, const int32_t *at, int32_t count, char *to,
-                         ptrdiff_t stride, sphg_type type)
-{
-    if (type == SPHG_F64)
-        COPY_NUMBERS(double);
-    else
-        COPY_NUMBERS(float);
-}
-
-#undef COPY_NUMBERS
-
-/* The pairs of one lane for the target of lane `of`. */
-static void write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
-{
-    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const sphg_type type = w->sweep->plan->type;
-    const int32_t row = pairs->row_of_target[w->group.target[of]];
-    int32_t at[SPHGI_CHUNK + 1];
-    uint32_t ids[SPHGI_CHUNK + 1];
-    const int32_t count = pairs_of_lane(w, lane, at, ids);
-    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->written[of] : 0;
-    w->written[of] += count;
-    if (!pairs->offsets)
-        return;
-    for (int32_t k = 0; k < count; ++k) {
-        const uint32_t number = ids[k] / SPHGI_ID_STEP;
-        pairs->indices[place + k] = w->items ? w->items[number] : (int32_t)number;
-    }
-    for (int32_t a = 0; a < pairs->gradient.count; ++a)
-        copy_numbers(w->arrays + (size_t)(SPHGI_GX + a) * SPHGI_TILE * sphgi_size_of_type(type), at,
-                     count,
-                     (char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
-                     pairs->gradient.stride, type);
-}
-
 /* Hands on the pairs inside the cutoff; counts them in any case. */
 static void write_pairs(struct sphgi_worker *w)
 {
@@ -225,7 +172,7 @@ static void write_pairs(struct sphgi_worker *w)
             w->inverse_h);
     const int32_t lanes = w->tile.spread ? w->passes->lanes : w->targets;
     for (int32_t l = 0; l < lanes; ++l)
-        write_lane(w, l, w->first + (w->tile.spread ? 0 : l));
+        sphgi_write_lane(w, l, w->first + (w->tile.spread ? 0 : l));
 }
 
 static void weigh(struct sphgi_worker *w, int32_t count)

@@ -309,6 +309,20 @@ static const uint32_t *numbers_of(const int32_t *list)
     return (const uint32_t *)(const void *)list;
 }
 
+/* Numbers that come from memory should be on their way before the lanes are full: those of a list
+ * of usual length, without a question that nobody could foresee. */
+static void ask_for_list(const sphg_lists *lists, int32_t target, int32_t count)
+{
+    enum { LINE = 64 };
+    if (target >= count || lists->row)
+        return;
+    const int32_t *ids =
+        lists->offsets ? lists->indices + lists->offsets[target] : lists->rows[target];
+    __builtin_prefetch((const void *)(uintptr_t)ids);
+    __builtin_prefetch((const void *)((uintptr_t)ids + LINE));
+    __asm__ volatile("");
+}
+
 void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
@@ -320,6 +334,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
         if (target < 0)
             continue;
+        ask_for_list(&n->lists, target + SPHGI_LANES_MOST, n->target_count);
         const int32_t *ids;
         const int64_t count = sphgi_host_row(&n->lists, target, number, &ids);
         if (!sphgi_is_host_row(ids, count))

@@ -1,0 +1,65 @@
+#include "pair_rows.h"
+
+/* Where the pairs of a lane stand in the arrays, and their ids: what is no pair has the dummy's.
+ * Returns how many. */
+static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at, uint32_t *ids)
+{
+    const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
+    const uint32_t *id = w->tile.ids + lane;
+    int32_t kept = 0;
+    for (int32_t k = 0; k < count; ++k, id += w->tile.id_stride) {
+        at[kept] = k * lanes + lane;
+        ids[kept] = *id;
+        kept += *id != w->gather.dummy;
+    }
+    return kept;
+}
+
+/* Two or three components a pair, all of them in one loop. */
+#define COPY_NUMBERS(type)                                                                         \
+    for (int32_t k = 0; k < count; ++k, x += stride, y += stride, z += stride) {                   \
+        const type *number = (const type *)from + at[k];                                           \
+        *(type *)(void *)x = number[SPHGI_GX * SPHGI_TILE];                                        \
+        *(type *)(void *)y = number[SPHGI_GY * SPHGI_TILE];                                        \
+        if (three)                                                                                 \
+            *(type *)(void *)z = number[SPHGI_GZ * SPHGI_TILE];                                    \
+    }
+
+static void copy_gradients(const struct sphgi_worker *w, const int32_t *at, int32_t count,
+                           int64_t place)
+{
+    const struct sphgi_columns *to = &w->sweep->pairs->gradient;
+    const void *from = w->arrays;
+    const ptrdiff_t stride = to->stride, first = place * stride;
+    const bool three = to->count == 3;
+    char *x = (char *)(uintptr_t)(to->at[0] + first), *y = (char *)(uintptr_t)(to->at[1] + first);
+    char *z = three ? (char *)(uintptr_t)(to->at[2] + first) : y;
+    if (w->sweep->plan->type == SPHG_F64)
+        COPY_NUMBERS(double)
+    else
+        COPY_NUMBERS(float)
+}
+
+#undef COPY_NUMBERS
+
+void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
+{
+    const struct sphgi_pair_sink *pairs = w->sweep->pairs;
+    const int32_t row = pairs->row_of_target[w->group.target[of]];
+    int32_t at[SPHGI_CHUNK + 1];
+    uint32_t ids[SPHGI_CHUNK + 1];
+    const int32_t count = pairs_of_lane(w, lane, at, ids);
+    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->written[of] : 0;
+    w->written[of] += count;
+    if (!pairs->offsets)
+        return;
+    int32_t *to = pairs->indices + place;
+    if (w->items)
+        for (int32_t k = 0; k < count; ++k)
+            to[k] = w->items[ids[k] / SPHGI_ID_STEP];
+    else
+        for (int32_t k = 0; k < count; ++k)
+            to[k] = (int32_t)(ids[k] / SPHGI_ID_STEP);
+    if (pairs->gradient.count)
+        copy_gradients(w, at, count, place);
+}
