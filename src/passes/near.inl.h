@@ -1,5 +1,5 @@
-/* Which of a list's ids are neighbours, by the same test as a search: for lists of the host that are
- * copied. */
+/* Which of a list's ids are neighbours, by the same test as a search: for lists of the host that
+ * are copied. */
 
 /* A bit for each of TESTED ids. */
 SPHGI_TEMPLATE uint16_t bits_near(const struct sphgi_find *find, const uint32_t *ids, const vec *x,

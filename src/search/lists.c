@@ -155,8 +155,7 @@ static void store_group(struct waiting *w, int32_t group, const uint32_t *const 
     }
     uint32_t *to = place_for(w, group, woven, longest);
     if (to)
-        sphgi_passes_of(w->build->context, SPHG_F32)
-            ->weave(lists, lengths, longest, w->dummy, to);
+        sphgi_passes_of(w->build->context, SPHG_F32)->weave(lists, lengths, longest, w->dummy, to);
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
@@ -415,7 +414,6 @@ sphg_result sphgi_lists_copy(struct sphgi_checker checker, sphg_neighbors *n,
     }
     remember_most(n);
     const int32_t bad = atomic_load(&build.bad_target);
-    return bad == INT32_MAX
-               ? SPHG_OK
-               : sphgi_refuse_list(checker, bad, sphgi_fault_of_list(n, lists, bad));
+    return bad == INT32_MAX ? SPHG_OK
+                            : sphgi_refuse_list(checker, bad, sphgi_fault_of_list(n, lists, bad));
 }

@@ -32,8 +32,8 @@ enum sphgi_neighbors_kind {
     SPHGI_NEVER_BUILT,
     SPHGI_SEARCHED,
     SPHGI_HOST_LISTS,  /* borrowed: rows stand in the host's order, and there are no groups */
-    SPHGI_COPIED_LISTS /* the host's, kept like found ones; rows stand in its order, which `order` and
-                          `target_place` say like any other */
+    SPHGI_COPIED_LISTS /* the host's, kept like found ones; rows stand in its order, which `order`
+                          and `target_place` say like any other */
 };
 
 struct sphg_neighbors {

@@ -7,6 +7,13 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
     const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
     const uint32_t *id = w->tile.ids + lane;
     int32_t kept = 0;
+    if (!w->gather.guarded) {
+        for (int32_t k = 0; k < count; ++k) {
+            at[k] = k * lanes + lane;
+            ids[k] = id[k * w->tile.id_stride];
+        }
+        return count;
+    }
     for (int32_t k = 0; k < count; ++k, id += w->tile.id_stride) {
         at[kept] = k * lanes + lane;
         ids[kept] = *id;
@@ -54,9 +61,10 @@ void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
     if (!pairs->offsets)
         return;
     int32_t *to = pairs->indices + place;
-    if (w->items)
+    const int32_t *items = w->items;
+    if (items)
         for (int32_t k = 0; k < count; ++k)
-            to[k] = w->items[ids[k] / SPHGI_ID_STEP];
+            to[k] = items[ids[k] / SPHGI_ID_STEP];
     else
         for (int32_t k = 0; k < count; ++k)
             to[k] = (int32_t)(ids[k] / SPHGI_ID_STEP);
