@@ -369,8 +369,8 @@ SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors
 /* Copies the positions and borrows your lists: leave them unchanged until the next build or
  * destroy. Pairs with r >= H add nothing. Indices are checked as operators read them.
  * With lists.copy they are checked and copied now, in about the time of a sweep, and take 4 bytes a
- * pair and some 50 a target. Each later sweep saves a fifth to a third of its time. row is asked up
- * to six times a target.
+ * pair and some 50 a target. Each later sweep saves a fifth to a third of its time. row is asked
+ * several times a target.
  * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY, with copy INDEX (build
  * again). Cost: O(n), with copy O(n + pairs). */
 SPHG_API sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
