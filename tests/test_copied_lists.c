@@ -347,37 +347,40 @@ static void copies_take_their_turn(const test_case *test)
 }
 
 /* The copy is the object's, is counted, and warm builds ask for no memory, however the same number
- * of pairs falls onto the targets. */
+ * of pairs falls onto the targets: where they take more room side by side they stand apart. */
 static void copies_are_counted_and_grow_with_counts_alone(const test_case *test)
 {
+    enum { EACH = 100 };
     hooks *host = fixture_hooks();
     const sphg_config config = hooks_config(host, 2);
     world own = world_of(test, test_isa(), WHOLE);
     own.context = fixture_context_with(&config);
-    sphg_neighbors *neighbors = pairs_neighbors(own.context);
+    own.scheme.support_radius = 100; /* nobody is left out */
+    sphg_neighbors *copied = pairs_neighbors(own.context), *borrowed = pairs_neighbors(own.context);
     sphg_neighbors_info info;
-    int64_t *even = test_memory((COUNT + 1) * sizeof *even);
-    const int64_t pairs = own.offsets[COUNT];
-    for (int i = 0; i <= COUNT; i++)
-        even[i] = pairs * i / COUNT;
+    int64_t *offsets = test_memory((COUNT + 1) * sizeof *offsets);
     sphg_lists given = lists_of(&own, CSR);
-    given.copy = 1;
-    given.offsets = even;
-    FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
-                                                     &own.geometry, &given));
-    FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
-    assert_int_equal(info.pairs, pairs);
-    assert_true(info.bytes > pairs * 4 + COUNT * 4 * (own.particles.is_double ? 8 : 4));
-    const int64_t before = host->allocations;
-    for (int k = 0; k < 8; k++) { /* piled up on ever fewer targets */
-        for (int i = 0; i <= COUNT; i++)
-            even[i] = (i >> k << k) < COUNT ? pairs * (i >> k << k) / COUNT : pairs;
-        even[COUNT] = pairs;
-        FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
+    given.offsets = offsets;
+    int64_t before = 0;
+    assert_true(own.offsets[COUNT] > EACH * COUNT);
+    for (int k = 0; k < 9; k++) { /* the same on all, then piled up on ever fewer */
+        for (int i = 0; i < COUNT; i++)
+            offsets[i] = EACH * (i >> k << k);
+        offsets[COUNT] = EACH * COUNT;
+        given.copy = 1;
+        FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, copied, &own.scheme,
                                                          &own.geometry, &given));
-        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
-        assert_int_equal(info.pairs, pairs);
-        assert_int_equal(host->allocations, before);
+        TEST_REQUIRE(!k || host->allocations == before, "build %d asks for memory", k);
+        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, copied, &info));
+        assert_int_equal(info.pairs, EACH * COUNT);
+        assert_true(info.bytes > (EACH + 10) * COUNT * 4);
+        given.copy = 0;
+        FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, borrowed, &own.scheme,
+                                                         &own.geometry, &given));
+        const sphg_neighbors *one[1] = {copied}, *other[1] = {borrowed};
+        const results a = evaluate(&own, one, 1, NULL), b = evaluate(&own, other, 1, NULL);
+        require_same(&a, &b, test_text("build %d", k));
+        before = host->allocations;
     }
 }
 
