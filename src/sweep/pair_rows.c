@@ -7,7 +7,7 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
     const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
     const uint32_t *id = w->tile.ids + lane;
     int32_t kept = 0;
-    if (!w->gather.guarded) {
+    if (!w->gather.guarded && w->sweep->set->neighbors->kind == SPHGI_SEARCHED) { /* no gaps */
         for (int32_t k = 0; k < count; ++k) {
             at[k] = k * lanes + lane;
             ids[k] = id[k * w->tile.id_stride];
