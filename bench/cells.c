@@ -44,14 +44,20 @@ static const char *skip_blanks(const char *at, const char *end)
     return at;
 }
 
-/* Past the closing quote of what begins with one; where nothing closes it, it is a plain sign. */
+/* Past the closing quote of what begins with one; two in a row stand for one that is meant. Where
+ * nothing closes it, it is a plain sign. */
 static const char *skip_quoted(const char *at, const char *end)
 {
-    const char *start = skip_blanks(at, end);
-    if (start == end || *start != '"')
+    const char *close = skip_blanks(at, end);
+    if (close == end || *close != '"')
         return at;
-    const char *close = memchr(start + 1, '"', (size_t)(end - start - 1));
-    return close ? close + 1 : at;
+    do {
+        close = memchr(close + 1, '"', (size_t)(end - close - 1));
+        if (!close)
+            return at;
+        close++;
+    } while (close < end && *close == '"');
+    return close;
 }
 
 /* The end of brackets with blanks around them, as in "x [m] y [m]" or "[01  x] [02  y]"; or `at`.

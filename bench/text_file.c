@@ -38,6 +38,10 @@ static const struct kind {
     {"PARTIO", 6, "Partio's text format"},
     {"#!TDV", 5, "binary Tecplot"},
     {"{", 1, "JSON"},
+    {"[{", 2, "JSON"},
+    {"[[", 2, "JSON"},
+    {"[\n", 2, "JSON"},
+    {"[\r\n", 3, "JSON"},
 };
 
 static bool refuse_kind(const char *name, char *reason, size_t size)

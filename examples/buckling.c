@@ -214,7 +214,9 @@ static void measure_start(const struct run *run, const struct sph *sph, const in
     sheet_init(&sheet, run, sph, sides, kinematic);
     pressure_prepare(&sheet.pressure, &sheet.fluid);
     operators_update(&sheet.operators, &sheet.fluid);
-    metrics_set(run->metrics, "shear_error", viscosity_shear_error(&sheet.viscosity, &sheet.fluid));
+    const struct shear_errors errors = viscosity_shear_errors(&sheet.viscosity, &sheet.fluid);
+    metrics_set(run->metrics, "shear_error", errors.power);
+    metrics_set(run->metrics, "shear_rate_error", errors.rate);
     sheet_free(&sheet);
 }
 
@@ -258,6 +260,7 @@ static void draw(const struct picture *picture)
 int main(int argc, char **argv)
 {
     static const struct gate gates[] = {{"shear_error", EACH_CORRECTED, AT_MOST, 1e-12},
+                                        {"shear_rate_error", EACH_CORRECTED, AT_MOST, 1e-11},
                                         {"amplitude", ONLY_KGC, TIMES_SPH, 1.5},
                                         {"amplitude", EACH_CORRECTED, AT_MOST, 0.6},
                                         {"reversals", ONLY_SPH, AT_MOST, 0},

@@ -58,6 +58,17 @@ static struct particles queries(int32_t count)
     return made;
 }
 
+/* As in a step of a simulation: what was found at other heights must not stay. */
+static void update_from_elsewhere(const struct sph *sph, struct contact *contact,
+                                  struct particles *points)
+{
+    for (int step = 0; step < 2; step++) {
+        for (int32_t i = 0; i < points->count; i++)
+            points->x[i][2] *= step ? 2 : 0.5;
+        contact_update(sph, contact, points);
+    }
+}
+
 /* On a plane the corrected slope is more than a direction: its length is 1 / distance. */
 static void measure_plane(const struct run *run, const struct sph *sph, struct random *random)
 {
@@ -71,7 +82,7 @@ static void measure_plane(const struct run *run, const struct sph *sph, struct r
         points.x[i][1] = random_between(random, -0.45, 0.45);
         points.x[i][2] = random_between(random, 0.25, 0.85) * support_radius;
     }
-    contact_update(sph, &contact, &points);
+    update_from_elsewhere(sph, &contact, &points);
     for (int32_t i = 0; i < points.count; i++) {
         const vector up = {0, 0, 1};
         const double length = sqrt(dot(contact.slope[i], contact.slope[i]));

@@ -109,6 +109,81 @@ static void every_form_matches_the_oracle(const test_case *test)
         }
 }
 
+/* Two layers whose distance the blend takes in: the smallest eigenvalue in their middle is
+ * `lambda`. */
+static stage layers_with(const test_case *test, double lambda, double threshold,
+                         random_state *random)
+{
+    const int d = test->dimension, side = d == 2 ? 10 : 5;
+    double gap = .125 * sqrt(threshold);
+    for (int round = 0;; round++) {
+        cloud points = cloud_sheets(d, side, .125, gap);
+        double *volume = test_memory((size_t)points.count * sizeof *volume);
+        for (int i = 0; i < points.count; i++)
+            volume[i] = (double)(float)pow(.125, d);
+        cloud_rotate(&points, random);
+        const stage even = stage_of(test, "layers", points, .28);
+        const stage given = stage_with_volumes(&even, volume);
+        const stage on = stage_under(&given, SPHG_BLEND, threshold);
+        const oracle_point *middle = oracle_at(on.reference, points.count / 4);
+        if (round == 1)
+            return on;
+        gap *= sqrt(lambda / (double)middle->filter.lambda_min);
+    }
+}
+
+/* Where f rises from 1 it is far steeper than the C that it gives tells, and what rounding does to
+ * M_i and to M_j counts in the forces of both. */
+static void forces_stay_within_their_bounds_where_the_blend_begins(const test_case *test)
+{
+    static const double above[] = {.003, .01, .03, .1};
+    const double threshold = 1e-4;
+    random_state random = random_seeded(76);
+    int blended = 0;
+    for (int k = 0; k < 4; k++) {
+        const stage on = layers_with(test, threshold * (1 + 3 * above[k]), threshold, &random);
+        const fixture_array table = stage_table(&on);
+        const int half = on.points.count / 2;
+        const oracle_point *middle = oracle_at(on.reference, half / 2);
+        blended += middle->filter.lambda_min > threshold && middle->rank < test->dimension;
+        for (int shape = SPHG_SCALAR; shape <= SPHG_VECTOR; shape++) {
+            const stage_field forces[] = {
+                {(sphg_shape)shape, SPHG_ADJOINT, stage_random_field(&on, (sphg_shape)shape, 6)},
+                {(sphg_shape)shape, SPHG_SYMMETRIC, stage_random_field(&on, (sphg_shape)shape, 7)}};
+            for (int f = 0; f < 2; f++) {
+                const stage_result found = stage_apply(&on, &forces[f], &table);
+                stage_compare(&on, &forces[f], &found, half / 2);
+                stage_compare(&on, &forces[f], &found, half + half / 2);
+            }
+        }
+    }
+    TEST_REQUIRE(blended == 4, "%d of 4 in the band", blended);
+}
+
+/* A target that is given the volume 0 has Mhat = M V_i / (mu2 H^2) = 0 under MLS: nothing can be
+ * corrected, and C = f(0) V_i / (mu2 H^2) is 0, too. The others do not read it. */
+static void targets_without_extent_match_the_oracle(const test_case *test)
+{
+    const int d = test->dimension, side = d == 2 ? 10 : 5;
+    random_state random = random_seeded(77);
+    const cloud points = cloud_jittered(d, side, .125, .2, &random);
+    const stage even = stage_of(test, "block", points, .28);
+    double *volume = test_memory((size_t)points.count * sizeof *volume);
+    for (int i = 0; i < points.count; i++)
+        volume[i] = i % 3 ? even.scene.volume[i] : 0;
+    const stage filled = stage_with_volumes(&even, volume);
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+        const stage on = stage_under(&filled, (sphg_policy)policy, 0);
+        const fixture_array table = stage_table(&on);
+        for (int i = 0; i < points.count; i += 3)
+            for (int k = 0; k < table.width && test->method == SPHG_MLS; k++)
+                TEST_REQUIRE(fixture_get(&table, i, k) == 0, "C of particle %d is not 0", i);
+        compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table, 24);
+        compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table, 24);
+        compare(&on, SPHG_SCALAR, SPHG_ADJOINT, &table, 6);
+    }
+}
+
 /* ---- Few particles, thin, some of which outweigh all others ---------------------------------- */
 
 enum { FEW = 7, KINDS = 5 };
@@ -191,6 +266,10 @@ static const test_entry entries[] = {
     TEST_ENTRY(every_form_matches_the_oracle, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS,
                TEST_BIT(SPHG_CUBIC_SPLINE) | TEST_BIT(SPHG_QUINTIC_SPLINE) | TEST_BIT(SPHG_POLY6)),
+    TEST_ENTRY(forces_stay_within_their_bounds_where_the_blend_begins, TEST_SINGLE_AND_DOUBLE,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
+    TEST_ENTRY(targets_without_extent_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(a_value_of_one_pair_stays_within_its_bound, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, TEST_BIT(SPHG_WENDLAND_C6)),
     TEST_ENTRY(few_particles_stay_within_their_bounds, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,

@@ -42,21 +42,23 @@ void viscosity_force(struct viscosity *viscosity, vector *v, vector *force)
                     sphg_view_f64(viscosity->stress, WIDTH * sizeof *viscosity->stress), force);
 }
 
-double viscosity_shear_error(struct viscosity *viscosity, const struct particles *fluid)
+struct shear_errors viscosity_shear_errors(struct viscosity *viscosity,
+                                           const struct particles *fluid)
 {
     vector *flow = array_new(fluid->count, sizeof *flow);
     vector *force = array_new(fluid->count, sizeof *force);
-    double power = 0, volume = 0;
+    double power = 0, volume = 0, rate = 0;
     for (int32_t i = 0; i < fluid->count; i++)
         flow[i][0] = fluid->x[i][1];
     viscosity_force(viscosity, flow, force);
     for (int32_t i = 0; i < fluid->count; i++) {
         power += dot(flow[i], force[i]);
         volume += viscosity->operators->volume[i];
+        rate = fmax(rate, fabs(viscosity->jacobian[i][1] - 1));
     }
     free(flow);
     free(force);
-    return fabs(power / (-viscosity->dynamic * volume) - 1);
+    return (struct shear_errors){fabs(power / (-viscosity->dynamic * volume) - 1), rate};
 }
 
 static void find_force(void *data, vector *v, vector *force)

@@ -26,9 +26,15 @@ void viscosity_free(struct viscosity *viscosity);
 /* force = that of the velocities v */
 void viscosity_force(struct viscosity *viscosity, vector *v, vector *force);
 
-/* The power of the force against a shear flow v = (y, 0, 0) beside what it must be, -mu V in all:
- * |found / true - 1|. Exact where the Jacobian is, because the force is its adjoint. */
-double viscosity_shear_error(struct viscosity *viscosity, const struct particles *fluid);
+/* What is found of a shear flow v = (y, 0, 0). The power of the force against it must be -mu V in
+ * all: exact where the Jacobian is, because the force is its adjoint, but of a Jacobian and a force
+ * that both have the wrong sign it is the same. */
+struct shear_errors {
+    double power; /* |found / true - 1| */
+    double rate;  /* the largest |d v_x / d y - 1| */
+};
+struct shear_errors viscosity_shear_errors(struct viscosity *viscosity,
+                                           const struct particles *fluid);
 
 /* v = v + dt force(v) / mass, with the force of the new v. */
 void viscosity_solve(struct viscosity *viscosity, struct particles *fluid, double dt);

@@ -152,6 +152,10 @@ particles 'x,y,z,name,t' 'X,Y,Z,water,nan' >"$work/file"
 takes 'words and NaN that nobody needs'
 particles 'x,y,z,name' 'X,Y,Z,"water, salt"' >"$work/file"
 takes 'a comma in a quoted cell'
+particles 'x,y,z,"a ""name"", or two"' 'X,Y,Z,"say ""a, b"""' >"$work/file"
+takes 'quotes in a quoted cell'
+particles 'x,y,z,name' 'X,Y,Z,""' >"$work/file"
+takes 'nothing in a quoted cell'
 
 # ---- Lines ------------------------------------------------------------------------------------------------
 
@@ -275,6 +279,8 @@ is '<?xml version="1.0"?>\n<VTKFile type="PolyData">\n' XML
 is 'ply\nformat ascii 1.0\n' PLY
 is '\037\213\010\0\0\0\0' gzip
 is 'PK\003\004\024\0\0' zip
+is '[{"x": 0, "y": 0}, {"x": 1, "y": 1}]\n' JSON
+is '[\n  [0, 0, 0],\n  [1, 1, 1]\n]\n' JSON
 is '\223NUMPY\001\0v\0' NumPy
 is 'x,y,z\n1,2,3\n\0\001\002' binary
 rm "$work/file"

@@ -1,7 +1,8 @@
 /* Stands before the library (LD_PRELOAD) and spoils what corrected methods find, as BROKEN_LIBRARY
- * says: "zero", "scale" (times 1.01), "random" (1e-6 of each number) or "none". Gates of scenes
- * that hold all the same would say nothing about the library. Values, which linearised methods do
- * not correct, densities and plain SPH stay. */
+ * says: "zero", "minus" (the other sign), "late" (what the call before wrote to this place, at
+ * first 0), "1.01" (times that), "random" (1e-6 of each number) or "none". Gates of scenes that
+ * hold all the same would say nothing about the library. Values, which linearised methods do not
+ * correct, densities and plain SPH stay. */
 #include <dlfcn.h>
 #include <sphgrad/sphgrad.h>
 #include <stdio.h>
@@ -18,25 +19,57 @@ static double noise(void)
 /* The letter that the word begins with. */
 static int how(void)
 {
+    static const char *const words[] = {"zero", "minus", "late", "1.01", "random", "none"};
     static int letter;
+    const char *word = getenv("BROKEN_LIBRARY");
+    for (int k = 0; !letter && word && k < 6; k++)
+        if (strcmp(word, words[k]) == 0)
+            letter = *word;
     if (!letter) {
-        const char *word = getenv("BROKEN_LIBRARY");
-        letter = word && *word ? *word : 'n';
-        if (!word || !(strcmp(word, "zero") == 0 || strcmp(word, "scale") == 0 ||
-                       strcmp(word, "random") == 0 || strcmp(word, "none") == 0)) {
-            fprintf(stderr, "BROKEN_LIBRARY is to be zero, scale, random or none\n");
-            abort();
-        }
+        fprintf(stderr, "BROKEN_LIBRARY is to be zero, minus, late, 1.01, random or none\n");
+        abort();
     }
     return letter;
 }
 
-static double spoiled(double value)
+enum { PLACES = 1 << 22 };
+
+/* What was kept of a place; 0 where nothing was. */
+static double *kept(const void *place)
+{
+    static struct {
+        const void *place;
+        double value;
+    } table[PLACES];
+    size_t at = (size_t)((uintptr_t)place * 0x9e3779b97f4a7c15u >> 42);
+    for (size_t tried = 0; table[at].place && table[at].place != place; tried++) {
+        if (tried == PLACES) {
+            fprintf(stderr, "results at more places than can be kept\n");
+            abort();
+        }
+        at = (at + 1) % PLACES;
+    }
+    table[at].place = place;
+    return &table[at].value;
+}
+
+static double late(const void *place, double value)
+{
+    double *old = kept(place), before = *old;
+    *old = value;
+    return before;
+}
+
+static double spoiled(const void *place, double value)
 {
     switch (how()) {
     case 'z':
         return 0;
-    case 's':
+    case 'm':
+        return -value;
+    case 'l':
+        return late(place, value);
+    case '1':
         return 1.01 * value;
     case 'r':
         return value * (1 + 1e-6 * noise());
@@ -68,10 +101,12 @@ static void *real(const char *name)
 static void spoil_number(const sphg_view *view, const void *part, int32_t item, int32_t number)
 {
     char *start = (char *)(uintptr_t)part + item * view->stride;
+    double *wide = (double *)(void *)start + number;
+    float *narrow = (float *)(void *)start + number;
     if (view->type == SPHG_F64)
-        ((double *)start)[number] = spoiled(((double *)start)[number]);
+        *wide = spoiled(wide, *wide);
     else
-        ((float *)start)[number] = (float)spoiled((double)((float *)start)[number]);
+        *narrow = (float)spoiled(narrow, (double)*narrow);
 }
 
 /* An item has rows x columns numbers; where y is set each row, or each component of a vector,
@@ -195,5 +230,5 @@ void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double vo
     REAL(call, "sphg_pair_gradient");
     call(scheme, x_ij, volume, correction, gradient);
     for (int32_t k = 0; scheme->method != SPHG_PLAIN && k < dimension_of(scheme); k++)
-        gradient[k] = spoiled(gradient[k]);
+        gradient[k] = spoiled(&gradient[k], gradient[k]);
 }

@@ -37,7 +37,7 @@ typedef struct oracle_point {
     oracle_pair *pairs;
     int has_self;  /* the target is one of the sources */
     int undecided; /* an eigenvalue so near the threshold that rounding decides */
-    quad volume;   /* V_i, 0 where absent */
+    quad volume;   /* V_i, negative where absent */
     quad scale;    /* m_ref; classic: S0 mu2 */
     quad spread;   /* T = sum a r^2 */
     oracle_filter filter;

@@ -136,7 +136,8 @@ static quad reference_moment(const oracle_scene *scene, const oracle_point *poin
         return second;
     if (scheme->method != SPHG_MLS)
         return 1;
-    return second / (point->volume > 0 ? point->volume : mean_volume(scene, point));
+    return second /
+           (point->volume < 0 ? mean_volume(scene, point) : point->volume); /* may be infinite */
 }
 
 static void sum_moments(int d, oracle_point *point)
@@ -488,7 +489,7 @@ void oracle_solve(const oracle_scene *scene, int i, oracle_point *point)
     const double *own = scene->target_volume;
     if (!own && point->has_self)
         own = scene->volume;
-    point->volume = own ? own[i] : 0;
+    point->volume = own ? own[i] : -1;
     find_pairs(scene, i, point);
     for (int k = 0; k < point->pair_count; k++) {
         oracle_pair *pair = &point->pairs[k];
