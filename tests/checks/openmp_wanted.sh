@@ -11,7 +11,10 @@ configure() {
         -DSPHG_OPENMP="$4" >"$work/output" 2>&1
 }
 
-! configure "$1" "$2" "$3" ON
+if configure "$1" "$2" "$3" ON; then
+    echo "a build with OpenMP asked for and not found goes on" >&2
+    exit 1
+fi
 grep -q 'finds no OpenMP' "$work/output"
 configure "$1" "$2" "$3" AUTO
 grep -q 'CMake Warning' "$work/output"
