@@ -317,7 +317,7 @@ static void one_sided_lists_conserve_nothing(const test_case *test)
             const double *force = forces_of(&on, SPHG_SCALAR, (sphg_form)form);
             const double linear = linear_imbalance(&on, force);
             const double angular = angular_imbalance(&on, force);
-            TEST_REQUIRE(linear > .001 && angular > .001, "off by %g, %g only: %s", linear, angular,
+            TEST_REQUIRE(linear > 1e-4 && angular > 1e-4, "off by %g, %g only: %s", linear, angular,
                          on.name);
         }
         const double work = work_imbalance(&on, SPHG_TENSOR);

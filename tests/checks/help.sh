@@ -33,7 +33,11 @@ require_packages() { [ -e "$source_dir/may_build" ] || { echo "asks for packages
 build_preset() { [ -e "$source_dir/may_build" ] || { echo "builds" >&2; return 1; }; }
 END
 helps '^  bench/run COMMAND' "$tree/bench/run"
+helps '^  bench/run COMMAND' "$tree/bench/run" limit
+helps '^  bench/run COMMAND' "$tree/bench/run" stability --quick
 helps '^  examples/run SCENE' "$tree/examples/run"
+helps '^  examples/run SCENE' "$tree/examples/run" all
+helps '^  examples/run SCENE' "$tree/examples/run" cube --seed 2
 helps '^  --quick ' "$tree/tests/run"
 helps '^  --quick ' "$tree/tests/run" --mutants 5
 
@@ -70,8 +74,25 @@ mkdir -p "$tree/build/examples"
 ln -s "$examples" "$tree/build/examples/examples"
 "$tree/examples/run" gradient | grep -q '^dvx/dy = -[01]\.' || complain 'examples/run gradient does not run'
 "$tree/examples/run" vorticity --method sph --alone | grep -q '"scene": "vorticity"' || complain 'no scene runs'
-for wrong in '' gradients 'normals grid' 'solver'; do
-    "$tree/examples/run" ${wrong:+"$wrong"} >/dev/null 2>&1
-    [ $? -eq 2 ] || complain "examples/run '$wrong' is not refused"
+rm "$tree/may_build"
+
+# refuses PATTERN COMMAND...: with status 2, on stderr alone, before anything is built.
+refuses() {
+    pattern=$1
+    shift
+    "$@" >"$work/output" 2>"$work/errors"
+    code=$?
+    [ "$code" -eq 2 ] || complain "$*: status $code instead of 2"
+    [ ! -s "$work/output" ] || complain "$*: on stdout: $(cat "$work/output")"
+    grep -qE -e "$pattern" "$work/errors" || complain "$*: no line matches '$pattern'"
+}
+refuses '^  examples/run SCENE' "$tree/examples/run"
+for wrong in gradients 'normals grid' solver help --nonsense; do
+    refuses "^no scene is called $wrong; there are: normals grid" "$tree/examples/run" "$wrong"
 done
+refuses '^one scene at a time' "$tree/examples/run" normals grid
+refuses "^bench/run: there is no command 'limits'" "$tree/bench/run" limits
+refuses '^  bench/run COMMAND' "$tree/bench/run" help
+refuses "^tests/run: there is no option 'quick'" "$tree/tests/run" quick
+refuses '^  --quick ' "$tree/tests/run" --quick --nonsense
 exit $status
