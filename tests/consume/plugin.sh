@@ -9,7 +9,7 @@ export PKG_CONFIG_PATH
 static=
 [ "$kind" = shared ] || static=--static
 mkdir -p "$folder"
-"$compiler" "$sources/host.c" -o "$folder/host" -ldl
+"$compiler" "$sources/host.c" -o "$folder/host" -pthread -ldl
 # shellcheck disable=SC2046,SC2086 # the flags are words
 "$compiler" -shared -fPIC "$sources/plugin.c" -o "$folder/plugin.so" \
     $(pkg-config $static --cflags --libs sphgrad)
@@ -18,4 +18,4 @@ holder=$folder/plugin.so
 set --
 [ "$resident" = OFF ] || set -- resident "$holder"
 [ "$kind" = shared ] || set -- "$@" hides sphg_context_create
-LD_LIBRARY_PATH=$libdir "$folder/host" "$folder/plugin.so" 20 "$@"
+LD_LIBRARY_PATH=$libdir "$folder/host" "$folder/plugin.so" 32 "$@"

@@ -1,5 +1,5 @@
-/* A plugin: the gradient of a linear field on as many threads as there are, then nothing remains.
- */
+/* A plugin: the gradient of a linear field on as many threads as there are, then nothing remains;
+ * or, if its host says so, what it made. */
 #include <math.h>
 #include <sphgrad/sphgrad.h>
 
@@ -7,8 +7,8 @@ enum { SIDE = 20, COUNT = SIDE * SIDE * SIDE }; /* so many that threads are wort
 static float position[COUNT][3], gradient[COUNT][3];
 
 /* 0: every gradient is that of the first coordinate. */
-__attribute__((visibility("default"))) int plugin_run(void);
-int plugin_run(void)
+__attribute__((visibility("default"))) int plugin_run(int leave);
+int plugin_run(int leave)
 {
     const float volume = 1;
     for (int i = 0; i < COUNT; i++) {
@@ -29,8 +29,10 @@ int plugin_run(void)
     sources.neighbors = neighbors;
     failed = failed || sphg_gradient(context, &scheme, &sources, NULL, positions,
                                      sphg_view_f32(gradient[0], sizeof gradient[0]));
-    sphg_neighbors_destroy(neighbors);
-    sphg_context_destroy(context);
+    if (!leave) {
+        sphg_neighbors_destroy(neighbors);
+        sphg_context_destroy(context);
+    }
     for (int i = 0; i < COUNT; i++)
         for (int a = 0; a < 3; a++)
             failed |= !(fabsf(gradient[i][a] - (a == 0)) < 1e-5f);
