@@ -49,6 +49,7 @@ run_long() {
         build_preset "$preset" -DSPHG_BUILD_TESTS=ON && ctest --preset "$preset" -L area -j "$(nproc)" || status=1
     done
     examples/run all --check || status=1
+    python3 tests/checks/scene_figures.py . build/examples/examples -- 1 5 || status=1
     run_tsan || status=1
     return $status
 }
