@@ -1,10 +1,10 @@
 /* Parts of the examples' solver, each by the property that its scenes rely on. */
 #include "support/test.h"
-#include "../examples/solver/conjugate_gradient.h"
-#include "../examples/solver/metrics.h"
-#include "../examples/solver/pressure.h"
-#include "../examples/solver/rotation.h"
-#include "../examples/solver/sampling.h"
+#include "../examples/scenes/solver/conjugate_gradient.h"
+#include "../examples/scenes/solver/metrics.h"
+#include "../examples/scenes/solver/pressure.h"
+#include "../examples/scenes/solver/rotation.h"
+#include "../examples/scenes/solver/sampling.h"
 #include <math.h>
 #include <stdlib.h>
 

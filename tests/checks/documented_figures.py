@@ -97,7 +97,7 @@ def check_ranks(table, sweep, rows):
 
 def check_normals(root, folder, seed):
     """Angles of a scene that takes half a second."""
-    scene = os.path.join(folder, "normals")
+    scene = os.path.join(folder, "scenes", "normals")
     if not os.path.exists(scene):
         return
     printed = subprocess.run([scene, "--seed", seed], check=True, stdout=subprocess.PIPE, text=True).stdout

@@ -24,9 +24,10 @@ helps() {
 
 # The scripts in a tree where nothing can be built.
 tree=$work/tree
-mkdir -p "$tree/.ci" "$tree/bench" "$tree/examples" "$tree/tests"
+mkdir -p "$tree/.ci" "$tree/bench" "$tree/examples/scenes" "$tree/tests"
 cp "$sources/bench/run" "$sources/bench/main.c" "$tree/bench"
-cp "$sources/examples/run" "$sources/examples/CMakeLists.txt" "$sources"/examples/*.c "$tree/examples"
+cp "$sources/examples/run" "$tree/examples"
+cp "$sources/examples/scenes/CMakeLists.txt" "$sources"/examples/scenes/*.c "$tree/examples/scenes"
 cp "$sources/tests/run" "$sources/tests/more.sh" "$tree/tests"
 cat >"$tree/.ci/setup.sh" <<'END'
 require_packages() { [ -e "$source_dir/may_build" ] || { echo "asks for packages" >&2; return 1; }; }
@@ -54,17 +55,17 @@ done <"$work/program"
 # Scenes: every program that was built, with a line about it, and every option.
 "$tree/examples/run" --help >"$work/script"
 scenes=0
-for program in "$examples"/*; do
+for program in "$examples"/scenes/*; do
     [ -f "$program" ] && [ -x "$program" ] || continue
     scene=$(basename "$program")
-    [ -f "$sources/examples/$scene.c" ] && [ "$scene" != gradient ] || continue
+    [ -f "$sources/examples/scenes/$scene.c" ] || continue
     scenes=$((scenes + 1))
     grep -qE "^  $scene +[A-Z].{20}" "$work/script" || complain "examples/run --help has no line on $scene"
     helps '^  examples/run SCENE' "$tree/examples/run" "$scene"
     helps '^Usage: ' "$program"
 done
 [ "$scenes" -gt 6 ] || complain "$scenes scenes"
-for option in $("$examples/cube" --help | grep -oE -e '--[a-z]+' | grep -vE 'help|usage|version' | sort -u); do
+for option in $("$examples/scenes/cube" --help | grep -oE -e '--[a-z]+' | grep -vE 'help|usage|version' | sort -u); do
     grep -q -e "$option" "$work/script" || complain "examples/run --help does not know $option"
 done
 
