@@ -1,24 +1,47 @@
-/* A rotating block of particles: dvx/dy at its corner is -1. Plain SPH finds -0.36. */
+/* The gradient of a velocity field. A block of particles rotates like a rigid body, so that dvx/dy
+ * is -1 everywhere. Prints what the corrected gradient and plain SPH find at a corner of the block,
+ * where most of the neighbours are missing. */
 #include <sphgrad/sphgrad.h>
 #include <stdio.h>
-static float x[1000][3], v[1000][3], J[1000][3][3]; /* J[a][b] = d v_a / d x_b */
+
+enum { SIDE = 10, COUNT = SIDE * SIDE * SIDE };
+
+static double x[COUNT][3], v[COUNT][3];                   /* positions, velocities */
+static double corrected[COUNT][3][3], plain[COUNT][3][3]; /* [i][a][b] = d v_a / d x_b at i */
+
 int main(void)
 {
-    for (int i = 0; i < 1000; i++) /* 10 x 10 x 10, spacing 1, v = (-y, x, 0) */
-        x[i][0] = v[i][1] = (float)(i % 10), x[i][1] = (float)(i / 10 % 10),
-        x[i][2] = (float)(i / 100), v[i][0] = -x[i][1];
-    const sphg_scheme scheme = {.support_radius = 2}; /* 0 elsewhere: 3D, KGC, cubic spline */
-    const sphg_view positions = sphg_view_f32(x[0], 12), velocities = sphg_view_f32(v[0], 12);
-    const sphg_geometry block = sphg_all(positions, 1000);
+    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, and v = (-y, x, 0) */
+        x[i][0] = i % SIDE;
+        x[i][1] = i / SIDE % SIDE;
+        x[i][2] = i / SIDE / SIDE;
+        v[i][0] = -x[i][1];
+        v[i][1] = x[i][0];
+    }
+    const double volume = 1;                       /* of each particle */
+    const sphg_scheme kgc = {.support_radius = 2}; /* 0 elsewhere: 3D, KGC, cubic spline */
+    const sphg_scheme sph = {.support_radius = 2, .method = SPHG_PLAIN};
+    const sphg_geometry block = sphg_all(sphg_view_f64(x[0], sizeof x[0]), COUNT);
+    const sphg_view velocities = sphg_view_f64(v[0], sizeof v[0]);
+
     sphg_context *context = NULL;
     sphg_neighbors *neighbors = NULL;
     int failed = sphg_context_create(SPHG_VERSION, NULL, &context) ||
                  sphg_neighbors_create(context, &neighbors) ||
-                 sphg_neighbors_search(context, neighbors, &scheme, &block);
-    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f32(&(float){1})};
-    const sphg_view gradients = sphg_view_f32(J[0][0], 36);
-    failed = failed || sphg_jacobian(context, &scheme, &sources, NULL, velocities, gradients);
-    printf("dvx/dy = %.7f %s\n", (double)J[0][0][1], sphg_last_message(context));
-    sphg_neighbors_destroy(neighbors), sphg_context_destroy(context);
-    return failed;
+                 sphg_neighbors_search(context, neighbors, &kgc, &block);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f64(&volume)};
+    failed = failed ||
+             sphg_jacobian(context, &kgc, &sources, NULL, velocities,
+                           sphg_view_f64(corrected[0][0], sizeof corrected[0])) ||
+             sphg_jacobian(context, &sph, &sources, NULL, velocities,
+                           sphg_view_f64(plain[0][0], sizeof plain[0]));
+    if (failed)
+        fprintf(stderr, "%s\n", sphg_last_message(context));
+    else
+        printf("dvx/dy = %.7f corrected, %.2f by plain SPH\n", corrected[0][0][1], plain[0][0][1]);
+
+    sphg_neighbors_destroy(neighbors);
+    sphg_context_destroy(context);
+    const double error = corrected[0][0][1] + 1;
+    return failed || error * error > 1e-20;
 }

@@ -23,6 +23,7 @@ program gradient
   sources%volume = sphg_same(volume)
   call check(sphg_jacobian(context, scheme, sources, field=sphg_view_of(v), jacobian=sphg_view_of(j)))
   print '(a, f11.7)', "dvx/dy =", j(2, 1, 1)
+  if (abs(j(2, 1, 1) + 1) > 1d-9) error stop 1
   call sphg_neighbors_destroy(neighbors)
   call sphg_context_destroy(context)
 

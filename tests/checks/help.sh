@@ -1,6 +1,6 @@
 #!/bin/sh
 # help.sh SOURCES BENCH EXAMPLES: --help and -h of every program and script answer on stdout with status 0, the
-# scripts without building anything; `examples/run` knows every scene, and the example of the README.
+# scripts without building anything; `examples/run` knows every example and every scene.
 sources=$1 bench=$2 examples=$3
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -24,9 +24,10 @@ helps() {
 
 # The scripts in a tree where nothing can be built.
 tree=$work/tree
-mkdir -p "$tree/.ci" "$tree/bench" "$tree/examples/scenes" "$tree/tests"
+mkdir -p "$tree/.ci" "$tree/bench" "$tree/examples/scenes" "$tree/examples/cpp" "$tree/tests"
 cp "$sources/bench/run" "$sources/bench/main.c" "$tree/bench"
-cp "$sources/examples/run" "$tree/examples"
+cp "$sources/examples/run" "$sources/examples/CMakeLists.txt" "$sources"/examples/*.c "$tree/examples"
+cp "$sources"/examples/cpp/*.cpp "$tree/examples/cpp"
 cp "$sources/examples/scenes/CMakeLists.txt" "$sources"/examples/scenes/*.c "$tree/examples/scenes"
 cp "$sources/tests/run" "$sources/tests/more.sh" "$tree/tests"
 cat >"$tree/.ci/setup.sh" <<'END'
@@ -65,15 +66,22 @@ for program in "$examples"/scenes/*; do
     helps '^Usage: ' "$program"
 done
 [ "$scenes" -gt 6 ] || complain "$scenes scenes"
+# Examples: every source, with its first sentence.
+for source in "$sources"/examples/*.c "$sources"/examples/cpp/*.cpp; do
+    example=${source#"$sources"/examples/}
+    grep -qE "^  ${example%.*} +[A-Z].{20}" "$work/script" || complain "examples/run --help has no line on $example"
+    [ -x "$examples/${example%.*}" ] || complain "$example was not built"
+done
 for option in $("$examples/scenes/cube" --help | grep -oE -e '--[a-z]+' | grep -vE 'help|usage|version' | sort -u); do
     grep -q -e "$option" "$work/script" || complain "examples/run --help does not know $option"
 done
 
-# What is run: the README's example, a scene, and nothing else.
+# What is run: an example, all of them, a scene, and nothing else.
 touch "$tree/may_build"
 mkdir -p "$tree/build/examples"
 ln -s "$examples" "$tree/build/examples/examples"
 "$tree/examples/run" gradient | grep -q '^dvx/dy = -[01]\.' || complain 'examples/run gradient does not run'
+"$tree/examples/run" small | grep -c '^== ' | grep -qE '^[0-9]{2}$' || complain 'examples/run small does not run'
 "$tree/examples/run" vorticity --method sph --alone | grep -q '"scene": "vorticity"' || complain 'no scene runs'
 rm "$tree/may_build"
 
