@@ -42,6 +42,7 @@ probe_clang_tidy() { command -v clang-tidy >/dev/null; }
 probe_cppcheck() { command -v cppcheck >/dev/null; }
 probe_valgrind() { valgrind -q true 2>/dev/null; }
 probe_python3() { python3 -c '' 2>/dev/null; }
+probe_doxygen() { command -v doxygen >/dev/null; }
 probe_eigen() { pkg-config --exists eigen3 2>/dev/null; }
 probe_fortran() { printf 'end\n' | gfortran -x f95 - -o /dev/null 2>/dev/null; }
 # Of the Python package and its wheel, in the Python of the path or the system's.
@@ -74,6 +75,7 @@ package_of() {
         valgrind) printf '%s\n' valgrind libc6-dbg ;;
         python3) echo python3 ;;
         fortran) echo gfortran ;;
+        doxygen) echo doxygen ;;
         eigen) echo libeigen3-dev ;;
         numpy) printf '%s\n' python3-numpy python3-scipy python3-pip python3-setuptools python3-wheel ;;
     esac
