@@ -26,13 +26,13 @@
  *           as const may be shared by concurrent calls. Same input, same bits: for any number
  *           of threads, any executor, any split into subsets. Children of fork() may use contexts
  *           old and new: on the calling thread alone, or parallel_for, once OpenMP's threads have
- *           worked in the parent. Who ran OpenMP there by other means sets threads = 1 in the
- *           child.
+ *           worked in the parent. If the parent ran OpenMP by other means, set threads = 1 in
+ *           the child.
  * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
- *           normal numbers; f64 far beyond. Corrections in a table must be representable, too, and
- *           squares, which have the unit 1 / L^2. Finite input gives NaN or Inf only where
- *           A_j - A_i, a sum, or a ratio of volumes or densities leaves the type (f32: about
- *           1e38).
+ *           normal numbers; f64 far beyond. The entries of a correction table, and `square`
+ *           results (unit 1 / L^2), must be representable as well. Finite input gives NaN or Inf
+ *           only where A_j - A_i, a sum, or a ratio of volumes or densities leaves the type (f32:
+ *           about 1e38).
  * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
  *           error, never NaN; each target's `rank` tells how much could be corrected. */
 #ifndef SPHGRAD_SPHGRAD_H
@@ -165,7 +165,7 @@ typedef enum sphg_isa {
     SPHG_ISA_NEON = 4 /* on AArch64 the base */
 } sphg_isa;
 
-/* Work on the items [begin, end). worker in [0, threads) is nobody else's at this moment. */
+/* Works on the items [begin, end). worker is in [0, threads); no two tasks have it at once. */
 typedef void sphg_task(void *data, int32_t begin, int32_t end, int32_t worker);
 
 typedef struct sphg_config {
@@ -202,8 +202,8 @@ typedef struct sphg_context_info {
 /* Errors: ARGUMENT, BUSY. Cost: O(1). */
 SPHG_API sphg_result sphg_context_get_info(sphg_context *context, sphg_context_info *info);
 
-/* What the last failed call on this context objected to: function, argument, value. Never NULL;
- * valid until the next call. */
+/* Why the last failed call on this context failed: function, argument, value. Never NULL; valid
+ * until the next call. */
 SPHG_API const char *sphg_last_message(const sphg_context *context);
 
 /* ---- Scheme: which derivative ----------------------------------------------------------- */
@@ -331,7 +331,7 @@ static inline sphg_geometry sphg_own_and_ghosts(sphg_view positions, int32_t own
  * half lists, and lists cut at a maximum, lose momentum. PLAIN and other DIRECT sums are short of
  * what is missing. */
 typedef struct sphg_lists {
-    const int64_t *offsets;     /* CSR: target_count + 1 items, from 0, never falling ... */
+    const int64_t *offsets;     /* CSR: target_count + 1 items from 0, non-decreasing ... */
     const int32_t *indices;     /* ... and offsets[target_count] source indices */
     const int32_t *const *rows; /* or a pointer per target ... */
     const int32_t *lengths;     /* ... and its number of indices */
@@ -357,7 +357,7 @@ SPHG_API sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors
 SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is ignored */
 
 /* Copies the positions and finds all pairs with r < H, exactly those of brute force. Reads
- * dimension and support_radius of scheme. Call it each step: it does what the skin demands.
+ * dimension and support_radius of scheme. Call it every step; a skin that holds is kept.
  * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY (build again).
  * Cost: time and memory O(n + pairs) for any extent of the domain, wrapped by the host or not. Cells
  * of a periodic axis are wider by 2^-21 (f64: 2^-50) of the largest |x| that is left (see period):
@@ -402,7 +402,7 @@ typedef struct sphg_list_fault {
 
 /* For hosts under development: are all pairs with r < H there, once and from both ends? Searches
  * the positions of the last build again, with the scheme's H, and compares, lists of the library
- * too. More than that is no fault. fault may be NULL; the message has the same.
+ * too. Further pairs are no fault. fault may be NULL; the message says the same.
  * Errors: ARGUMENT, SIZE, STATE, BUSY; LISTS (fault written); MEMORY, INDEX (fault written, too).
  * Cost: some dozens of searches; memory as the pairs exported. */
 SPHG_API sphg_result sphg_neighbors_check(sphg_context *context, const sphg_scheme *scheme,
@@ -488,7 +488,7 @@ typedef struct sphg_field {
                                     in time only where no surface is free: unstable there */
 } sphg_field;
 
-/* Sums over the targets of one call whose corrections were computed. */
+/* Counts over those targets of one call whose corrections were computed. */
 typedef struct sphg_stats {
     int64_t rank[4];    /* targets of rank 0, 1, 2, 3; order 2: of the directions up to d */
     int64_t certified;  /* inverted on the fast path, proven untouched by the threshold */
@@ -506,13 +506,13 @@ typedef struct sphg_request {
     int32_t field_count; /* 0 to 4096; 0: fields is NULL */
     const sphg_subset *subset; /* NULL: all targets */
 
-    /* The targets' side. Absent: from the source set that the targets are part of. */
+    /* Values at the targets. Absent: taken from the source set that the targets are part of. */
     sphg_view target_volume;     /* V_i; read by MLS (scale of M; absent on both sides: the mean
                                     sum V_j W / sum W), DIRECT `value`, ADJOINT, SYMMETRIC */
     sphg_view target_density;    /* rho_i; read in SYMMETRIC only */
     sphg_view target_correction; /* C_i; none on either side: computed in the same sweep */
 
-    /* Wanted of the corrections, where they are computed: not beside a table. */
+    /* Outputs about corrections that this call computes: not allowed beside a table. */
     sphg_view correction; /* C_i, sphg_correction_width() numbers an item */
     sphg_view rank;       /* U8: fully corrected directions, 0..d; order 2: d and more where linear
                              fields are exact, with the directions of curvature that are resolved */
@@ -527,7 +527,7 @@ typedef struct sphg_request {
  * MPI: ask for `correction` of your own n of n + ghosts particles; refresh the ghosts' rows; then
  * ADJOINT or SYMMETRIC with that table as sources' correction. DIFFERENCE needs no exchange.
  * Errors: ARGUMENT, TYPE, SIZE, STATE, UNSUPPORTED, BUSY; MEMORY, INDEX, VOLUME.
- * Cost: what is selected and wanted. */
+ * Cost: grows with the selected targets and the wanted results. */
 SPHG_API sphg_result sphg_evaluate(sphg_context *context, const sphg_scheme *scheme,
                                    const sphg_request *request);
 
@@ -578,8 +578,8 @@ typedef struct sphg_pairs {
                            nothing is sorted */
 } sphg_pairs;
 
-/* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: of everything (first
- * offsets alone for the count, then the rest), or of blocks of targets that stay in the cache.
+/* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: all of them (one call
+ * with offsets alone for the count, then the rest), or in blocks of targets that stay in the cache.
  * C_i: target_correction, else sources->correction if the targets are part of that set, else
  * computed; volume and C are read for `gradient` only. Classic methods: a target that is part of
  * the sources stands among its own pairs, since G_ii is not 0.
@@ -604,7 +604,7 @@ typedef struct sphg_inversion {
 
 /* C = f(M) of moments that you summed yourself (M_i as at sphg_method, in units of the host;
  * SYM_TENSOR; linearised methods only). volume: V_i [L^d], read by MLS. A matrix with NaN or Inf
- * gives C = NaN and rank 0, and no other item notices.
+ * gives C = NaN and rank 0; other items are unaffected.
  * Errors: ARGUMENT, TYPE, UNSUPPORTED (classic, PLAIN), MEMORY, VOLUME. */
 SPHG_API sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme,
                                          int32_t count, sphg_view moments, sphg_view volume,
@@ -612,14 +612,14 @@ SPHG_API sphg_result sphg_invert_moments(sphg_context *context, const sphg_schem
 
 /* A = Q diag(values) Q^T of SYM_TENSOR items, cyclic Jacobi; values (VECTOR) descending, column k
  * of vectors (TENSOR) for value k, det Q = 1. Either may be absent; outputs overlap nothing. Error:
- * a few roundings of the largest |value|. NaN or Inf spoils its own item alone.
+ * a few roundings of the largest |value|. NaN or Inf spoils no other item.
  * Errors: ARGUMENT, TYPE. Cost: O(count). */
 SPHG_API sphg_result sphg_eigen(sphg_context *context, int32_t dimension, int32_t count,
                                 sphg_view matrices, sphg_view values, sphg_view vectors);
 
 /* A = U diag(sigma) V^T of 3 x 3 TENSOR items, one-sided Jacobi; sigma (VECTOR) descending, >= 0; U
- * and V (TENSOR) orthogonal. Each may be absent; outputs overlap nothing. On deficient matrices u
- * and v of a vanishing sigma have no common sign: never threshold with them, use invert_moments.
+ * and V (TENSOR) orthogonal. Each may be absent; outputs overlap nothing. Where sigma
+ * vanishes the signs of u and v are unrelated: to threshold, use sphg_invert_moments.
  * Errors: ARGUMENT, TYPE. Cost: O(count). */
 SPHG_API sphg_result sphg_svd(sphg_context *context, int32_t count, sphg_view matrices, sphg_view u,
                               sphg_view sigma, sphg_view v);
