@@ -1,7 +1,7 @@
-/* An implicit step of diffusion by conjugate gradients. Neighbours and corrections are computed
- * once and kept through the iteration; the difference and the adjoint form make the system
- * symmetric. A wave in a periodic box should shrink by 1 / (1 + k q^2): prints by how much it does,
- * and how the total changes. */
+/* An implicit step of diffusion by conjugate gradients. Neighbours, corrections and the weights of
+ * pairs are computed once and kept through the iteration; the difference and the adjoint form make
+ * the system symmetric. A wave in a closed box should shrink by 1 / (1 + k q^2): prints by how much
+ * it does, and how the total changes. */
 #include <sphgrad/sphgrad.h>
 #include <math.h>
 #include <stdio.h>
@@ -49,17 +49,17 @@ static double dot(const double *a, const double *b)
 
 int main(void)
 {
-    const double wave = 2 * acos(-1) / SIDE;
+    const double wave = acos(-1) / SIDE; /* half a wave: its slope is 0 at both ends */
     double total = 0, kept = 0, height = 0;
     for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, shifted here and there */
         x[i][0] = i % SIDE + 0.2 * sin(3.0 * i);
         x[i][1] = i / SIDE + 0.2 * cos(5.0 * i);
-        p[i] = r[i] = volume * (1 + cos(wave * x[i][0])); /* b; u begins as 0 */
+        p[i] = r[i] = volume * (1 + cos(wave * (x[i][0] + 0.5))); /* b; u begins as 0 */
         total += r[i];
     }
     const sphg_view table = sphg_view_f64(correction[0], sizeof correction[0]);
     sphg_geometry box = sphg_all(sphg_view_f64(x[0], sizeof x[0]), COUNT);
-    box.period[0] = box.period[1] = SIDE;
+    box.keep_weights = 1; /* read by the products instead of formed again */
     sphg_neighbors *neighbors = NULL;
     check(sphg_context_create(SPHG_VERSION, NULL, &context));
     check(sphg_neighbors_create(context, &neighbors));
@@ -82,12 +82,12 @@ int main(void)
     }
     for (int i = 0; i < COUNT; i++) {
         kept += volume * u[i];
-        height += 2.0 / COUNT * u[i] * cos(wave * x[i][0]);
+        height += 2.0 / COUNT * u[i] * cos(wave * (x[i][0] + 0.5));
     }
     const double expected = 1 / (1 + k * wave * wave), error = height / expected - 1;
     printf("%d products: wave %.4f, exact %.4f (error %.1e); total changed by %.0e\n", products,
            height, expected, error, kept / total - 1);
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
-    return !(fabs(error) < 0.05 && fabs(kept / total - 1) < 1e-9);
+    return !(fabs(error) < 0.02 && fabs(kept / total - 1) < 1e-9);
 }
