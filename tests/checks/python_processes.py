@@ -18,7 +18,8 @@ class View(c.Structure):
 
 class Scheme(c.Structure):
     _fields_ = [("dimension", c.c_int32), ("method", c.c_int), ("kernel", c.c_int),
-                ("policy", c.c_int), ("support_radius", c.c_double), ("threshold", c.c_double)]
+                ("policy", c.c_int), ("support_radius", c.c_double), ("threshold", c.c_double),
+                ("order", c.c_int32)]
 
 
 class Geometry(c.Structure):
