@@ -97,9 +97,9 @@ refuses() {
 }
 refuses '^  examples/run SCENE' "$tree/examples/run"
 for wrong in gradients 'normals grid' solver help --nonsense; do
-    refuses "^no scene is called $wrong; there are: normals grid" "$tree/examples/run" "$wrong"
+    refuses "^there is no example or scene $wrong; there are: gradient wall" "$tree/examples/run" "$wrong"
 done
-refuses '^one scene at a time' "$tree/examples/run" normals grid
+refuses '^one at a time' "$tree/examples/run" normals grid
 refuses "^bench/run: there is no command 'limits'" "$tree/bench/run" limits
 refuses '^  bench/run COMMAND' "$tree/bench/run" help
 refuses "^tests/run: there is no option 'quick'" "$tree/tests/run" quick

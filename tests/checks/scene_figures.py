@@ -120,7 +120,7 @@ def tables(text):
 
 def rows_of(document, scene):
     """(words, method, cell) of the scene's section."""
-    section = next(part for part in document.split("\n## ") if f"`examples/{scene}.c`" in part)
+    section = next(part for part in document.split("\n## ") if f"`examples/scenes/{scene}.c`" in part)
     for table in tables(section):
         heads = [head.lower() for head in table[0][1:]]
         if not heads or heads[0] != "sph":
