@@ -212,7 +212,7 @@ static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cle
 typedef uint32_t lane_ids __attribute__((vector_size(4 * LANES), aligned(4), may_alias));
 
 /* Four numbers of a list from step k on, of which its end may leave fewer; behind it nothing is
- * read.
+ * read. A list of none may be NULL.
  */
 SPHGI_TEMPLATE four_ids four_at_end(const uint32_t *list, int32_t count, int32_t k)
 {
@@ -220,7 +220,7 @@ SPHGI_TEMPLATE four_ids four_at_end(const uint32_t *list, int32_t count, int32_t
 #if defined(__AVX2__)
     static const int32_t there[] = {-1, -1, -1, -1, 0, 0, 0, 0};
     const __m128i kept = _mm_loadu_si128((const __m128i *)(const void *)(there + 4 - left));
-    return (four_ids)_mm_maskload_epi32((const int *)list + k, kept);
+    return (four_ids)_mm_maskload_epi32(left ? (const int *)list + k : there, kept);
 #else
     four_ids some = {0};
     for (int32_t i = 0; i < left; ++i)

@@ -110,7 +110,8 @@ static inline int64_t sphgi_host_row(const sphg_lists *lists, int32_t target, in
                                      const int32_t **ids)
 {
     if (lists->offsets) {
-        *ids = lists->indices + lists->offsets[target];
+        *ids =
+            lists->indices ? lists->indices + lists->offsets[target] : NULL; /* no pairs at all */
         return lists->offsets[target + 1] - lists->offsets[target];
     }
     if (lists->rows) {

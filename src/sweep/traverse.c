@@ -316,10 +316,11 @@ static void ask_for_list(const sphg_lists *lists, int32_t target, int32_t count)
     enum { LINE = 64 };
     if (target >= count || lists->row)
         return;
-    const int32_t *ids =
-        lists->offsets ? lists->indices + lists->offsets[target] : lists->rows[target];
-    __builtin_prefetch((const void *)(uintptr_t)ids);
-    __builtin_prefetch((const void *)((uintptr_t)ids + LINE));
+    const uintptr_t ids = lists->offsets ? (uintptr_t)lists->indices +
+                                               (size_t)lists->offsets[target] * sizeof(int32_t)
+                                         : (uintptr_t)lists->rows[target];
+    __builtin_prefetch((const void *)ids);
+    __builtin_prefetch((const void *)(ids + LINE));
     __asm__ volatile("");
 }
 
