@@ -256,7 +256,8 @@ static void run_in_company(sphg_task *task, void *data, int32_t count, int32_t g
 static void a_sweep_beside_another_has_the_same_bits(const test_case *test)
 {
     company with = {.on = NULL};
-    const sphg_config config = {.threads = 1, .parallel_for = run_in_company, .user = &with};
+    const sphg_config config = {
+        .threads = 1, .isa = test_isa(), .parallel_for = run_in_company, .user = &with};
     const kept inner = kept_on(test, fixture_context());
     kept outer = inner;
     outer.context = fixture_context_with(&config);

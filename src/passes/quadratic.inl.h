@@ -282,8 +282,10 @@ SPHGI_TEMPLATE void quadratic_as(const struct sphgi_second *second, const real *
     eliminate(second, sums, factor, &block, three);
     const vec resolved = resolve(second, &block, load(kept), f, three);
     join_blocks(second, &block, f, some, factor, out, three);
-    for (int l = 0; l < LANES && l < lanes; ++l)
-        directions[l] = resolved[l] > R(0) ? (uint8_t)(resolved[l] + R(.5)) : 0;
+    for (int l = 0; l < LANES && l < lanes; ++l) {
+        const int nearest = resolved[l] > R(0) ? (int)(resolved[l] + R(.5)) : 0;
+        directions[l] = (uint8_t)nearest;
+    }
 }
 
 static void invert_quadratic(int32_t width, const struct sphgi_threshold *threshold,
