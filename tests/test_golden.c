@@ -344,6 +344,24 @@ static void order_2_has_one_hash_whoever_works_and_wherever_arrays_begin(const t
     require_one_hash(test, 2);
 }
 
+#ifdef __x86_64__
+/* expected: of lists of ours, and of the host's. */
+static void require_pinned(const test_case *test, int order, const uint64_t expected[2])
+{
+    if (random_chosen()) { /* the pins are those of the tests' own numbers */
+        print_message("skipped: SPHG_TEST_SEED is set (%d)\n", (int)test->precision);
+        return;
+    }
+    setting own = setting_of(test);
+    own.scheme.order = order;
+    const sphg_config serial = {.isa = SPHG_ISA_BASE, .threads = 1};
+    const hashes found = run_under(&own, &serial, NULL);
+    TEST_REQUIRE(found.of[KEPT] == expected[0] && found.of[HOST_LISTS] == expected[1],
+                 "{UINT64_C(0x%016llx), UINT64_C(0x%016llx)}", (unsigned long long)found.of[KEPT],
+                 (unsigned long long)found.of[HOST_LISTS]);
+}
+#endif
+
 /* The baseline of x86-64 has no FMA, so nothing is left to a compiler: these hold for all. A change
  * that adds in another order changes them, and says so in its message. */
 static void baseline_results_are_those_of_any_compiler(const test_case *test)
@@ -363,17 +381,7 @@ static void baseline_results_are_those_of_any_compiler(const test_case *test)
          {UINT64_C(0xf1fac6d6666f869d), UINT64_C(0x279e397761adcd84)},
          {UINT64_C(0xf5c6243d533d7572), UINT64_C(0x6ce10fe1dad04ac3)},
          {UINT64_C(0x1dd3ced0fd2c8e8c), UINT64_C(0x30b2a4d6b9e394e2)}}};
-    if (random_chosen()) { /* the pins are those of the tests' own numbers */
-        print_message("skipped: SPHG_TEST_SEED is set (%d)\n", (int)test->precision);
-        return;
-    }
-    const setting own = setting_of(test);
-    const sphg_config serial = {.isa = SPHG_ISA_BASE, .threads = 1};
-    const hashes found = run_under(&own, &serial, NULL);
-    const uint64_t *expected = pinned[test->precision == TEST_F64][test->method];
-    TEST_REQUIRE(found.of[KEPT] == expected[0] && found.of[HOST_LISTS] == expected[1],
-                 "{0x%016llx, 0x%016llx}", (unsigned long long)found.of[KEPT],
-                 (unsigned long long)found.of[HOST_LISTS]);
+    require_pinned(test, 0, pinned[test->precision == TEST_F64][test->method]);
 #else
     print_message("skipped: no pinned values for this machine (%d)\n", (int)test->precision);
 #endif
@@ -389,18 +397,7 @@ static void baseline_results_of_order_2_are_those_of_any_compiler(const test_cas
         {{UINT64_C(0x25ceb173337071aa), UINT64_C(0x7e1d389e659305ee)},
          {UINT64_C(0x7c344990a1669e0d), UINT64_C(0x7848e3d5ebed8fc7)},
          {UINT64_C(0x257568dee9d6d173), UINT64_C(0xeca2642c12e32160)}}};
-    if (random_chosen()) {
-        print_message("skipped: SPHG_TEST_SEED is set (%d)\n", (int)test->precision);
-        return;
-    }
-    setting own = setting_of(test);
-    own.scheme.order = 2;
-    const sphg_config serial = {.isa = SPHG_ISA_BASE, .threads = 1};
-    const hashes found = run_under(&own, &serial, NULL);
-    const uint64_t *expected = pinned[test->precision == TEST_F64][test->method];
-    TEST_REQUIRE(found.of[KEPT] == expected[0] && found.of[HOST_LISTS] == expected[1],
-                 "{UINT64_C(0x%016llx), UINT64_C(0x%016llx)}", (unsigned long long)found.of[KEPT],
-                 (unsigned long long)found.of[HOST_LISTS]);
+    require_pinned(test, 2, pinned[test->precision == TEST_F64][test->method]);
 #else
     print_message("skipped: no pinned values for this machine (%d)\n", (int)test->precision);
 #endif

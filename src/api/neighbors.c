@@ -112,17 +112,15 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
         result = sphgi_check_pointer(checker, info, "info");
     if (!result) {
         const sphg_neighbors *n = neighbors;
-        const struct sphgi_buffer *own[] = {&n->target_place, &n->found.lengths, &n->shared,
-                                            &n->sources_then, &n->targets_then,  &n->weights,
-                                            &n->weight_book};
+        const struct buffers own = own_buffers((sphg_neighbors *)(uintptr_t)n);
         *info = (sphg_neighbors_info){.pairs = n->kind ? n->found.pairs : 0,
                                       .target_count = n->kind ? n->target_count : 0,
                                       .source_count = n->kind ? n->source_count : 0,
                                       .rebuilt = n->rebuilt,
                                       .skin_left = n->kind ? n->skin_left : 0};
         info->bytes = (int64_t)sizeof *n + grid_bytes(&n->sources) + grid_bytes(&n->targets);
-        for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
-            info->bytes += (int64_t)own[k]->size;
+        for (size_t k = 0; k < sizeof own.list / sizeof *own.list; ++k)
+            info->bytes += (int64_t)own.list[k]->size;
     }
     return sphgi_leave(context, result);
 }
