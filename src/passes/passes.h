@@ -143,6 +143,32 @@ enum sphgi_weight {
     SPHGI_WEIGHT_V_PER_DENSITY
 };
 
+/* Terms of the sources in adjoint and symmetric sums that are multiplied out before the sweep, once
+ * a particle instead of once a pair: b_j = weight_j C_j A_j (theory.md, section 5). What a pair
+ * adds is then ... */
+enum sphgi_fold {
+    SPHGI_NOT_FOLDED,
+    SPHGI_FOLDED_NUMBER,    /* b s_ij x_ij */
+    SPHGI_FOLDED_VECTOR,    /* b . s_ij x_ij */
+    SPHGI_FOLDED_SYMMETRIC, /* b s_ij x_ij, b a symmetric matrix */
+    SPHGI_FOLDED_MATRIX
+};
+
+/* Numbers of b_j. */
+static inline int32_t sphgi_folded_numbers(enum sphgi_fold fold, int32_t dimension)
+{
+    switch (fold) {
+    case SPHGI_FOLDED_NUMBER:
+        return 1;
+    case SPHGI_FOLDED_VECTOR:
+        return dimension;
+    case SPHGI_FOLDED_SYMMETRIC:
+        return dimension * (dimension + 1) / 2;
+    default:
+        return dimension * dimension;
+    }
+}
+
 /* The host's table is ours times these: value all of a linearised one, or y; slope z_k. */
 struct sphgi_scales {
     double value, slope;
@@ -230,8 +256,8 @@ struct sphgi_passes {
                     int32_t *lengths);
 
     /* Of `count` ids of a list, those within reach of the target's row stay: they move together, or
-     * if `pack` is not set, the dummy takes the place of the others. Padded to SPHGI_LANES_MOST with
-     * the dummy, for which there is room. Returns how many there are now. */
+     * if `pack` is not set, the dummy takes the place of the others. Padded to SPHGI_LANES_MOST
+     * with the dummy, for which there is room. Returns how many there are now. */
     int32_t (*keep_near)(const struct sphgi_find *find, const void *target, uint32_t *ids,
                          int32_t count, bool pack);
 
@@ -244,8 +270,8 @@ struct sphgi_passes {
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
 
-    /* The same for factors that stand in memory, [step][SPHGI_GROUP] from that of the first lane on;
-     * and what puts them there. */
+    /* The same for factors that stand in memory, [step][SPHGI_GROUP] from that of the first lane
+     * on; and what puts them there. */
     void (*gather_offsets)(const struct sphgi_gather *gather, const void *kept,
                            const int32_t *targets, struct sphgi_tile *tile);
     void (*keep_factors)(const struct sphgi_tile *tile, void *kept);
@@ -308,6 +334,10 @@ struct sphgi_passes {
                       const void *at_target, void *sums);
     void (*sum_vectors)(const struct sphgi_tile *tile, int32_t dimension,
                         enum sphgi_vectors vectors, const void *rows, void *sums);
+    /* sum s_ij b_j x_ij; and, unless vectors is NULL, sum s_ij x_ij or, where rho_j stands behind
+     * b_j, sum rho_j s_ij x_ij. rows: of each 4 numbers */
+    void (*sum_folded)(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_fold fold,
+                       bool dense, const void *const *rows, void *sums, void *vectors);
     void (*sum_volume)(const struct sphgi_tile *tile, void *sums);
     /* What the chunks of a spread tile come to, added to the first lane's sums; chunks: there are.
      */
@@ -354,6 +384,8 @@ struct sphgi_passes {
     bool (*valid_volumes)(int32_t width, const void *volumes); /* >= 0 and finite in every lane */
     void (*fill)(int32_t count, double value, void *out);      /* a multiple of lanes */
     /* a NULL: 1; 0 where b is 0 */
+    void (*source_weights)(int32_t width, enum sphgi_weight kind, const void *volume,
+                           const void *density, void *weights);
     void (*quotient)(int32_t width, const void *a, const void *b, void *out);
     void (*add_outer)(int32_t width, int32_t dimension, int32_t count, const void *a, const void *b,
                       const void *each, void *jacobian);

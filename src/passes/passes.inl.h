@@ -32,6 +32,7 @@
 #include "kept_factors.inl.h"
 #include "sums.inl.h"
 #include "contracted.inl.h"
+#include "folded.inl.h"
 #include "classic.inl.h"
 #include "quadratic_sums.inl.h"
 #include "eigen.inl.h"
@@ -83,6 +84,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_squares = sum_squares,
     .sum_value = sum_value,
     .sum_vectors = sum_vectors,
+    .sum_folded = sum_folded,
     .sum_volume = sum_volume,
     .join_lanes = join_lanes,
     .settle = settle,
@@ -97,6 +99,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .divide = divide_lanes,
     .valid_volumes = valid_volumes,
     .fill = fill,
+    .source_weights = source_weights,
     .quotient = quotient,
     .add_outer = add_outer,
     .add_product = add_product,

@@ -230,7 +230,7 @@ SPHGI_TEMPLATE void vectors_as(const struct sphgi_tile *tile, enum sphgi_vectors
         vec g[3];
         vectors_at(tile, k, vectors, three, g);
         for (int32_t c = 0; c < d; ++c)
-            sum[c] += density * g[c];
+            sum[c] += density * rounded(g[c]);
     }
     end_tile(tile, sum, d, sums);
 }

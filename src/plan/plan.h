@@ -27,10 +27,14 @@ struct sphgi_field_plan {
     bool antisymmetric;              /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
     bool contracts;                  /* the divergence is summed as such */
     bool sums_gradient;              /* what gradient and curl are made of is summed */
+    bool mirrors;                    /* at any set */
+    enum sphgi_fold fold;            /* of a divergence, or a scalar's gradient */
     int32_t components;
-    int32_t stream, streams;     /* rows of A_j */
-    int32_t sum;                 /* first of components * d sums of A times a gradient */
-    int32_t divergence_sum;      /* first of 1 (vector) or d (tensor) sums, if contracts */
+    int32_t stream, streams;         /* A_j as the host has it ... */
+    int32_t row, rows;               /* ... as the passes read it; rows 0: they do not ... */
+    int32_t folded_row, folded_rows; /* ... and b_j */
+    int32_t sum;                     /* first of components * d sums of A times a gradient */
+    int32_t divergence_sum;          /* first of 1 (vector) or d (tensor) sums, if contracts */
     int32_t square_sum;          /* of A G G^T its trace, or its triangle where C_i is to come */
     int32_t value_sum;           /* first of components sums of A Phi, -1: not wanted */
     int32_t second_sum;          /* order 2: first of components times pairs of axes */
@@ -44,7 +48,9 @@ struct sphgi_plan {
     struct sphgi_scheme scheme;
     sphg_type type;
     int32_t dimension, target_count;
-    int32_t set_count, field_count, stream_count;
+    int32_t set_count, field_count;
+    int32_t stream_count; /* what is read of the sources ... */
+    int32_t row_count;    /* ... and what of it, or made of it, stands in rows */
     struct sphgi_set_plan *sets;
     struct sphgi_field_plan *fields;
     int32_t own_set; /* that the targets are part of, or -1 */
@@ -64,6 +70,9 @@ struct sphgi_plan {
     bool mirrors;                              /* any field, at any set */
     bool mean_volume;                          /* MLS without volumes at the targets */
     int32_t correction_stream, density_stream; /* -1: not needed */
+    int32_t correction_row, density_row;       /* -1: no pair needs them */
+    bool sums_transposed[2]; /* adjoint, symmetric: A_j of any field is read with T */
+    int32_t carrier[2];      /* the folded field that sums vector_sum on its way, -1: none */
     int32_t sums;
     int32_t moment_sums; /* all that corrections need: they stand first */
     int32_t moment_sum, volume_sum;
@@ -84,6 +93,12 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose);
 static inline int32_t sphgi_plan_width(const struct sphgi_plan *plan)
 {
     return sphgi_correction_width(plan->scheme.method, plan->dimension, plan->scheme.order);
+}
+
+/* Rows that the correction of a source stands in. */
+static inline int32_t sphgi_correction_rows(const struct sphgi_plan *plan)
+{
+    return plan->classic ? plan->dimension + 1 : plan->dimension - 1;
 }
 
 /* Sums of moments of order 2: of second, third and fourth order. */

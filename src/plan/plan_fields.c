@@ -151,6 +151,7 @@ static sphg_result take_field_at_target(struct sphgi_making *making, int32_t k)
     const bool of_set_only = direct && !(mirrors && (!of_set || sphgi_is_absent(of_set)));
     const sphg_view *own = of_set_only ? &absent : &given->at_targets;
     const bool read = direct ? mirrors : field->differentiates;
+    field->mirrors = mirrors;
     plan->mirrors |= mirrors;
     if (sphgi_is_absent(own) && mirrors && of_set && sphgi_is_absent(of_set))
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,

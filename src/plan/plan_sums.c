@@ -1,4 +1,4 @@
-/* Which sums and streams a plan needs, and their numbers. */
+/* Which sums, streams and rows a plan needs, and their numbers. */
 #include "plan.h"
 
 int32_t sphgi_square_sums(const struct sphgi_plan *plan)
@@ -48,6 +48,76 @@ static void decide_field(struct sphgi_field_plan *field, sphg_method method)
                            field->laplacian.count || (field->divergence.count && !field->contracts);
 }
 
+/* Classic gradients and those of order 2 hold products of offsets, which do not come apart; a
+ * gradient of a vector would become three times as many numbers as A_j and C_j are. What is
+ * mirrored belongs to the target. A result alone is summed like one among others. */
+static enum sphgi_fold fold_of(const struct sphgi_plan *plan, const struct sphgi_field_plan *field)
+{
+    const bool plain = plan->scheme.method == SPHG_PLAIN;
+    if (!field->differentiates || field->forward || field->mirrors || plan->classic ||
+        plan->quadratic)
+        return SPHGI_NOT_FOLDED;
+    if (field->shape == SPHG_SCALAR)
+        return plain ? SPHGI_FOLDED_NUMBER : SPHGI_FOLDED_SYMMETRIC;
+    if (field->shape == SPHG_VECTOR)
+        return field->contracts ? SPHGI_FOLDED_VECTOR : SPHGI_NOT_FOLDED;
+    return plain && field->shape == SPHG_SYM_TENSOR ? SPHGI_FOLDED_SYMMETRIC : SPHGI_FOLDED_MATRIX;
+}
+
+/* The first folded field of a form carries what is summed once for all of them. */
+static void fold_field(struct sphgi_plan *plan, int32_t k)
+{
+    struct sphgi_field_plan *field = &plan->fields[k];
+    const bool symmetric = field->form == SPHG_SYMMETRIC;
+    if (!field->fold)
+        return;
+    const bool dense = symmetric && plan->carrier[1] < 0;
+    const int32_t numbers = sphgi_folded_numbers(field->fold, plan->dimension) + (dense ? 1 : 0);
+    if (plan->carrier[symmetric] < 0)
+        plan->carrier[symmetric] = k;
+    field->folded_row = plan->row_count;
+    field->folded_rows = (numbers + SPHGI_ROW - 1) / SPHGI_ROW;
+    plan->row_count += field->folded_rows;
+}
+
+static void decide_rows_of(struct sphgi_plan *plan, int32_t k)
+{
+    struct sphgi_field_plan *field = &plan->fields[k];
+    field->fold = fold_of(plan, field);
+    fold_field(plan, k);
+    if (field->fold && !(field->shape == SPHG_VECTOR && field->sums_gradient))
+        return;
+    field->row = plan->row_count;
+    field->rows = field->streams;
+    plan->row_count += field->rows;
+    if (field->differentiates && !field->forward)
+        plan->sums_transposed[field->form == SPHG_SYMMETRIC] = true;
+}
+
+static void decide_rows(struct sphgi_plan *plan)
+{
+    const bool transposes = plan->transposes[0] || plan->transposes[1];
+    const int32_t correction = sphgi_correction_rows(plan);
+    plan->correction_stream = plan->density_stream = -1;
+    plan->correction_row = plan->density_row = -1;
+    plan->carrier[0] = plan->carrier[1] = -1;
+    for (int32_t k = 0; k < plan->field_count; ++k)
+        decide_rows_of(plan, k);
+    if (transposes && plan->scheme.method != SPHG_PLAIN) {
+        plan->correction_stream = plan->stream_count;
+        plan->stream_count += correction;
+        if (plan->sums_transposed[0] || plan->sums_transposed[1]) {
+            plan->correction_row = plan->row_count;
+            plan->row_count += correction;
+        }
+    }
+    if (plan->transposes[1]) {
+        plan->density_stream = plan->stream_count++;
+        if (plan->sums_transposed[1])
+            plan->density_row = plan->row_count++;
+    }
+}
+
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
 {
     const sphg_method method = plan->scheme.method;
@@ -65,12 +135,6 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
     plan->corrects = method != SPHG_PLAIN && needs_correction;
     plan->computes |= plan->corrects && !plan->target_correction.count;
     plan->mean_volume = plan->computes && method == SPHG_MLS && !plan->target_volume.count;
-    plan->correction_stream = plan->density_stream = -1;
-    if ((plan->transposes[0] || plan->transposes[1]) && method != SPHG_PLAIN) {
-        plan->correction_stream = plan->stream_count;
-        plan->stream_count += plan->classic ? plan->dimension + 1 : plan->dimension - 1;
-    }
-    if (plan->transposes[1])
-        plan->density_stream = plan->stream_count++;
+    decide_rows(plan);
     decide_sums(plan);
 }

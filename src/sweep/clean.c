@@ -1,5 +1,6 @@
 #include "clean.h"
 #include "core/view.h"
+#include "rows.h"
 #include <string.h>
 
 static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w)
@@ -85,10 +86,6 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
     if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
             positions, &sweep->set->volume, sphgi_volume_unit(sweep), items, 0, used, positions))
         w->tally->bad_volume = true;
-    for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
-        const struct sphgi_stream *stream = &sweep->set->streams[s];
-        char *to = w->local_rows + ((size_t)s * (size_t)(SPHGI_TILE + 1) + (size_t)at) * row;
-        w->passes->load_rows(&stream->columns, items, 0, used, stream->first,
-                             stream->columns.count ? stream->count : 0, to);
-    }
+    sphgi_fill_rows(sweep, items, 0, used, w->local_rows + (size_t)at * row,
+                    (size_t)(SPHGI_TILE + 1) * row);
 }

@@ -21,16 +21,17 @@ static void round_as_table(struct sphgi_worker *w, bool wanted)
     }
 }
 
-static void take_from_table(struct sphgi_worker *w)
+void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_share *shares,
+                           int32_t width, sphg_type type, char *raw, char *ours)
 {
-    for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
-        const struct sphgi_share *share = &w->share[k];
-        char *raw = sphgi_lane(w, w->raw, share->first);
+    for (int k = 0; k < SPHGI_SHARES && shares[k].count; ++k) {
+        const struct sphgi_share *share = &shares[k];
+        const size_t first = (size_t)share->first * SPHGI_WIDTH * sphgi_size_of_type(type);
         for (int p = 0; p < 2; ++p)
             if (share->power[p] != 1)
-                w->passes->scale(w->width, share->count, raw, 1 / share->power[p], NULL, raw);
-        w->passes->divide(w->width, share->count, raw, share->mantissa,
-                          sphgi_lane(w, w->coefficients, share->first));
+                passes->scale(width, share->count, raw + first, 1 / share->power[p], NULL,
+                              raw + first);
+        passes->divide(width, share->count, raw + first, share->mantissa, ours + first);
     }
 }
 
@@ -126,7 +127,8 @@ void sphgi_load_corrections(struct sphgi_worker *w)
     else
         w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
                               sphgi_lane(w, w->raw, 0));
-    take_from_table(w);
+    sphgi_take_from_table(w->passes, w->share, w->width, plan->type, sphgi_lane(w, w->raw, 0),
+                          sphgi_lane(w, w->coefficients, 0));
 }
 
 void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)

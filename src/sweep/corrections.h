@@ -8,6 +8,10 @@
 void sphgi_finish_corrections(struct sphgi_worker *worker);
 void sphgi_load_corrections(struct sphgi_worker *worker);
 
+/* Numbers of a table, `width` lanes, in units of H; raw is used up. */
+void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_share *shares,
+                           int32_t width, sphg_type type, char *raw, char *ours);
+
 /* V / H^d of the group's targets; notes volumes that are not valid. */
 void sphgi_load_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns, char *to);
 

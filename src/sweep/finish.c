@@ -108,11 +108,13 @@ static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_p
 {
     const bool symmetric = field->form == SPHG_SYMMETRIC;
     const struct sides sides = sides_of(w, symmetric);
+    struct sides folded = sides; /* whose C_j came in in units of H */
+    folded.table = 1;
     own_side(w, w->sweep->plan->vector_sum[symmetric], w->extra);
     if (field->sums_gradient)
-        join_sides(w, field, &sides, false);
+        join_sides(w, field, field->rows ? &sides : &folded, false);
     if (field->contracts)
-        join_sides(w, field, &sides, true);
+        join_sides(w, field, field->fold ? &folded : &sides, true);
 }
 
 static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan *field)

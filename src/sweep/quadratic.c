@@ -31,7 +31,7 @@ void sphgi_sum_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *
     for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
         const int32_t first = k * SPHGI_ROW;
         w->passes->sum_quadratic_field(
-            &w->tile, plan->dimension, w->rows[field->stream + k],
+            &w->tile, plan->dimension, w->rows[field->row + k],
             sphgi_min32(SPHGI_ROW, field->components - first),
             at_target + (size_t)first * SPHGI_WIDTH * size,
             sphgi_lane(w, w->reduced, field->sum + first * plan->dimension),

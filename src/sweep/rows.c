@@ -1,4 +1,5 @@
 #include "rows.h"
+#include "fold.h"
 #include "core/parallel.h"
 #include <string.h>
 
@@ -22,10 +23,10 @@ static void use_local_rows(struct sphgi_worker *w)
     const sphg_type type = sweep->set->neighbors->position_type;
     const size_t size = row_size(sweep->plan->type);
     make_dummy(w->local_positions + SPHGI_TILE * row_size(type), type);
-    for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
-        char *rows = w->local_rows + (size_t)s * (SPHGI_TILE + 1) * size;
+    for (int32_t k = 0; k < sweep->plan->row_count; ++k) {
+        char *rows = w->local_rows + (size_t)k * (SPHGI_TILE + 1) * size;
         memset(rows + SPHGI_TILE * size, 0, size);
-        w->rows[s] = rows;
+        w->rows[k] = rows;
     }
     w->gather.rows = w->local_positions;
     w->gather.dummy = SPHGI_ID_STEP * SPHGI_TILE;
@@ -41,8 +42,8 @@ static void use_packed_rows(struct sphgi_worker *w)
     w->gather.rows = sweep->volumes ? sweep->packed_positions : n->sources.rows.data;
     w->gather.dummy = (uint32_t)(SPHGI_ID_STEP * (rows - 1));
     w->items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
-    for (int32_t s = 0; s < sweep->plan->stream_count; ++s)
-        w->rows[s] = sweep->packed_rows + (size_t)s * rows * size;
+    for (int32_t k = 0; k < sweep->plan->row_count; ++k)
+        w->rows[k] = sweep->packed_rows + (size_t)k * rows * size;
 }
 
 void sphgi_use_rows(struct sphgi_worker *w)
@@ -52,6 +53,37 @@ void sphgi_use_rows(struct sphgi_worker *w)
         use_local_rows(w);
     else
         use_packed_rows(w);
+}
+
+/* ---- What the host has becomes rows --------------------------------------------------------- */
+
+static void load_stream(const struct sphgi_sweep *sweep, int32_t number, const int32_t *order,
+                        int64_t begin, int64_t end, char *rows)
+{
+    const struct sphgi_stream *stream = &sweep->set->streams[number];
+    sweep->passes->load_rows(&stream->columns, order, begin, end, stream->first,
+                             stream->columns.count ? stream->count : 0, rows);
+}
+
+void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
+                     int64_t end, char *to, size_t array)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (field->fold)
+            sphgi_fold_rows(sweep, field, order, begin, end, to + (size_t)field->folded_row * array,
+                            array);
+        for (int32_t s = 0; s < field->rows; ++s)
+            load_stream(sweep, field->stream + s, order, begin, end,
+                        to + (size_t)(field->row + s) * array);
+    }
+    for (int32_t k = 0; plan->correction_row >= 0 && k < sphgi_correction_rows(plan); ++k)
+        load_stream(sweep, plan->correction_stream + k, order, begin, end,
+                    to + (size_t)(plan->correction_row + k) * array);
+    if (plan->density_row >= 0)
+        load_stream(sweep, plan->density_stream, order, begin, end,
+                    to + (size_t)plan->density_row * array);
 }
 
 /* ---- Packing -------------------------------------------------------------------------------- */
@@ -69,15 +101,10 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
     const struct sphgi_sweep *sweep = packing->sweep;
     const sphg_neighbors *n = sweep->set->neighbors;
     const sphg_type type = sweep->plan->type;
-    const size_t size = row_size(type);
+    const size_t size = row_size(type), rows = (size_t)n->source_count + 1;
     (void)worker;
-    for (int32_t s = 0; s < sweep->plan->stream_count; ++s) {
-        const struct sphgi_stream *stream = &sweep->set->streams[s];
-        const size_t at = (size_t)s * ((size_t)n->source_count + 1) + (size_t)begin;
-        sweep->passes->load_rows(&stream->columns, packing->order, begin, end, stream->first,
-                                 stream->columns.count ? stream->count : 0,
-                                 packing->rows + at * size);
-    }
+    sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
+                    rows * size);
     if (packing->positions &&
         !sweep->position_passes->stage[type == SPHG_F64](
             n->sources.rows.data, &sweep->set->volume, sphgi_volume_unit(sweep), packing->order,
@@ -90,14 +117,14 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
     const sphg_type type = sweep->plan->type;
-    const size_t rows = (size_t)n->source_count + 1, streams = (size_t)sweep->plan->stream_count;
+    const size_t rows = (size_t)n->source_count + 1, arrays = (size_t)sweep->plan->row_count;
     const bool positions = sweep->volumes;
     const size_t positions_size =
         positions ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
-    if (!positions && !streams)
+    if (!positions && !arrays)
         return SPHG_OK;
     if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed,
-                       positions_size + streams * rows * row_size(type), 1))
+                       positions_size + arrays * rows * row_size(type), 1))
         return SPHG_ERROR_MEMORY;
     char *memory = sweep->context->packed.data;
     struct packing packing = {.sweep = sweep,
@@ -106,8 +133,8 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
                               .order = n->kind == SPHGI_HOST_LISTS ? NULL : n->sources.order.data};
     atomic_store(&packing.bad_volume, false);
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
-    for (size_t s = 0; s < streams; ++s) /* the dummy rows */
-        memset(packing.rows + ((s + 1) * rows - 1) * row_size(type), 0, row_size(type));
+    for (size_t k = 0; k < arrays; ++k) /* the dummy rows */
+        memset(packing.rows + ((k + 1) * rows - 1) * row_size(type), 0, row_size(type));
     if (positions) {
         const size_t row = row_size(n->position_type), dummy = (rows - 1) * row;
         memcpy(memory + dummy, (const char *)n->sources.rows.data + dummy, row);

@@ -1,5 +1,6 @@
 #include "sums.h"
 #include "corrections.h"
+#include "fold.h"
 #include "pair_rows.h"
 #include "quadratic.h"
 #include "core/view.h"
@@ -16,14 +17,14 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
                      enum sphgi_vectors vectors, const char *at_target)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    if (field->contracts)
+    if (field->contracts && !field->fold)
         w->passes->sum_divergence(&w->tile, plan->dimension, field->shape, vectors,
-                                  w->rows + field->stream, at_target,
+                                  w->rows + field->row, at_target,
                                   sphgi_lane(w, w->reduced, field->divergence_sum));
     for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
         const int32_t first = k * SPHGI_ROW;
         const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
-        w->passes->sum_field(&w->tile, plan->dimension, vectors, w->rows[field->stream + k], count,
+        w->passes->sum_field(&w->tile, plan->dimension, vectors, w->rows[field->row + k], count,
                              at_target +
                                  (size_t)first * SPHGI_WIDTH * sphgi_size_of_type(plan->type),
                              sphgi_lane(w, w->reduced, field->sum + first * plan->dimension));
@@ -55,25 +56,20 @@ static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *f
     sum_rows(w, field, vectors_of(w), subtracted(w, field));
     if (field->square.count)
         w->passes->sum_squares(&w->tile, w->sweep->plan->dimension, vectors_of(w),
-                               sphgi_square_sums(w->sweep->plan), w->rows[field->stream],
+                               sphgi_square_sums(w->sweep->plan), w->rows[field->row],
                                subtracted(w, field), sphgi_lane(w, w->reduced, field->square_sum));
 }
 
-/* Adjoint ([0]) or symmetric ([1]): T once, then all fields of that form. */
-static void sum_transposed(struct sphgi_worker *w, bool symmetric)
+/* T, the other half of what a pair is multiplied with. */
+static void form_transposed(struct sphgi_worker *w, bool symmetric)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const bool own_volume = plan->scheme.method == SPHG_MLS || plan->classic;
-    const enum sphgi_weight weight =
-        symmetric ? (own_volume ? SPHGI_WEIGHT_V_PER_DENSITY : SPHGI_WEIGHT_PER_DENSITY)
-                  : (own_volume ? SPHGI_WEIGHT_V : SPHGI_WEIGHT_ONE);
-    const void *density = plan->density_stream < 0 ? NULL : w->rows[plan->density_stream];
+    const enum sphgi_weight weight = sphgi_source_weight(plan, symmetric);
+    const void *density = plan->density_row < 0 ? NULL : w->rows[plan->density_row];
     const void *table[4] = {NULL, NULL, NULL, NULL};
-    const int32_t streams = plan->correction_stream < 0 ? 0
-                            : plan->classic             ? plan->dimension + 1
-                                                        : plan->dimension - 1;
-    for (int32_t k = 0; k < streams; ++k)
-        table[k] = w->rows[plan->correction_stream + k];
+    const int32_t rows = plan->correction_row < 0 ? 0 : sphgi_correction_rows(plan);
+    for (int32_t k = 0; k < rows; ++k)
+        table[k] = w->rows[plan->correction_row + k];
     if (plan->classic) {
         const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
         w->passes->transposed_classic(&w->tile, plan->dimension, table, &units,
@@ -81,14 +77,40 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
                                       weight);
     } else
         w->passes->transposed(&w->tile, plan->dimension, table, density, weight);
+}
+
+static void sum_folded(struct sphgi_worker *w, int32_t number)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_field_plan *field = &plan->fields[number];
+    const bool symmetric = field->form == SPHG_SYMMETRIC,
+               carrier = plan->carrier[symmetric] == number;
+    const int32_t sum = field->contracts ? field->divergence_sum : field->sum;
+    w->passes->sum_folded(&w->tile, plan->dimension, field->fold, symmetric && carrier,
+                          w->rows + field->folded_row, sphgi_lane(w, w->reduced, sum),
+                          carrier ? sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]) : NULL);
+}
+
+/* Adjoint ([0]) or symmetric ([1]): all fields of that form, and what they share. */
+static void sum_transposed(struct sphgi_worker *w, bool symmetric)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (plan->sums_transposed[symmetric])
+        form_transposed(w, symmetric);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (field->differentiates && !field->forward &&
-            symmetric == (field->form == SPHG_SYMMETRIC))
+        if (!field->differentiates || field->forward ||
+            symmetric != (field->form == SPHG_SYMMETRIC))
+            continue;
+        if (field->fold)
+            sum_folded(w, k);
+        if (field->rows)
             sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
-    w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w), symmetric ? density : NULL,
-                           sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]));
+    if (plan->carrier[symmetric] < 0)
+        w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w),
+                               symmetric ? w->rows[plan->density_row] : NULL,
+                               sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]));
 }
 
 static void load_target(struct sphgi_worker *w, int32_t number, char *to)
@@ -99,7 +121,7 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
     if (number < 32 && (w->targets_in_rows >> number & 1)) {
         const size_t rows = (size_t)sweep->set->neighbors->source_count + 1;
         struct sphgi_columns columns;
-        columns.at[0] = sweep->packed_rows + (size_t)field->stream * rows * row;
+        columns.at[0] = sweep->packed_rows + (size_t)field->row * rows * row;
         columns.stride = (ptrdiff_t)row;
         columns.count = SPHGI_ROW;
         columns.together = true;
@@ -148,7 +170,7 @@ static void sum_fields(struct sphgi_worker *w)
         if (field->differentiates && field->forward)
             sum_forward(w, field);
         for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
-            w->passes->sum_value(&w->tile, w->rows[field->stream + s],
+            w->passes->sum_value(&w->tile, w->rows[field->row + s],
                                  sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
                                  subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
                                  sphgi_lane(w, w->reduced, field->value_sum + s * SPHGI_ROW));

@@ -28,14 +28,14 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     const size_t size = sphgi_size_of_type(plan->type);
     const size_t position = sphgi_size_of_type(n->position_type);
     const size_t local = sweep->packed ? 0 : SPHGI_TILE + 1;
-    const size_t streams = (size_t)plan->stream_count, row = SPHGI_ROW * size;
+    const size_t arrays = (size_t)plan->row_count, row = SPHGI_ROW * size;
     const size_t numbers = plan->quadratic ? (size_t)sphgi_plan_width(plan) : 16;
     struct layout layout = {0};
 #define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
     CARVE(tally, 1, sizeof(struct sphgi_tally));
-    CARVE(rows, streams + 1, sizeof(void *));
+    CARVE(rows, arrays + 1, sizeof(void *));
     CARVE(local_positions, local, SPHGI_ROW * position);
-    CARVE(local_rows, local * streams, row);
+    CARVE(local_rows, local * arrays, row);
     CARVE(arrays, SPHGI_ARRAYS * SPHGI_TILE, size);
     CARVE(ids, SPHGI_TILE, sizeof(uint32_t));
     CARVE(clean_ids, SPHGI_TILE, sizeof(uint32_t));
@@ -79,7 +79,8 @@ static bool are_targets_in_rows(const struct sphgi_worker *w, const struct sphgi
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_stream *stream = &sweep->set->streams[field->stream];
     return sweep->packed && sweep->set_number == sweep->plan->own_set && field->streams == 1 &&
-           sweep->set->neighbors->same && field->target.stride == stream->columns.stride &&
+           field->rows && sweep->set->neighbors->same &&
+           field->target.stride == stream->columns.stride &&
            memcmp(field->target.at, stream->columns.at,
                   (size_t)field->components * sizeof field->target.at[0]) == 0;
 }

@@ -34,7 +34,7 @@ struct sphgi_sweep {
     const struct sphgi_passes *passes, *position_passes; /* of fields; of positions */
     bool packed;                  /* fields stand as rows in storage order; else rows are copied */
     const char *packed_positions; /* x y z V, source_count + 1 rows */
-    const char *packed_rows;      /* streams, as many rows each */
+    const char *packed_rows;      /* plan->row_count arrays of as many rows each */
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
     struct sphgi_kept_weights kept;           /* s_ij that this sweep reads and writes */
@@ -66,7 +66,7 @@ struct sphgi_worker {
                                       many, and how many of those have a target */
     int32_t summed;                /* lanes whose sums are done */
     struct sphgi_share share[SPHGI_SHARES]; /* of the table of corrections */
-    const void **rows;                      /* of each stream */
+    const void **rows;                      /* the arrays of rows, packed or local */
     unsigned summing;                       /* SPHGI_SUM_..., of this pass over the group */
     uint8_t directions[SPHGI_WIDTH];        /* of curvature, that are resolved */
     bool factors_at_once;            /* s_ij come with the pairs, for nobody asks for distances */
