@@ -400,6 +400,9 @@ struct sphgi_passes {
     /* Asks the memory for what load_lanes or store_lanes will touch. */
     void (*ask_for_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                           bool write);
+    /* Lanes with a bit in `kept` stay, one after the other, of `count` numbers of as many lanes as a
+     * vector has. */
+    void (*pack_lanes)(uint32_t kept, int32_t count, void *numbers);
     void (*load_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                        void *out);
     void (*store_lanes)(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,

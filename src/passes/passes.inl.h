@@ -106,6 +106,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .trace_between = trace_between,
     .contract = contract,
     .ask_for_lanes = ask_for_lanes,
+    .pack_lanes = pack_lanes,
     .load_lanes = load_lanes,
     .store_lanes = store_lanes,
 };

@@ -221,6 +221,35 @@ static void load_lanes(int32_t width, const struct sphgi_columns *columns, const
             to[c * SPHGI_WIDTH + l] = number_at(columns->at[c] + items[l] * columns->stride);
 }
 
+/* v[from[k]] in lane k */
+SPHGI_TEMPLATE vec permuted(vec v, const int32_t *from)
+{
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+    return (vec)_mm512_permutexvar_ps(_mm512_loadu_si512(from), (__m512)v);
+#elif VECTOR_BYTES == 32 && !REAL_IS_F64
+    return (vec)_mm256_permutevar8x32_ps((__m256)v,
+                                         _mm256_loadu_si256((const __m256i *)(const void *)from));
+#else
+    vec out;
+    for (int32_t k = 0; k < LANES; ++k)
+        out[k] = v[from[k]];
+    return out;
+#endif
+}
+
+/* Without a branch on `kept`, which nobody could foresee. */
+static void pack_lanes(uint32_t kept, int32_t count, void *numbers)
+{
+    int32_t from[2 * LANES] = {0}, lanes = 0;
+    real *row = numbers;
+    for (int32_t l = 0; l < LANES; ++l) {
+        from[lanes] = l;
+        lanes += (int32_t)(kept >> l & 1);
+    }
+    for (int32_t c = 0; c < count; ++c, row += SPHGI_WIDTH)
+        store(row, permuted(load(row), from));
+}
+
 SPHGI_TEMPLATE real *number_of(const struct sphgi_columns *columns, int32_t c, int32_t item)
 {
     return (real *)(void *)(uintptr_t)(columns->at[c] + item * columns->stride);

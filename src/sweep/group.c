@@ -250,6 +250,26 @@ void sphgi_group_run(struct sphgi_worker *w)
     end(w);
 }
 
+void sphgi_group_keep(struct sphgi_worker *w, uint32_t kept)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    struct sphgi_group *group = &w->group;
+    p->pack_lanes(kept, plan->sums, sphgi_lane(w, w->reduced, 0));
+    p->pack_lanes(kept, plan->target_lanes, sphgi_lane(w, w->at_target, 0));
+    if (plan->adjoint || plan->transposes[1]) {
+        p->pack_lanes(kept, 1, sphgi_lane(w, w->volume, 0));
+        p->pack_lanes(kept, 1, sphgi_lane(w, w->density, 0));
+    }
+    int32_t to = w->first;
+    for (int32_t l = w->first; l < group->lanes; ++l, kept >>= 1) {
+        group->target[to] = group->target[l];
+        group->place[to] = group->place[l];
+        to += (int32_t)(kept & 1);
+    }
+    group->lanes = w->summed = to;
+}
+
 void sphgi_stream_begin(struct sphgi_worker *w)
 {
     begin(w);

@@ -32,6 +32,8 @@ static void run_rest(struct sphgi_worker *w)
 static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
                      int32_t count, int32_t stride)
 {
+    if (w->group.lanes == w->summed && w->summed > SPHGI_WIDTH - w->passes->lanes)
+        finish_group(w); /* no room for a vector more */
     const int32_t lane = add_target(w, target, place) - w->summed;
     w->lists.ids[lane] = ids;
     w->lists.count[lane] = count;
@@ -83,17 +85,15 @@ static bool is_active(const struct sphgi_task *task, int32_t place)
     return sphgi_is_selected(task->selection, place, target_at(task->sweep.set->neighbors, place));
 }
 
-/* Their places; picked without a branch that nobody could foresee. */
-static int32_t active_of(const struct sphgi_task *task, int32_t group, int32_t *places)
+/* A bit for each target of a group; set without a branch that nobody could foresee. */
+static uint32_t active_of(const struct sphgi_task *task, int32_t group)
 {
     const int32_t first = group * SPHGI_GROUP;
     const int32_t count = sphgi_targets_in(task->sweep.set->neighbors, group);
-    int32_t picked = 0;
-    for (int32_t k = 0; k < count; ++k) {
-        places[picked] = first + k;
-        picked += is_active(task, first + k) ? 1 : 0;
-    }
-    return picked;
+    uint32_t active = 0;
+    for (int32_t k = 0; k < count; ++k)
+        active |= (uint32_t)is_active(task, first + k) << k;
+    return active;
 }
 
 enum { GROUPS_AHEAD = 8 };
@@ -135,34 +135,58 @@ static char *kept_factors(const struct sphgi_worker *w, const uint32_t *ids)
     return w->sweep->kept.factors + (size_t)at * sphgi_size_of_type(w->sweep->plan->type);
 }
 
-/* A whole group, whose lists stand side by side, and no others wait. */
-static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids)
+/* The targets of a whole group: those that are not active are replaced by one that is, so that
+ * nothing of theirs is read from the host. */
+static void targets_of_group(const struct sphgi_worker *w, int32_t place, uint32_t active,
+                             int32_t *targets)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
     const int32_t *order = (const int32_t *)sphgi_target_grid(n)->order.data + place;
-    const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + place;
-    if (w->group.lanes > SPHGI_WIDTH - SPHGI_GROUP)
-        finish_group(w);
+    const int32_t other = order[__builtin_ctz(active)];
+    for (int32_t l = 0; l < SPHGI_GROUP; ++l)
+        targets[l] = active >> l & 1 ? order[l] : other;
+    ask_for_numbers(n, place);
+    ask_for_group(w, targets);
+}
+
+/* A vector of them. */
+static void put_into_lanes(struct sphgi_worker *w, const int32_t *targets, int32_t place)
+{
     int32_t *const target = w->group.target + w->group.lanes;
     int32_t *const places = w->group.place + w->group.lanes;
-    for (int32_t l = 0; l < SPHGI_GROUP; ++l) {
-        target[l] = order[l];
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        target[l] = targets[l];
         places[l] = place + l;
     }
-    ask_for_numbers(n, place);
-    ask_for_group(w, target);
+    w->group.lanes += w->passes->lanes;
+}
+
+/* A group whose lists stand side by side, and no others wait. All its targets are summed, and those
+ * that are not active dropped: where there are few of these that costs less than laying the lists
+ * of the others side by side anew. */
+static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids, uint32_t active)
+{
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    const struct sphgi_kept_weights *kept = &w->sweep->kept;
+    const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + place;
+    const int32_t group = place / SPHGI_GROUP, lanes = w->passes->lanes;
+    const uint32_t all = (1u << lanes) - 1;
+    if (w->group.lanes > SPHGI_WIDTH - SPHGI_GROUP)
+        finish_group(w);
+    int32_t targets[SPHGI_GROUP];
+    targets_of_group(w, place, active, targets);
     w->lists.stride[0] = SPHGI_GROUP;
     w->lists.side_by_side = true;
-    const struct sphgi_kept_weights *kept = &w->sweep->kept;
-    const int32_t group = place / SPHGI_GROUP;
     w->kept_stand = kept->number && kept->marks[group] == kept->number;
-    for (int32_t first = 0; first < SPHGI_GROUP; first += w->passes->lanes) {
+    for (int32_t first = 0; first < SPHGI_GROUP; first += lanes) {
         w->lists.ids[0] = ids + first;
         w->kept = kept->number ? kept_factors(w, w->lists.ids[0]) : NULL;
-        for (int32_t l = 0; l < w->passes->lanes; ++l)
+        for (int32_t l = 0; l < lanes; ++l)
             w->lists.count[l] = lengths[first + l];
-        w->group.lanes += w->passes->lanes;
+        put_into_lanes(w, targets + first, place + first);
         sphgi_group_run(w);
+        if ((active >> first & all) != all)
+            sphgi_group_keep(w, active >> first & all);
     }
     w->lists.side_by_side = false;
     w->kept = NULL;
@@ -195,6 +219,16 @@ static void add_kept(struct sphgi_worker *w, int32_t place, const uint32_t *ids,
     add_list(w, target_at(n, place), place, ids, count, stride);
 }
 
+/* Are groups of which some targets are active summed whole? Dropped ones must leave no trace: where
+ * matrices come first, those of all would be counted. */
+static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_worker *w)
+{
+    enum { WORTH = 9 }; /* active targets of the sixteen, on average */
+    const struct sphgi_selection *selection = task->selection;
+    return selection->groups && !w->coefficients_first && !w->sweep->pairs &&
+           selection->active_count >= (int64_t)WORTH * selection->group_count;
+}
+
 /* Lists that stand one after the other. */
 static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, int32_t group)
 {
@@ -218,14 +252,18 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
     }
     const uint32_t *ids = sphgi_kept_ids(n, group);
     const uint16_t *lengths = n->found.lengths.data;
-    int32_t places[SPHGI_GROUP];
-    const int32_t active = active_of(task, group, places);
-    if (active == SPHGI_GROUP && !w->local && w->group.lanes == w->summed) { /* no lists wait */
-        add_group(w, first, ids);
+    const uint32_t active = active_of(task, group);
+    const bool whole =
+        active == (1u << SPHGI_GROUP) - 1 ||
+        (active && sphgi_targets_in(n, group) == SPHGI_GROUP && are_summed_whole(task, w));
+    if (whole && !w->local && w->group.lanes == w->summed) { /* no lists wait */
+        add_group(w, first, ids, active);
         return;
     }
-    for (int32_t k = 0; k < active; ++k)
-        add_kept(w, places[k], ids + places[k] - first, lengths[places[k]], SPHGI_GROUP);
+    for (uint32_t left = active; left; left &= left - 1) {
+        const int32_t k = __builtin_ctz(left);
+        add_kept(w, first + k, ids + k, lengths[first + k], SPHGI_GROUP);
+    }
 }
 
 static void take_ids(void *data, const uint32_t *ids, int32_t count)
@@ -255,21 +293,21 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const int32_t first = group * SPHGI_GROUP;
     const uint32_t *lists[SPHGI_GROUP];
-    int32_t lengths[SPHGI_GROUP], places[SPHGI_GROUP];
-    const int32_t active = active_of(task, group, places);
+    int32_t lengths[SPHGI_GROUP];
+    const uint32_t active = active_of(task, group);
     if (!active)
         return;
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
-    const bool all = active == SPHGI_GROUP && w->group.lanes == w->summed;
-    for (int32_t k = 0; k < active; ++k) {
-        const int32_t place = places[k], target = target_at(n, place);
+    const bool all = active == (1u << SPHGI_GROUP) - 1 && w->group.lanes == w->summed;
+    for (uint32_t left = active; left; left &= left - 1) {
+        const int32_t k = __builtin_ctz(left), place = first + k, target = target_at(n, place);
         if (!collected)
             stream_target(w, finder, place);
         else if (all)
             add_list(w, target, place, lists[k], lengths[k], 1);
         else
-            add_copied(w, target, place, lists[place - first], lengths[place - first],
-                       (int32_t)sphgi_round_up((size_t)lengths[place - first], SPHGI_PAD));
+            add_copied(w, target, place, lists[k], lengths[k],
+                       (int32_t)sphgi_round_up((size_t)lengths[k], SPHGI_PAD));
     }
 }
 

@@ -110,6 +110,10 @@ void sphgi_worker_open(struct sphgi_worker *worker, const struct sphgi_sweep *sw
  * the group is finished. */
 void sphgi_group_run(struct sphgi_worker *worker);
 
+/* Of the lanes that were summed last, those with a bit in `kept` stay; the others' targets drop
+ * out. */
+void sphgi_group_keep(struct sphgi_worker *worker, uint32_t kept);
+
 /* The same for one target whose list comes bit by bit:
  *   begin; do { add ... } while (again); end. */
 void sphgi_stream_begin(struct sphgi_worker *worker);
