@@ -1,6 +1,7 @@
 /* Second order: a quadratic field, whose Laplacian is 12 everywhere, on a block with a free
- * surface. Prints the largest error of the gradient for order 1 and for order 2, the largest error
- * of the Laplacian, and how many particles can resolve curvature. */
+ * surface. Prints the largest errors of gradient and Laplacian by order 1, by order 2, and by order
+ * 2 when particles that cannot resolve curvature take it from neighbours that can: twice, since
+ * those next to a corner have no such neighbours before the first time. */
 #include <math.h>
 #include <sphgrad/sphgrad.h>
 #include <stdio.h>
@@ -9,16 +10,16 @@ enum { SIDE = 10, COUNT = SIDE * SIDE * SIDE };
 
 static double x[COUNT][3], a[COUNT]; /* positions, and a = x^2 + 2 y^2 + 3 z^2 + x y */
 static double gradient[COUNT][3], laplacian[COUNT];
-static uint8_t rank[COUNT]; /* 9 where all first and second derivatives are known */
+static double lent[2][COUNT][7]; /* c and c times the Hessian: before and after a call */
+static uint8_t borrows[COUNT];   /* 1 where lenders change the result */
 
-/* Where rank is 9; of order 1, which has no such rank, everywhere. */
-static double gradient_error(int order)
+static double gradient_error(void)
 {
     double most = 0;
     for (int i = 0; i < COUNT; i++) {
         const double *p = x[i];
         const double expected[3] = {2 * p[0] + p[1], 4 * p[1] + p[0], 6 * p[2]};
-        for (int k = 0; k < 3 && (order == 1 || rank[i] == 9); k++)
+        for (int k = 0; k < 3; k++)
             most = fmax(most, fabs(gradient[i][k] - expected[k]));
     }
     return most;
@@ -34,8 +35,7 @@ int main(void)
     }
     const double volume = 1;
     const sphg_geometry block = sphg_all(sphg_view_f64(x[0], sizeof x[0]), COUNT);
-    sphg_scheme scheme = {.support_radius = 3};
-
+    sphg_scheme scheme = {.support_radius = 2};
     sphg_context *context = NULL;
     sphg_neighbors *neighbors = NULL;
     int failed = sphg_context_create(SPHG_VERSION, NULL, &context) ||
@@ -43,33 +43,32 @@ int main(void)
                  sphg_neighbors_search(context, neighbors, &scheme, &block);
     const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f64(&volume)};
     const sphg_view values = sphg_view_f64(a, sizeof *a);
-    sphg_field field = {.shape = SPHG_SCALAR,
-                        .at_sources = &values,
-                        .gradient = sphg_view_f64(gradient[0], sizeof gradient[0])};
+    sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &values};
+    field.gradient = sphg_view_f64(gradient[0], sizeof gradient[0]);
     sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     failed = failed || sphg_evaluate(context, &scheme, &request);
-    const double first = gradient_error(1);
+    double error[4] = {gradient_error()}, curvature[4] = {0};
 
     scheme.order = 2;
     field.laplacian = sphg_view_f64(laplacian, sizeof *laplacian);
-    request.rank = sphg_view_u8(rank, 1);
-    failed = failed || sphg_evaluate(context, &scheme, &request);
-    int resolved = 0;
-    double second = gradient_error(2), curvature = 0;
-    for (int i = 0; i < COUNT && !failed; i++)
-        if (rank[i] == 9) {
-            resolved++;
-            curvature = fmax(curvature, fabs(laplacian[i] - 12));
-        }
+    request.borrows = sphg_view_u8(borrows, 1);
+    for (int call = 1; call < 4; call++) { /* all targets each time; a mask would save time */
+        const sphg_view lenders = sphg_view_f64(lent[call % 2][0], sizeof lent[0][0]);
+        field.curvature = sphg_view_f64(lent[(call + 1) % 2][0], sizeof lent[0][0]);
+        field.lenders = call > 1 ? &lenders : NULL;
+        failed = failed || sphg_evaluate(context, &scheme, &request);
+        error[call] = gradient_error();
+        for (int i = 0; i < COUNT; i++)
+            curvature[call] = fmax(curvature[call], fabs(laplacian[i] - 12));
+    }
     if (failed)
         fprintf(stderr, "%s\n", sphg_last_message(context));
-    else
-        printf("gradient: error %.2g by order 1, %.1e by order 2\n"
-               "Laplacian: error %.1e where curvature is resolved, %d of %d particles\n",
-               first, second, curvature, resolved, COUNT);
-
+    for (int call = 0; call < 4 && !failed; call++)
+        printf("%-14s gradient: error %-8.1e Laplacian: error %.1e\n",
+               (const char *[]){"order 1", "order 2", "lent once", "lent twice"}[call], error[call],
+               call ? curvature[call] : NAN);
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
-    return failed || second > 1e-9 || curvature > 1e-9 || resolved < COUNT / 2;
+    return failed || error[1] < .1 || error[3] > 1e-9 || curvature[3] > 1e-9;
 }

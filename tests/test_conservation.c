@@ -286,6 +286,30 @@ static void adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient(const t
     TEST_WITHIN(adjointness, fabs(work) / size / on.scene.unit, "flux");
 }
 
+/* ---- Order 2 ---------------------------------------------------------------------------------
+ */
+
+/* Its tables are symmetric, and M2 P + M3 Q^T = M2 C: what order 1 conserves, it does. */
+static void order_2_conserves_what_order_1_does(const test_case *test)
+{
+    const stage whole = full_rank_stage(test);
+    stage stages[] = {whole, thin_stage(test), stage_lacking(&whole, STAGE_CUT_AT_BOTH_ENDS)};
+    for (int s = 0; s < 3; s++) {
+        stage *on = &stages[s];
+        on->scheme.order = 2;
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+            require_linear(on, SPHG_SCALAR, (sphg_form)form, "scalar");
+            require_linear(on, SPHG_TENSOR, (sphg_form)form, "tensor");
+        }
+        require_angular(on, SPHG_SCALAR, SPHG_ADJOINT, "scalar");
+        TEST_WITHIN(adjointness, work_imbalance(on, SPHG_SCALAR) / on->scene.unit, on->name);
+        TEST_WITHIN(adjointness, work_imbalance(on, SPHG_TENSOR) / on->scene.unit, on->name);
+    }
+    require_angular(&stages[0], SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric tensor");
+    require_angular_lost(&stages[0], SPHG_TENSOR, SPHG_ADJOINT);
+    require_angular_lost(&stages[1], SPHG_SYM_TENSOR, SPHG_ADJOINT);
+}
+
 /* ---- Lists that lack pairs -------------------------------------------------------------------
  */
 
@@ -350,6 +374,8 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(order_2_conserves_what_order_1_does, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
     TEST_ENTRY(lists_cut_at_both_ends_conserve, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(one_sided_lists_conserve_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,

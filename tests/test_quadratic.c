@@ -149,6 +149,35 @@ static void results_match_the_oracle(const test_case *test)
     }
 }
 
+/* Forms of both sides, with the table of a call before. */
+static void two_sided_forms_match_the_oracle(const test_case *test)
+{
+    for (int s = 0; s < scenes_hard_count; s++) {
+        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const fixture_array table = stage_table(&on);
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
+            const sphg_form form = (sphg_form)(shape % 2 ? SPHG_ADJOINT : SPHG_SYMMETRIC);
+            const stage_field field = {(sphg_shape)shape, form,
+                                       stage_random_field(&on, (sphg_shape)shape, 21)};
+            const stage_result found = stage_apply(&on, &field, &table);
+            const oracle_field asked = {field.shape, form, field.numbers, NULL};
+            for (int i = 0; i < on.points.count; i += 1 + on.points.count / 4) {
+                const oracle_curved exact = oracle_apply_second_two_sided(on.reference, &asked, i);
+                if (exact.undecided)
+                    continue;
+                const fixture_array *const arrays[] = {&found.gradient, &found.divergence,
+                                                       &found.curl};
+                const quad *const numbers[] = {exact.gradient, exact.divergence, exact.curl};
+                for (int k = 0; k < 3; k++)
+                    TEST_WITHIN(quadratic_two_sided,
+                                ratio_of(arrays[k], i, numbers[k], exact.gradient_bound),
+                                test_text("result %d of particle %d, %s, %s", k, i, on.name,
+                                          test_method_name(test->method)));
+            }
+        }
+    }
+}
+
 static void every_policy_and_instruction_set_matches_the_oracle(const test_case *test)
 {
     static const int chosen[] = {0, 5, 10};
@@ -574,6 +603,45 @@ static void pairs_found_anew_give_the_same_bits(const test_case *test)
     TEST_REQUIRE(fixture_is_canary(&some.hessian, 1), "who is not selected is written");
 }
 
+/* Forms of both sides: by themselves or beside a difference, all targets or a few, whose sources'
+ * rows are copied one by one. */
+static void two_sided_forms_have_the_same_bits_in_any_company(const test_case *test)
+{
+    const stage on = exact_stage(test, .3, 2.5);
+    const fixture_array table = stage_table(&on);
+    const stage_field stress = {SPHG_SCALAR, SPHG_ADJOINT,
+                                stage_random_field(&on, SPHG_SCALAR, 22)};
+    const stage_result alone = stage_apply(&on, &stress, &table);
+    const fixture_array values =
+        fixture_numbers(test_field_type(test), on.points.count, 1, stress.numbers);
+    const sphg_view at_sources = fixture_view(&values);
+    const stage_result force = stage_outputs(&on, &stress, on.points.count);
+    const curved slope = outputs_of(&on, SPHG_SCALAR);
+    const curved expected = apply(&on, SPHG_SCALAR, stress.numbers, (how){.table = &table});
+    sphg_field fields[2] = {{.shape = SPHG_SCALAR, .at_sources = &at_sources},
+                            {.shape = SPHG_SCALAR, .at_sources = &at_sources}};
+    fields[0].form = SPHG_ADJOINT;
+    fields[0].gradient = fixture_view(&force.gradient);
+    fields[1].gradient = fixture_view(&slope.gradient);
+    fields[1].hessian = fixture_view(&slope.hessian);
+    sphg_sources sources = stage_sources(&on);
+    sources.correction = fixture_view(&table);
+    sphg_request request = {
+        .sources = &sources, .fields = fields, .set_count = 1, .field_count = 2};
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    TEST_REQUIRE(fixture_same_bits(&alone.gradient, &force.gradient), "force in company");
+    TEST_REQUIRE(fixture_same_bits(&expected.gradient, &slope.gradient), "gradient in company");
+    TEST_REQUIRE(fixture_same_bits(&expected.hessian, &slope.hessian), "Hessian in company");
+    const int32_t chosen[] = {0, 7, on.points.count - 1};
+    const sphg_subset few = sphg_listed(chosen, 3);
+    const stage_result some = stage_apply_to(&on, &stress, &table, &few);
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < test->dimension; a++)
+            TEST_REQUIRE(fixture_get(&some.gradient, chosen[k], a) ==
+                             fixture_get(&alone.gradient, chosen[k], a),
+                         "target %d", chosen[k]);
+}
+
 /* Half of the particles each: sums of both, moments of third and fourth order included. */
 static void two_source_sets_are_one_cloud(const test_case *test)
 {
@@ -661,8 +729,14 @@ static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
 
 /* ---- Continuity ------------------------------------------------------------------------------ */
 
+static double smooth_field(int d, const double *x)
+{
+    const double y = x[1], z = d == 3 ? x[2] : 0;
+    return sin(1.3 * x[0]) + .5 * y * y + .3 * x[0] * y + .4 * z * z - .2 * y * z;
+}
+
 /* A neighbour slides in from beyond H along a line: nothing jumps, and a step half as long changes
- * half as much. */
+ * half as much. Second derivatives in the units of h, whose basis is some five times longer. */
 static double largest_step(const test_case *test, sphg_policy policy, int steps)
 {
     random_state random = random_seeded(31);
@@ -677,14 +751,14 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
     scheme.policy = policy;
     const double h = scheme.support_radius;
     double value[10], gradient[10][3], hessian[10][6], before[10][9], worst = 0;
-    for (int i = 0; i < n; i++)
-        value[i] = .125 * sin(2. * i);
     const double volume = d == 2 ? .25 : .125;
     sphg_neighbors *neighbors = NULL;
     FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
     for (int step = 0; step <= steps; step++) {
         for (int a = 0; a < d; a++)
             points.x[(n - 1) * d + a] = a ? .31 : 2.5 - 2.2 * step / steps;
+        for (int i = 0; i < n; i++)
+            value[i] = smooth_field(d, points.x + i * d);
         sphg_geometry geometry = sphg_all(sphg_view_f64(points.x, 8 * d), n);
         geometry.list_free = 1;
         FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
@@ -698,7 +772,7 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
         FIXTURE_OK(context, sphg_evaluate(context, &scheme, &request));
         for (int i = 0; i < n; i++)
             for (int k = 0; k < d + pairs_of(d); k++) {
-                const double now = k < d ? gradient[i][k] : h * hessian[i][k - d];
+                const double now = k < d ? gradient[i][k] : h * h * hessian[i][k - d] / 5;
                 if (step)
                     worst = fmax(worst, fabs(now - before[i][k]));
                 before[i][k] = now;
@@ -713,7 +787,7 @@ static void a_sliding_neighbour_makes_no_jump(const test_case *test)
     const double once = largest_step(test, SPHG_BLEND, 10000);
     const double twice = largest_step(test, SPHG_BLEND, 20000);
     const double jump = largest_step(test, SPHG_TRUNCATE, 10000);
-    TEST_REQUIRE(twice < .04 && twice < .6 * once, "%g, then %g", once, twice);
+    TEST_REQUIRE(twice < .01 && twice < .6 * once, "%g, then %g", once, twice);
     TEST_REQUIRE(jump > 10 * once, "%g where it should jump", jump);
 }
 
@@ -813,7 +887,12 @@ static void what_order_2_lacks_is_refused_by_name(const test_case *test)
     field.form = SPHG_DIRECT;
     require_refused(&on, field, on.scheme, "direct");
     field.form = SPHG_ADJOINT;
-    require_refused(&on, field, on.scheme, "form is 3");
+    field.hessian = fixture_view(&found.hessian);
+    require_refused(&on, field, on.scheme, "hessian outside the difference form");
+    field.hessian = sphg_absent();
+    field.form = SPHG_SYMMETRIC;
+    field.laplacian = fixture_view(&found.laplacian);
+    require_refused(&on, field, on.scheme, "laplacian outside the difference form");
     field = (sphg_field){.shape = SPHG_SYM_TENSOR, .hessian = fixture_view(&found.hessian)};
     require_refused(&on, field, on.scheme, "hessian of a tensor");
     sphg_scheme other = on.scheme;
@@ -825,6 +904,8 @@ static void what_order_2_lacks_is_refused_by_name(const test_case *test)
 static const test_entry entries[] = {
     TEST_ENTRY(results_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED,
                0),
+    TEST_ENTRY(two_sided_forms_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
     TEST_ENTRY(every_policy_and_instruction_set_matches_the_oracle, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(uneven_volumes_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
@@ -848,6 +929,8 @@ static const test_entry entries[] = {
                TEST_LINEARISED, 0),
     TEST_ENTRY(pairs_found_anew_give_the_same_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
+    TEST_ENTRY(two_sided_forms_have_the_same_bits_in_any_company, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(two_source_sets_are_one_cloud, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
     TEST_ENTRY(gradients_of_pairs_sum_to_the_gradient, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

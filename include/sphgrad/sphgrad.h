@@ -248,8 +248,9 @@ typedef struct sphg_scheme {
     double threshold;      /* eps in (0, 1); 0: 1e-2. Needs absolute volumes, but for classic
                               methods: lambda grows with them; 100 times too small, in a wrong
                               unit, they give rank 0 everywhere and no error */
-    int32_t order; /* 0, 1: exact on linear fields; 2 (KGC, MLS, RKPM; DIFFERENCE): on quadratic
-                      ones where `rank` is d (d + 3) / 2. Inside a fluid H = 2 spacings suffice, at
+    int32_t order; /* 0, 1: exact on linear fields; 2 (KGC, MLS, RKPM; not DIRECT): on quadratic
+                      ones where `rank` is d (d + 3) / 2. For momentum use 1: the ADJOINT of 2
+                      pushes free surfaces 2 to 5 times harder under constant stress. Inside a fluid H = 2 spacings suffice, at
                       surfaces 2.5 to 3; curvature that neighbours do not resolve counts as 0, down
                       to what order 1 gives. Its threshold is a tenth of eps */
 } sphg_scheme;
@@ -486,6 +487,13 @@ typedef struct sphg_field {
                                     -> d of them, one for each component (y and z start those) */
     sphg_view laplacian;         /* [a/L^2] DIFFERENCE, order 2: its trace, shape as A. For diffusion
                                     in time only where no surface is free: unstable there */
+    sphg_view curvature; /* DIFFERENCE, order 2: what a target lends, c and c times its Hessian (of a
+                            vector: Hessians), 1 + d (d + 1) / 2 numbers (1 + d times as many); c in
+                            [0, 1]: how sure it is. Never accumulated */
+    const sphg_view *lenders; /* DIFFERENCE, order 2, no tables: such numbers of an earlier call, a view
+                                 per source set (absent: lends nothing); NULL: nobody lends. What a
+                                 target cannot resolve of its curvature is its lenders', not 0: second
+                                 order at free surfaces, too, from H = 2 spacings on */
 } sphg_field;
 
 /* Counts over those targets of one call whose corrections were computed. */
@@ -519,6 +527,8 @@ typedef struct sphg_request {
     sphg_view lambda_min; /* smallest normalised moment, >= 0: exact where decomposed, elsewhere a
                              lower bound, at most a factor sqrt(d) too small */
     sphg_stats *stats;
+    sphg_view borrows; /* U8, order 2: 1 where lenders could change results: a mask for the call that
+                          has them */
 } sphg_request;
 
 /* All that the request names, at least one result, in one sweep over the pairs. Views have the

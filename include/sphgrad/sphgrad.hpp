@@ -417,6 +417,8 @@ struct field {
     output value = {}, gradient = {}, divergence = {}, curl = {}, square = {};
     bool accumulate = false, mirror = false;
     output hessian = {}, laplacian = {};
+    output curvature = {};           /* what targets lend ... */
+    std::vector<input> lenders = {}; /* ... and sources offer, one per source set; empty: nobody */
 };
 
 struct request {
@@ -426,6 +428,7 @@ struct request {
     input target_volume = {}, target_density = {}, target_correction = {};
     output correction = {}, rank = {}, lambda_min = {};
     sphg_stats *stats = nullptr;
+    output borrows = {};
 };
 
 struct inversion {
@@ -615,11 +618,12 @@ template <class Errors> class basic_context
             sets.push_back(of_set(check, scheme, set, infos.back()));
         }
         const std::int64_t n = infos.empty() ? 0 : infos[0].target_count;
-        std::vector<std::vector<sphg_view>> views;
+        std::vector<std::vector<sphg_view>> views, loans;
         std::vector<sphg_field> fields;
         for (const field &one : wanted.fields) {
             views.push_back(at_sources(check, one, infos, d));
-            fields.push_back(of_field(check, one, views.back(), n, d));
+            loans.push_back(lenders(check, one, infos, d));
+            fields.push_back(of_field(check, one, views.back(), loans.back(), n, d));
         }
         sphg_request made = {};
         made.sources = sets.data();
@@ -636,6 +640,7 @@ template <class Errors> class basic_context
         made.rank = check.take(wanted.rank, n, 1, "rank");
         made.lambda_min = check.take(wanted.lambda_min, n, 1, "lambda_min");
         made.stats = wanted.stats;
+        made.borrows = check.take(wanted.borrows, n, 1, "borrows");
         if (check.failed())
             return refused(check);
         return done(sphg_evaluate(context_, &scheme, &made));
@@ -826,8 +831,26 @@ template <class Errors> class basic_context
                                      "at_sources");
         return made;
     }
+    static int numbers_lent(sphg_shape shape, int d)
+    {
+        return 1 + detail::numbers_of(shape, d) * detail::numbers_of(SPHG_SYM_TENSOR, d);
+    }
+    static std::vector<sphg_view> lenders(detail::checker &check, const field &one,
+                                          const std::vector<sphg_neighbors_info> &infos, int d)
+    {
+        std::vector<sphg_view> made;
+        if (!one.lenders.empty() && one.lenders.size() != infos.size())
+            check.refuse("lenders", " has " + std::to_string(one.lenders.size()) +
+                                        " views, none or one per source set is needed");
+        else
+            for (std::size_t k = 0; k < one.lenders.size(); ++k)
+                made.push_back(check.take(one.lenders[k], infos[k].source_count,
+                                          numbers_lent(one.shape, d), "lenders"));
+        return made;
+    }
     static sphg_field of_field(detail::checker &check, const field &one,
-                               const std::vector<sphg_view> &views, std::int64_t n, int d)
+                               const std::vector<sphg_view> &views,
+                               const std::vector<sphg_view> &loans, std::int64_t n, int d)
     {
         const sphg_shape up = one.shape == SPHG_SCALAR ? SPHG_VECTOR : SPHG_TENSOR;
         const sphg_shape down = one.shape == SPHG_VECTOR ? SPHG_SCALAR : SPHG_VECTOR;
@@ -846,6 +869,8 @@ template <class Errors> class basic_context
         made.hessian = check.take(one.hessian, n,
                                   (one.shape == SPHG_VECTOR ? d : 1) * d * (d + 1) / 2, "hessian");
         made.laplacian = check.take(one.laplacian, n, one.shape, d, "laplacian");
+        made.curvature = check.take(one.curvature, n, numbers_lent(one.shape, d), "curvature");
+        made.lenders = loans.empty() ? nullptr : loans.data();
         return made;
     }
     using short_function = sphg_result(sphg_context *, const sphg_scheme *, const sphg_sources *,

@@ -131,8 +131,18 @@ struct sphgi_threshold {
 struct sphgi_second {
     sphg_policy policy;
     double eps;                  /* eps_q */
+    double high;                 /* eps, below which curvature is borrowed */
     double off, diagonal, trace; /* whitening of products of offsets: of x_a x_b, of x_a x_a, and of
                                     the sum of these */
+};
+
+/* Curvature taken from neighbours (theory.md, section 9). Memory of lanes. */
+struct sphgi_borrowing {
+    const void *lent;   /* sums of w c, w c hess A ..; NULL: nobody lends */
+    const void *linear; /* C; read, as what follows it is written, where somebody does */
+    void *prior, *transport;
+    void *confidence; /* c */
+    uint8_t *open;    /* 1 where lenders could change results; written for whole vectors */
 };
 
 /* What a source's term in adjoint and symmetric sums is multiplied with. */
@@ -311,6 +321,11 @@ struct sphgi_passes {
                                const void *target_volume, const void *density,
                                enum sphgi_weight kind);
 
+    /* rows: P and Q of the sources; between: what Q is multiplied with to have the unit of P. */
+    void (*transposed_quadratic)(const struct sphgi_tile *tile, int32_t dimension,
+                                 const void *const *rows, double between, const void *density,
+                                 enum sphgi_weight kind);
+
     /* Sums: [sum][SPHGI_WIDTH]. */
     void (*sum_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);
     void (*sum_classic)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
@@ -320,6 +335,11 @@ struct sphgi_passes {
     /* What sum_field gives over s_ij x_ij, and the same over products of the offsets. */
     void (*sum_quadratic_field)(const struct sphgi_tile *tile, int32_t dimension, const void *rows,
                                 int32_t count, const void *at_target, void *sums, void *second);
+    /* sum s x and sum -s x x, or with densities in the first number of the rows */
+    void (*sum_quadratic_vectors)(const struct sphgi_tile *tile, int32_t dimension,
+                                  const void *rows, void *sums);
+    /* Rows times the weight -s_ij. */
+    void (*sum_lent)(const struct sphgi_tile *tile, const void *rows, int32_t count, void *sums);
     void (*sum_field)(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_vectors vectors,
                       const void *rows, int32_t count, const void *at_target, void *sums);
     /* The same, contracted: (A_j - A_i) . g, of tensors row by row. rows: of each stream */
@@ -361,10 +381,10 @@ struct sphgi_passes {
                            struct sphgi_verdict *verdict);
     /* The linear correction, where `coefficients` begin, becomes the whole one. kept: as decompose
      * leaves it, elsewhere 1. directions: of curvature that are resolved, all of them where
-     * quadratic fields are exact; written for verdict->lanes. */
-    void (*invert_quadratic)(int32_t width, const struct sphgi_threshold *threshold,
-                             const struct sphgi_second *second, const void *sums, const void *scale,
-                             const void *kept, int32_t lanes, void *coefficients,
+     * quadratic fields are exact; written for `lanes`. borrowing NULL: without all that. */
+    void (*invert_quadratic)(int32_t width, int32_t dimension, const struct sphgi_second *second,
+                             const void *sums, const void *scale, const void *kept, int32_t lanes,
+                             const struct sphgi_borrowing *borrowing, void *coefficients,
                              uint8_t *directions);
     /* A = Q diag(values) Q^T of one group of matrices, values descending, det Q = 1. */
     void (*eigen)(int32_t width, int32_t dimension, const void *matrices, void *values,
@@ -378,6 +398,13 @@ struct sphgi_passes {
     void (*apply_quadratic)(int32_t width, int32_t dimension, int32_t count,
                             const void *coefficients, const void *sums, const void *second,
                             double scale, void *jacobian, void *hessian, void *laplacian);
+    /* What apply_quadratic gave for its own shift becomes what lenders make of it. */
+    void (*add_borrowed)(int32_t width, int32_t dimension, int32_t count,
+                         const struct sphgi_second *second, const struct sphgi_borrowing *borrowing,
+                         double scale, void *jacobian, void *hessian, void *laplacian);
+    /* c and, times c, `count` numbers of Hessians. */
+    void (*lend)(int32_t width, int32_t count, const void *confidence, const void *hessian,
+                 void *out);
     void (*scale)(int32_t width, int32_t count, const void *in, double factor, const void *each,
                   void *out);
     void (*divide)(int32_t width, int32_t count, const void *in, double divisor, void *out);

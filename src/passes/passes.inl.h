@@ -39,6 +39,8 @@
 #include "invert.inl.h"
 #include "results.inl.h"
 #include "quadratic.inl.h"
+#include "borrowed.inl.h"
+#include "quadratic_results.inl.h"
 
 #define CONCATENATE_(a, b) a##b
 #define CONCATENATE(a, b)  CONCATENATE_(a, b)
@@ -75,10 +77,13 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .pair_gradients = pair_gradients,
     .transposed = transposed,
     .transposed_classic = transposed_classic,
+    .transposed_quadratic = transposed_quadratic,
     .sum_moments = sum_moments,
     .sum_classic = sum_classic,
     .sum_quadratic_moments = sum_quadratic_moments,
     .sum_quadratic_field = sum_quadratic_field,
+    .sum_quadratic_vectors = sum_quadratic_vectors,
+    .sum_lent = sum_lent,
     .sum_field = sum_field,
     .sum_divergence = sum_divergence,
     .sum_squares = sum_squares,
@@ -95,6 +100,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .eigen = eigen_lanes,
     .apply = apply,
     .apply_quadratic = apply_quadratic,
+    .add_borrowed = add_borrowed,
+    .lend = lend,
     .scale = scale_lanes,
     .divide = divide_lanes,
     .valid_volumes = valid_volumes,

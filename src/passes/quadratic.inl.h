@@ -1,6 +1,5 @@
 /* The second block of order 2 (theory.md, section 9): from moments of second, third and fourth
- * order to the correction, and from sums and correction to gradients and Hessians. One target a
- * lane. */
+ * order to the correction. One target a lane. */
 
 enum { PAIRS_MOST = 6 };
 
@@ -191,9 +190,17 @@ SPHGI_TEMPLATE vec shift_of(const struct sphgi_second *second, vec t, vec eps)
     return R(4) * eps * open;
 }
 
-/* What is resolved of the curvature: F, and how many directions that comes to. */
-SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, vec kept,
-                           vec f[PAIRS_MOST][PAIRS_MOST], bool three)
+/* How far the curvature of a target is resolved. */
+struct resolution {
+    vec t, eps, low;     /* t; eps_q with its floor; the shift by that */
+    vec beta, high;      /* of what may be borrowed; 0 where nobody asks */
+    vec left;            /* tr F S */
+    mask whole, dropped; /* no shift; F is 0 by policy */
+};
+
+SPHGI_TEMPLATE void measure(const struct sphgi_second *second, const struct block *b,
+                            vec inverse[PAIRS_MOST][PAIRS_MOST], mask positive,
+                            struct resolution *r, bool three)
 {
     const int n = three ? 6 : 3;
     const vec zero = splat(R(0)), given = splat(R(second->eps));
@@ -202,23 +209,40 @@ SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, v
         for (int k = 0; k < n; ++k)
             norm += b->k[a][k] * b->k[a][k];
     const vec floor = R(16 * UNIT_ROUNDOFF) * (b->trace4 + norm * b->trace2);
-    const vec eps = select(less(given, floor), floor, given);
+    r->eps = select(less(given, floor), floor, given);
+    const vec square = frobenius_square(inverse, n);
+    r->t = where(positive & less(zero, square), R(1) / vsqrt(square));
+    r->low = shift_of(second, r->t, r->eps);
+    r->dropped = second->policy == SPHG_IDENTITY ? less(zero, r->low) : first_lanes(0);
+}
+
+/* What is resolved of the curvature: F, and how many directions that comes to. borrows: r->beta is
+ * given, and the shift grows with it. */
+SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, vec kept,
+                           vec f[PAIRS_MOST][PAIRS_MOST], struct resolution *r, bool borrows,
+                           bool three)
+{
+    const int n = three ? 6 : 3;
+    const vec zero = splat(R(0));
     const mask positive = inverse_by_columns(b->s, zero, f, three);
-    const vec square = frobenius_square(f, n);
-    const vec t = where(positive & less(zero, square), R(1) / vsqrt(square));
-    const vec shift = shift_of(second, t, eps);
+    measure(second, b, f, positive, r, three);
+    vec shift = r->low;
+    if (borrows) {
+        const vec given = splat(R(second->high));
+        r->high = shift_of(second, r->t, select(less(given, r->eps), r->eps, given));
+        shift += r->beta * r->high;
+    }
     const mask whole = at_most(shift, zero);
-    vec left = splat(R(n)); /* tr F S / kept = n - s tr (S + s)^-1 */
+    r->left = splat(R(n)); /* tr F S / kept = n - s tr (S + s)^-1 */
     if (bits_of(~whole) & ALL) {
         vec shifted[PAIRS_MOST][PAIRS_MOST];
         mask sound = inverse_by_columns(b->s, shift, shifted, three);
-        if (second->policy == SPHG_IDENTITY)
-            sound = first_lanes(0);
+        sound &= ~r->dropped;
         for (int k = 0; k < n; ++k)
             for (int l = 0; l <= k; ++l)
                 f[k][l] = select(whole, f[k][l], where(sound, shifted[k][l]));
         const vec lost = splat(R(n)) - shift * trace_of(shifted, n);
-        left = select(whole, left, where(sound, lost));
+        r->left = select(whole, r->left, where(sound, lost));
     }
     const mask some = less(zero, kept);
     for (int k = 0; k < n; ++k)
@@ -227,7 +251,7 @@ SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, v
             f[l][k] = f[k][l];
         }
     const mask exact = whole & ~less(kept, splat(R(1)));
-    return select(exact, splat(R(n)), vmin(kept * left, splat(R(n - 1))));
+    return select(exact, splat(R(n)), vmin(kept * r->left, splat(R(n - 1))));
 }
 
 /* P = C + K F K^T, Q = -K F, R = F: the inverse of all moments, in the basis of derivatives. */
@@ -267,130 +291,5 @@ SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct 
         whiten(second, R(2), column, three);
         for (int k = 0; k <= l; ++k)
             store(rest + pair_index(k, l, n) * SPHGI_WIDTH, factor * column[k]);
-    }
-}
-
-SPHGI_TEMPLATE void quadratic_as(const struct sphgi_second *second, const real *sums,
-                                 const real *scale, const real *kept, real *out,
-                                 uint8_t *directions, int32_t lanes, bool three)
-{
-    vec factor = splat(R(1)), f[PAIRS_MOST][PAIRS_MOST];
-    if (scale)
-        factor = load(scale);
-    struct block block;
-    const mask some = less(splat(R(0)), load(kept));
-    eliminate(second, sums, factor, &block, three);
-    const vec resolved = resolve(second, &block, load(kept), f, three);
-    join_blocks(second, &block, f, some, factor, out, three);
-    for (int l = 0; l < LANES && l < lanes; ++l) {
-        const int nearest = resolved[l] > R(0) ? (int)(resolved[l] + R(.5)) : 0;
-        directions[l] = (uint8_t)nearest;
-    }
-}
-
-static void invert_quadratic(int32_t width, const struct sphgi_threshold *threshold,
-                             const struct sphgi_second *second, const void *sums, const void *scale,
-                             const void *kept, int32_t lanes, void *coefficients,
-                             uint8_t *directions)
-{
-    for (int32_t l = 0; l < width; l += LANES) {
-        const real *each = scale ? (const real *)scale + l : NULL;
-        const real *in = (const real *)sums + l, *share = (const real *)kept + l;
-        real *out = (real *)coefficients + l;
-        if (threshold->dimension == 3)
-            quadratic_as(second, in, each, share, out, directions + l, lanes - l, true);
-        else
-            quadratic_as(second, in, each, share, out, directions + l, lanes - l, false);
-    }
-}
-
-/* ---- Pairs ----------------------------------------------------------------------------------- */
-
-/* G_ij = w (P e + Q (e e^T)), e = -x, w = -s, the products of one axis halved. */
-SPHGI_TEMPLATE void quadratic_gradients_as(const struct sphgi_tile *tile, const real *c, vec scale,
-                                           bool three)
-{
-    const int d = three ? 3 : 2, n = three ? 6 : 3;
-    const real *cross = c + n * SPHGI_WIDTH;
-    for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], g[3], p[PAIRS_MOST];
-        offsets_at(tile, k, three, x);
-        vectors_at(tile, k, SPHGI_FACTORS, three, g);
-        pair_products(g, x, three, p);
-        for (int a = 0; a < d; ++a) {
-            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * g[0];
-            for (int b = 1; b < d; ++b)
-                sum += load(c + pair_index(a, b, d) * SPHGI_WIDTH) * g[b];
-            for (int m = 0; m < n; ++m)
-                sum -= load(cross + (a * n + m) * SPHGI_WIDTH) *
-                       ((is_square(m, three) ? R(.5) : R(1)) * p[m]);
-            store(array_of(tile->arrays, SPHGI_GX) + a * SPHGI_TILE + k, scale * sum);
-        }
-    }
-}
-
-static void quadratic_gradients(const struct sphgi_tile *tile, int32_t dimension,
-                                const void *correction, double scale)
-{
-    if (dimension == 3)
-        quadratic_gradients_as(tile, correction, splat(R(scale)), true);
-    else
-        quadratic_gradients_as(tile, correction, splat(R(scale)), false);
-}
-
-/* ---- Results -------------------------------------------------------------------------------- */
-
-/* (g, h) = [P Q; Q^T R] (b1, b2), b2 over x_a x_a halved. */
-SPHGI_TEMPLATE void apply_quadratic_as(int32_t count, const real *c, const real *sums,
-                                       const real *second, real scale, real *j, real *h,
-                                       real *trace, bool three)
-{
-    const int d = three ? 3 : 2, n = three ? 6 : 3;
-    const real *cross = c + n * SPHGI_WIDTH, *rest = cross + d * n * SPHGI_WIDTH;
-    const vec once = splat(scale), twice = splat(scale * scale);
-    for (int32_t i = 0; i < count; ++i) {
-        vec b[3], e[PAIRS_MOST];
-        for (int a = 0; a < d; ++a)
-            b[a] = load(sums + (i * d + a) * SPHGI_WIDTH);
-        for (int k = 0; k < n; ++k)
-            e[k] = (is_square(k, three) ? R(.5) : R(1)) * load(second + (i * n + k) * SPHGI_WIDTH);
-        for (int a = 0; a < d; ++a) {
-            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * b[0];
-            for (int p = 1; p < d; ++p)
-                sum += load(c + pair_index(a, p, d) * SPHGI_WIDTH) * b[p];
-            for (int k = 0; k < n; ++k)
-                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * e[k];
-            store(j + (i * d + a) * SPHGI_WIDTH, once * sum);
-        }
-        vec squares = splat(R(0));
-        for (int k = 0; h && k < n; ++k) {
-            vec sum = load(cross + k * SPHGI_WIDTH) * b[0];
-            for (int a = 1; a < d; ++a)
-                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * b[a];
-            for (int p = 0; p < n; ++p)
-                sum += load(rest + pair_index(k, p, n) * SPHGI_WIDTH) * e[p];
-            sum = twice * sum;
-            if (is_square(k, three))
-                squares += sum;
-            store(h + (i * n + k) * SPHGI_WIDTH, sum);
-        }
-        if (h)
-            store(trace + i * SPHGI_WIDTH, squares);
-    }
-}
-
-static void apply_quadratic(int32_t width, int32_t dimension, int32_t count,
-                            const void *coefficients, const void *sums, const void *second,
-                            double scale, void *jacobian, void *hessian, void *laplacian)
-{
-    for (int32_t l = 0; l < width; l += LANES) {
-        const real *c = (const real *)coefficients + l;
-        const real *one = (const real *)sums + l, *two = (const real *)second + l;
-        real *j = (real *)jacobian + l, *h = hessian ? (real *)hessian + l : NULL;
-        real *trace = (real *)laplacian + l;
-        if (dimension == 3)
-            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, true);
-        else
-            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, false);
     }
 }

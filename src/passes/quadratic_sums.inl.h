@@ -88,6 +88,37 @@ static void sum_quadratic_moments(const struct sphgi_tile *tile, int32_t dimensi
         quadratic_moments_as(tile, sums, false);
 }
 
+/* What sum G_ij is made of: sums of s x, and of -s x x behind them, times the density of the source
+ * if there are rows of it. */
+SPHGI_TEMPLATE void quadratic_vectors_as(const struct sphgi_tile *tile, const real *rows,
+                                         real *sums, bool three)
+{
+    const int32_t d = three ? 3 : 2, n = three ? 6 : 3;
+    vec sum[9];
+    clear(sum, d + n);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const vec density = rows ? gather_rows(rows, ids_at(tile, k)).x : splat(R(1));
+        vec x[3], g[3], p[6];
+        offsets_at(tile, k, three, x);
+        vectors_at(tile, k, SPHGI_FACTORS, three, g);
+        pair_products(g, x, three, p);
+        for (int32_t a = 0; a < d; ++a)
+            sum[a] += density * g[a];
+        for (int32_t b = 0; b < n; ++b)
+            sum[d + b] -= density * p[b];
+    }
+    end_tile(tile, sum, d + n, sums);
+}
+
+static void sum_quadratic_vectors(const struct sphgi_tile *tile, int32_t dimension,
+                                  const void *rows, void *sums)
+{
+    if (dimension == 3)
+        quadratic_vectors_as(tile, rows, sums, true);
+    else
+        quadratic_vectors_as(tile, rows, sums, false);
+}
+
 /* ---- Fields --------------------------------------------------------------------------------- */
 
 /* First sums, as field_as has them; the differences stay in arrays that no other sum needs then. */

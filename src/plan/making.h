@@ -40,4 +40,17 @@ sphg_result sphgi_take_target_side(struct sphgi_making *making, const sphg_view 
 sphg_result sphgi_take_field(struct sphgi_making *making, int32_t k);
 sphg_result sphgi_take_streams(struct sphgi_making *making);
 
+/* What set s has of `columns`, `width` numbers a stream from stream `first` on. */
+void sphgi_add_streams(struct sphgi_making *making, int32_t s, int32_t first,
+                       const struct sphgi_columns *columns, int32_t components, int32_t width);
+
+/* Curvature that is lent and borrowed: what is refused, what a field offers and reads, who borrows.
+ */
+sphg_result sphgi_check_lending(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_lending(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_lenders(struct sphgi_making *making, int32_t s, int32_t k);
+sphg_result sphgi_take_borrows(struct sphgi_making *making);
+/* Streams that a field takes of a set, at most. */
+int32_t sphgi_streams_of(const sphg_field *field);
+
 #endif

@@ -101,11 +101,13 @@ static sphg_result take_wanted(struct sphgi_making *making)
     if (!result)
         result = sphgi_take_output(making, &request->lambda_min, "lambda_min", plan->type,
                                    SPHG_SCALAR, 1, &plan->lambda_min);
+    if (!result)
+        result = sphgi_take_borrows(making);
     plan->stats = request->stats;
     if (result)
         return result;
     const bool wanted = !sphgi_is_absent(&request->correction) || plan->rank.count ||
-                        plan->lambda_min.count || plan->stats;
+                        plan->lambda_min.count || plan->borrows.count || plan->stats;
     if (wanted && !width)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: PLAIN has no corrections to report",
                      making->checker.function);
@@ -158,8 +160,14 @@ static bool make_room(struct sphgi_making *making)
     sphg_context *context = making->checker.context;
     const sphg_request *request = making->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
-    const size_t streams = sets * (3 * fields + 5);
-    const size_t views = sets * (fields + 3) + 10 * fields + 8;
+    size_t each = 0, lenders = 0;
+    for (int32_t k = 0; k < request->field_count; ++k) {
+        each += (size_t)sphgi_streams_of(&request->fields[k]);
+        lenders += request->fields[k].lenders != NULL;
+    }
+    const size_t corrections = making->plan->scheme.order == 2 ? 6 : 4;
+    const size_t streams = sets * (each + corrections + 1);
+    const size_t views = sets * (fields + lenders + 3) + 11 * fields + 8;
     const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
                             fields * sizeof(struct sphgi_field_plan),
                             streams * sizeof(struct sphgi_stream),

@@ -35,13 +35,17 @@ struct sphgi_field_plan {
     int32_t folded_row, folded_rows; /* ... and b_j */
     int32_t sum;                     /* first of components * d sums of A times a gradient */
     int32_t divergence_sum;          /* first of 1 (vector) or d (tensor) sums, if contracts */
-    int32_t square_sum;          /* of A G G^T its trace, or its triangle where C_i is to come */
-    int32_t value_sum;           /* first of components sums of A Phi, -1: not wanted */
-    int32_t second_sum;          /* order 2: first of components times pairs of axes */
-    int32_t at_target;           /* first of the lanes that hold A_i */
-    struct sphgi_columns target; /* A_i */
+    int32_t square_sum;            /* of A G G^T its trace, or its triangle where C_i is to come */
+    int32_t value_sum;             /* first of components sums of A Phi, -1: not wanted */
+    int32_t second_sum;            /* order 2: first of components times pairs of axes */
+    int32_t lent_stream, lent_row; /* what lenders offer, as the host has it, and in rows ... */
+    int32_t lent_rows;             /* ... so many; 0: nobody lends */
+    int32_t lent_sum;              /* first of 1 + components times pairs of axes */
+    int32_t at_target;             /* first of the lanes that hold A_i */
+    struct sphgi_columns target;   /* A_i */
     struct sphgi_columns value, gradient, divergence, curl, square, laplacian;
     struct sphgi_columns hessian[3]; /* of each component */
+    struct sphgi_columns curvature;  /* what targets lend */
 };
 
 struct sphgi_plan {
@@ -57,13 +61,14 @@ struct sphgi_plan {
 
     struct sphgi_columns target_volume, target_density, target_correction;
     struct sphgi_columns own_volume; /* V of the targets as sources */
-    struct sphgi_columns correction, rank, lambda_min;
+    struct sphgi_columns correction, rank, lambda_min, borrows;
     sphg_stats *stats;
 
-    bool computes;                /* corrections, in this call */
-    bool corrects;                /* results are multiplied with a correction, computed or given */
-    bool classic, weighted;       /* weighted: V_j stands in the classic weight */
-    bool quadratic;               /* order 2 */
+    bool computes;          /* corrections, in this call */
+    bool corrects;          /* results are multiplied with a correction, computed or given */
+    bool classic, weighted; /* weighted: V_j stands in the classic weight */
+    bool quadratic;         /* order 2 */
+    bool lends;             /* ... and any field lends or borrows, or who would is asked for */
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
@@ -95,10 +100,13 @@ static inline int32_t sphgi_plan_width(const struct sphgi_plan *plan)
     return sphgi_correction_width(plan->scheme.method, plan->dimension, plan->scheme.order);
 }
 
-/* Rows that the correction of a source stands in. */
+/* Rows that the correction of a source stands in: of order 2 its P and Q. */
 static inline int32_t sphgi_correction_rows(const struct sphgi_plan *plan)
 {
-    return plan->classic ? plan->dimension + 1 : plan->dimension - 1;
+    const int32_t d = plan->dimension, pairs = d * (d + 1) / 2;
+    return plan->classic     ? d + 1
+           : plan->quadratic ? (pairs + d * pairs + SPHGI_ROW - 1) / SPHGI_ROW
+                             : d - 1;
 }
 
 /* Sums of moments of order 2: of second, third and fourth order. */

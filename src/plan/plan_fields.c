@@ -15,14 +15,12 @@ static sphg_result check_second_order(struct sphgi_making *making, int32_t k)
                      "%s: fields[%d].form is direct: order 2 would read the surface as curvature; "
                      "use order 1 there",
                      f, (int)k);
-    if (making->plan->quadratic && field->form != SPHG_DIFFERENCE)
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
-                     "%s: fields[%d].form is %d, but order 2 is for the difference form; use order "
-                     "1 there",
-                     f, (int)k, (int)field->form);
     if ((hessian || !sphgi_is_absent(&field->laplacian)) && !making->plan->quadratic)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].%s needs scheme.order 2", f, (int)k,
                      hessian ? "hessian" : "laplacian");
+    if ((hessian || !sphgi_is_absent(&field->laplacian)) && field->form != SPHG_DIFFERENCE)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].%s outside the difference form", f,
+                     (int)k, hessian ? "hessian" : "laplacian");
     if (hessian && field->shape >= SPHG_SYM_TENSOR)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].hessian of a tensor", f, (int)k);
     return SPHG_OK;
@@ -53,7 +51,8 @@ static sphg_result check_field(struct sphgi_making *making, int32_t k)
     if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
-    return check_second_order(making, k);
+    const sphg_result result = check_second_order(making, k);
+    return result ? result : sphgi_check_lending(making, k);
 }
 
 /* The Hessian of each component, as if it had a view of its own. */
@@ -117,9 +116,11 @@ static sphg_result take_results(struct sphgi_making *making, int32_t k)
                                    plan->type, given->shape, 0, &field->laplacian);
     if (!result)
         result = take_hessian(making, k);
+    if (!result)
+        result = sphgi_take_lending(making, k);
     field->differentiates = field->gradient.count || field->divergence.count || field->curl.count ||
                             field->square.count || field->laplacian.count ||
-                            field->hessian[0].count;
+                            field->hessian[0].count || field->curvature.count;
     return result;
 }
 
@@ -193,13 +194,19 @@ sphg_result sphgi_take_field(struct sphgi_making *making, int32_t k)
 
 /* ---- Streams: what is read of each source --------------------------------------------------- */
 
-static void add_streams(struct sphgi_making *making, int32_t s, int32_t first,
-                        const struct sphgi_columns *columns, int32_t components, int32_t width)
+void sphgi_add_streams(struct sphgi_making *making, int32_t s, int32_t first,
+                       const struct sphgi_columns *columns, int32_t components, int32_t width)
 {
     struct sphgi_stream *stream =
         making->streams + (ptrdiff_t)s * making->plan->stream_count + first;
-    for (int32_t c = 0; c < components; c += width, ++stream)
+    const bool wide = columns->count > SPHGI_COLUMNS_MOST;
+    for (int32_t c = 0; c < components; c += width, ++stream) {
         *stream = (struct sphgi_stream){*columns, c, sphgi_min32(width, components - c), false};
+        if (wide) {
+            stream->columns = sphgi_some_columns(columns, c, making->plan->type);
+            stream->first = 0;
+        }
+    }
 }
 
 static sphg_result take_field_at_sources(struct sphgi_making *making, int32_t s, int32_t k)
@@ -219,7 +226,7 @@ static sphg_result take_field_at_sources(struct sphgi_making *making, int32_t s,
     const sphg_result result =
         sphgi_take_input(making, view, sphgi_name_view(making, "fields[%d].at_sources[%d]", k, s),
                          field->shape, 0, count, &columns);
-    add_streams(making, s, field->stream, &columns, field->components, SPHGI_ROW);
+    sphgi_add_streams(making, s, field->stream, &columns, field->components, SPHGI_ROW);
     making->streams[(ptrdiff_t)s * plan->stream_count + field->stream].mirrored = mirrored;
     return result;
 }
@@ -252,8 +259,10 @@ static sphg_result take_correction_of_set(struct sphgi_making *making, int32_t s
     const sphg_result result =
         sphgi_take_input(making, view, sphgi_name_view(making, "sources[%d].correction", s, 0),
                          (sphg_shape)0, width, plan->sets[s].neighbors->source_count, &columns);
-    add_streams(making, s, plan->correction_stream, &columns, width,
-                plan->classic ? plan->dimension + 1 : SPHGI_ROW);
+    const int32_t read = /* of order 2 all but R */
+        plan->quadratic ? sphgi_correction_rows(plan) * SPHGI_ROW : width;
+    sphgi_add_streams(making, s, plan->correction_stream, &columns, sphgi_min32(read, width),
+                      plan->classic ? plan->dimension + 1 : SPHGI_ROW);
     return result;
 }
 
@@ -269,7 +278,7 @@ static sphg_result take_density_of_set(struct sphgi_making *making, int32_t s)
     const sphg_result result =
         sphgi_take_input(making, view, sphgi_name_view(making, "sources[%d].density", s, 0),
                          SPHG_SCALAR, 1, plan->sets[s].neighbors->source_count, &columns);
-    add_streams(making, s, plan->density_stream, &columns, 1, 1);
+    sphgi_add_streams(making, s, plan->density_stream, &columns, 1, 1);
     return result;
 }
 
@@ -279,8 +288,11 @@ sphg_result sphgi_take_streams(struct sphgi_making *making)
     for (int32_t s = 0; s < plan->set_count; ++s) {
         sphg_result result = SPHG_OK;
         plan->sets[s].streams = making->streams + (ptrdiff_t)s * plan->stream_count;
-        for (int32_t k = 0; k < plan->field_count && !result; ++k)
+        for (int32_t k = 0; k < plan->field_count && !result; ++k) {
             result = take_field_at_sources(making, s, k);
+            if (!result)
+                result = sphgi_take_lenders(making, s, k);
+        }
         if (!result && plan->correction_stream >= 0)
             result = take_correction_of_set(making, s);
         if (!result && plan->density_stream >= 0)

@@ -18,15 +18,18 @@ static void decide_sums(struct sphgi_plan *plan)
     plan->moment_sums = plan->sums;
     for (int32_t k = 0; k < 2; ++k) {
         plan->vector_sum[k] = plan->sums;
-        plan->sums += plan->transposes[k] ? d : 0;
+        if (plan->transposes[k])
+            plan->sums += plan->quadratic ? d + d * (d + 1) / 2 : d;
     }
     for (int32_t k = 0; k < plan->field_count; ++k) {
         struct sphgi_field_plan *field = &plan->fields[k];
         field->sum = plan->sums;
         plan->sums += field->sums_gradient ? field->components * d : 0;
         field->second_sum = plan->sums;
-        if (plan->quadratic && field->sums_gradient)
+        if (plan->quadratic && field->sums_gradient && field->forward)
             plan->sums += field->components * d * (d + 1) / 2;
+        field->lent_sum = plan->sums;
+        plan->sums += field->lent_rows ? 1 + field->components * d * (d + 1) / 2 : 0;
         field->divergence_sum = plan->sums;
         plan->sums += field->contracts ? field->divergence.count : 0;
         field->square_sum = plan->sums;
@@ -45,7 +48,8 @@ static void decide_field(struct sphgi_field_plan *field, sphg_method method)
     field->forward = field->form <= SPHG_DIRECT || field->antisymmetric;
     field->contracts = field->divergence.count && (plain || !field->forward);
     field->sums_gradient = field->gradient.count || field->curl.count || field->hessian[0].count ||
-                           field->laplacian.count || (field->divergence.count && !field->contracts);
+                           field->laplacian.count || field->curvature.count ||
+                           (field->divergence.count && !field->contracts);
 }
 
 /* Classic gradients and those of order 2 hold products of offsets, which do not come apart; a
@@ -85,6 +89,8 @@ static void decide_rows_of(struct sphgi_plan *plan, int32_t k)
     struct sphgi_field_plan *field = &plan->fields[k];
     field->fold = fold_of(plan, field);
     fold_field(plan, k);
+    field->lent_row = plan->row_count;
+    plan->row_count += field->lent_rows;
     if (field->fold && !(field->shape == SPHG_VECTOR && field->sums_gradient))
         return;
     field->row = plan->row_count;

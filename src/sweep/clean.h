@@ -8,7 +8,8 @@
 void sphgi_clean_list(struct sphgi_worker *worker, int32_t target, const uint32_t *list,
                       int32_t count, uint32_t *ids);
 
-/* The same for lists of the lanes at work, SPHGI_CHUNK numbers each at most: the ids of the tile. */
+/* The same for lists of the lanes at work, SPHGI_CHUNK numbers each at most: the ids of the tile.
+ */
 void sphgi_clean_lists(struct sphgi_worker *worker, const struct sphgi_lane_lists *lists);
 
 /* Copies the rows behind ids of rows, up to SPHGI_CHUNK, so that they can be read like packed ones,

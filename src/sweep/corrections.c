@@ -1,15 +1,14 @@
 #include "corrections.h"
+#include "borrow.h"
 #include "core/kernel.h"
 #include "quadratic.h"
 
-/* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
- * holds, if one is wanted. */
-static void round_as_table(struct sphgi_worker *w, bool wanted)
+void sphgi_round_as_table(struct sphgi_worker *w, char *coefficients, bool wanted)
 {
     for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         const bool exact = share->mantissa == 1;
-        char *ours = sphgi_lane(w, w->coefficients, share->first);
+        char *ours = sphgi_lane(w, coefficients, share->first);
         char *raw = sphgi_lane(w, w->raw, share->first);
         if (!exact || wanted)
             w->passes->scale(w->width, share->count, ours, share->mantissa, NULL, raw);
@@ -95,6 +94,7 @@ static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *ve
         *(uint8_t *)(uintptr_t)(plan->rank.at[0] + sphgi_targets(w)[l] * plan->rank.stride) =
             plan->quadratic ? sphgi_quadratic_rank(w, l, rank) : rank;
     }
+    sphgi_store_borrows(w);
 }
 
 void sphgi_finish_corrections(struct sphgi_worker *w)
@@ -109,7 +109,7 @@ void sphgi_finish_corrections(struct sphgi_worker *w)
             plan->lambda_min.count ? w->lambda_min : NULL, &verdict);
     } else
         invert_linearised(w, &verdict);
-    round_as_table(w, plan->correction.count > 0);
+    sphgi_round_as_table(w, w->coefficients, plan->correction.count > 0);
     sphgi_tally_verdict(w->tally, &verdict, plan->dimension);
     store_verdict(w, &verdict);
 }

@@ -12,6 +12,10 @@ void sphgi_load_corrections(struct sphgi_worker *worker);
 void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_share *shares,
                            int32_t width, sphg_type type, char *raw, char *ours);
 
+/* Rounds coefficients as a table would, so that both give the same bits; worker->raw: what a table
+ * holds, if one is wanted. */
+void sphgi_round_as_table(struct sphgi_worker *worker, char *coefficients, bool wanted);
+
 /* V / H^d of the group's targets; notes volumes that are not valid. */
 void sphgi_load_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns, char *to);
 

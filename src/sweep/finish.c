@@ -46,6 +46,10 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const bool multiply = plan->corrects && !plan->classic;
+    if (plan->quadratic) {
+        sphgi_apply_to_vectors(w, sum, to);
+        return;
+    }
     w->passes->apply(w->width, plan->dimension, 1, multiply ? w->coefficients : NULL,
                      sphgi_lane(w, w->reduced, sum), 1, to);
 }
@@ -175,10 +179,10 @@ void sphgi_finish_fields(struct sphgi_worker *w)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates) {
-            if (plan->quadratic)
-                sphgi_finish_quadratic(w, field);
-            else if (!field->forward)
+            if (!field->forward)
                 finish_transposed(w, field);
+            else if (plan->quadratic)
+                sphgi_finish_quadratic(w, field);
             else if (plan->scheme.method == SPHG_PLAIN)
                 finish_plain(w, field);
             else

@@ -1,4 +1,5 @@
 #include "quadratic.h"
+#include "borrow.h"
 #include "core/kernel.h"
 #include "core/view.h"
 #include <math.h>
@@ -18,6 +19,7 @@ struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme)
     const double deviator = 1 / sqrt(2 * m4), whole = 1 / sqrt((d + 2) * m4);
     return (struct sphgi_second){.policy = scheme->policy,
                                  .eps = scheme->threshold / 10,
+                                 .high = scheme->threshold,
                                  .off = 1 / sqrt(m4),
                                  .diagonal = deviator,
                                  .trace = (whole - deviator) / d};
@@ -39,6 +41,23 @@ void sphgi_sum_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *
     }
 }
 
+/* Rows hold the host's numbers; those of Q are longer by 1 / H than those of P. */
+void sphgi_transpose_quadratic(struct sphgi_worker *w, const void *density,
+                               enum sphgi_weight weight)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    w->passes->transposed_quadratic(&w->tile, plan->dimension, w->rows + plan->correction_row,
+                                    plan->scheme.radius, density, weight);
+}
+
+void sphgi_apply_to_vectors(struct sphgi_worker *w, int32_t sum, char *to)
+{
+    const int32_t d = w->sweep->plan->dimension;
+    w->passes->apply_quadratic(w->width, d, 1, sphgi_lane(w, w->coefficients, 0),
+                               sphgi_lane(w, w->reduced, sum), sphgi_lane(w, w->reduced, sum + d),
+                               1, to, NULL, w->hessian);
+}
+
 void sphgi_keep_all(struct sphgi_worker *w, struct sphgi_verdict *verdict)
 {
     verdict->kept = sphgi_lane(w, w->share_kept, 0);
@@ -50,9 +69,11 @@ void sphgi_invert_quadratic(struct sphgi_worker *w, const void *scale,
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const int32_t all = pairs_of(plan);
-    w->passes->invert_quadratic(w->width, &w->threshold, &w->second,
+    const struct sphgi_borrowing first = sphgi_before_borrowing(w, scale);
+    w->passes->invert_quadratic(w->width, plan->dimension, &w->second,
                                 sphgi_lane(w, w->reduced, plan->moment_sum), scale, verdict->kept,
-                                w->targets, sphgi_lane(w, w->coefficients, 0), w->directions);
+                                w->targets, plan->lends ? &first : NULL,
+                                sphgi_lane(w, w->coefficients, 0), w->directions);
     for (int32_t l = 0; l < w->targets; ++l) {
         const bool linear = !(verdict->decomposed >> l & 1) || verdict->rank[l] == plan->dimension;
         w->tally->stats.quadratic += linear && w->directions[l] == all;
@@ -100,12 +121,21 @@ static void store_second(struct sphgi_worker *w, const struct sphgi_field_plan *
 void sphgi_finish_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const bool second = field->hessian[0].count || field->laplacian.count;
+    const bool borrows = field->lent_rows > 0, lends = field->curvature.count > 0;
+    const bool second = field->hessian[0].count || field->laplacian.count || borrows || lends;
     char *laplacian = sphgi_lane(w, w->hessian, SPHGI_HESSIANS);
-    w->passes->apply_quadratic(
-        w->width, plan->dimension, field->components, sphgi_lane(w, w->coefficients, 0),
-        sphgi_lane(w, w->reduced, field->sum), sphgi_lane(w, w->reduced, field->second_sum),
-        w->inverse_h, w->jacobian, second ? w->hessian : NULL, laplacian);
+    char *hessian = second ? sphgi_lane(w, w->hessian, 0) : NULL;
+    const char *coefficients = sphgi_lane(w, w->coefficients, 0);
+    if (borrows)
+        coefficients = sphgi_invert_borrowing(w, field);
+    w->passes->apply_quadratic(w->width, plan->dimension, field->components, coefficients,
+                               sphgi_lane(w, w->reduced, field->sum),
+                               sphgi_lane(w, w->reduced, field->second_sum), w->inverse_h,
+                               w->jacobian, hessian, laplacian);
+    if (borrows)
+        sphgi_add_borrowed(w, field, laplacian);
+    if (lends)
+        sphgi_store_lent(w, field);
     if (second)
         store_second(w, field, laplacian);
 }

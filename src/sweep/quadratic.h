@@ -9,6 +9,12 @@ struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme);
 void sphgi_sum_quadratic(struct sphgi_worker *worker, const struct sphgi_field_plan *field,
                          const char *at_target);
 
+/* T of the sources, whose tables stand in rows. */
+void sphgi_transpose_quadratic(struct sphgi_worker *worker, const void *density,
+                               enum sphgi_weight weight);
+/* sum G_ij, or with densities, from sums of s x and s x x from number `sum` on. */
+void sphgi_apply_to_vectors(struct sphgi_worker *worker, int32_t sum, char *to);
+
 /* What the linear correction leaves to that of order 2: before it, and from it on. */
 void sphgi_keep_all(struct sphgi_worker *worker, struct sphgi_verdict *verdict);
 void sphgi_invert_quadratic(struct sphgi_worker *worker, const void *scale,

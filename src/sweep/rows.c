@@ -77,6 +77,9 @@ void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int6
         for (int32_t s = 0; s < field->rows; ++s)
             load_stream(sweep, field->stream + s, order, begin, end,
                         to + (size_t)(field->row + s) * array);
+        for (int32_t s = 0; s < field->lent_rows; ++s)
+            load_stream(sweep, field->lent_stream + s, order, begin, end,
+                        to + (size_t)(field->lent_row + s) * array);
     }
     for (int32_t k = 0; plan->correction_row >= 0 && k < sphgi_correction_rows(plan); ++k)
         load_stream(sweep, plan->correction_stream + k, order, begin, end,

@@ -1,4 +1,5 @@
 #include "sums.h"
+#include "borrow.h"
 #include "corrections.h"
 #include "fold.h"
 #include "pair_rows.h"
@@ -51,6 +52,7 @@ static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *f
 {
     if (w->sweep->plan->quadratic) {
         sphgi_sum_quadratic(w, field, subtracted(w, field));
+        sphgi_sum_lent(w, field);
         return;
     }
     sum_rows(w, field, vectors_of(w), subtracted(w, field));
@@ -68,6 +70,10 @@ static void form_transposed(struct sphgi_worker *w, bool symmetric)
     const void *density = plan->density_row < 0 ? NULL : w->rows[plan->density_row];
     const void *table[4] = {NULL, NULL, NULL, NULL};
     const int32_t rows = plan->correction_row < 0 ? 0 : sphgi_correction_rows(plan);
+    if (plan->quadratic) {
+        sphgi_transpose_quadratic(w, density, weight);
+        return;
+    }
     for (int32_t k = 0; k < rows; ++k)
         table[k] = w->rows[plan->correction_row + k];
     if (plan->classic) {
@@ -107,10 +113,14 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         if (field->rows)
             sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
-    if (plan->carrier[symmetric] < 0)
-        w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w),
-                               symmetric ? w->rows[plan->density_row] : NULL,
-                               sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]));
+    if (plan->carrier[symmetric] >= 0)
+        return;
+    const void *density = symmetric ? w->rows[plan->density_row] : NULL;
+    char *vectors = sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]);
+    if (plan->quadratic)
+        w->passes->sum_quadratic_vectors(&w->tile, plan->dimension, density, vectors);
+    else
+        w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w), density, vectors);
 }
 
 static void load_target(struct sphgi_worker *w, int32_t number, char *to)

@@ -30,6 +30,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     const size_t local = sweep->packed ? 0 : SPHGI_TILE + 1;
     const size_t arrays = (size_t)plan->row_count, row = SPHGI_ROW * size;
     const size_t numbers = plan->quadratic ? (size_t)sphgi_plan_width(plan) : 16;
+    const size_t lending = plan->lends ? SPHGI_WIDTH : 0;
     struct layout layout = {0};
 #define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
     CARVE(tally, 1, sizeof(struct sphgi_tally));
@@ -57,6 +58,14 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(extra, 8 * SPHGI_WIDTH, size);
     CARVE(share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
     CARVE(hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
+    CARVE(linear, 6 * lending, size);
+    CARVE(moment_scale, lending, size);
+    CARVE(confidence, lending, size);
+    CARVE(lent_confidence, lending, size);
+    CARVE(lent, (SPHGI_HESSIANS + 1) * lending, size);
+    CARVE(borrowed, numbers * lending, size);
+    CARVE(prior, 21 * lending, size);
+    CARVE(transport, 18 * lending, size);
     CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
 #undef CARVE
     return layout.total;

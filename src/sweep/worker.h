@@ -69,6 +69,8 @@ struct sphgi_worker {
     const void **rows;                      /* the arrays of rows, packed or local */
     unsigned summing;                       /* SPHGI_SUM_..., of this pass over the group */
     uint8_t directions[SPHGI_WIDTH];        /* of curvature, that are resolved */
+    uint8_t open[SPHGI_WIDTH];              /* 1: lenders could change what is resolved */
+    bool scaled;                            /* moment_scale holds what moments are multiplied by */
     bool factors_at_once;            /* s_ij come with the pairs, for nobody asks for distances */
     char *kept;                      /* the group's s_ij, of the lanes at work; NULL: none */
     bool kept_stand;                 /* they were written by a sweep before */
@@ -91,6 +93,8 @@ struct sphgi_worker {
     char *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume, *density;
     char *self, *zeros, *jacobian, *contracted, *extra;
     char *share_kept, *hessian; /* order 2; Laplacians stand behind the Hessians */
+    char *linear, *moment_scale, *confidence, *lent_confidence, *lent; /* for lenders and ... */
+    char *borrowed, *prior, *transport;                                /* ... borrowers */
     char *finder_memory;
 };
 

@@ -9,7 +9,7 @@ typedef struct host {
     sphg_type type;
     int dimension, count, shape;
     double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 45];
-    double results[6][MOST * 45];
+    double lent[MOST * 55], results[7][MOST * 55];
     int64_t offsets[MOST + 1];
     int32_t lengths[MOST], indices[INDICES];
     const int32_t *rows[MOST];
@@ -72,7 +72,7 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
 {
     const int d = on->dimension, width = sphg_correction_width(&on->scheme);
     const int given = fuzz_byte(from) % 4, tame = fuzz_byte(from) % 2;
-    const int form = on->scheme.order == 2 ? SPHG_DIFFERENCE : given;
+    const int form = on->scheme.order == 2 && given == SPHG_DIRECT ? SPHG_DIFFERENCE : given;
     on->shape = 1 + fuzz_byte(from) % 4;
     const int item = on->shape == 1   ? 1
                      : on->shape == 2 ? d
@@ -96,14 +96,23 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
         field.curl = fuzz_view(on->type, on->results[2], d == 3 ? 3 : 1);
     if (on->shape == SPHG_SCALAR && form == SPHG_DIRECT && fuzz_byte(from) % 2)
         field.square = fuzz_view(on->type, on->results[1], 1);
-    if (on->scheme.order == 2 && on->shape < 3)
+    if (on->scheme.order == 2 && on->shape < 3 && form == SPHG_DIFFERENCE)
         field.hessian =
             fuzz_view(on->type, on->results[4], d * (d + 1) / 2 * (on->shape == 1 ? 1 : d));
-    if (on->scheme.order == 2)
+    if (on->scheme.order == 2 && form == SPHG_DIFFERENCE)
         field.laplacian = fuzz_view(on->type, on->results[5], item);
+    const int lent = 1 + item * d * (d + 1) / 2;
+    sphg_view lenders = sphg_absent();
+    if (on->scheme.order == 2 && given < 2) {
+        field.curvature = fuzz_view(on->type, on->results[6], lent);
+        if (given == 1 && on->shape < 3) {
+            lenders = numbers(from, on, on->lent, lent, tame);
+            field.lenders = &lenders;
+        }
+    }
     sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-    if (width && given < 2)
+    if (width && given < 2 && !field.lenders)
         request.correction = fuzz_view(on->type, on->results[3], width);
     return sphg_evaluate(on->instance->context, &on->scheme, &request);
 }

@@ -152,7 +152,7 @@ static int spoil_shape(victim *own, int number, trial *made)
         ROW("geometry.target_count", COUNT, geometry.target_count),                                \
         ENUM("geometry.precision", geometry.precision, 0, SPHG_F64),                               \
         ROW("geometry.skin", LENGTH, geometry.skin),                                               \
-        ROW("geometry.period", LENGTH, geometry.period[1]), FREE("geometry.list_free"),         \
+        ROW("geometry.period", LENGTH, geometry.period[1]), FREE("geometry.list_free"),            \
         FREE("geometry.keep_weights")
 #define SOURCES                                                                                    \
     ROW("sources", POINTER, sources_given), ROW("sources.neighbors", BUILT, sources[0].neighbors), \
@@ -305,11 +305,21 @@ static const argument of_quadratic[] = {
     VIEW("fields.hessian", field.hessian, OUTPUT),
     VIEW("fields.laplacian", field.laplacian, OUTPUT),
 };
+static const argument of_lending[] = {
+    VIEW("fields.at_sources", at_sources[0], REQUIRED),
+    VIEW("fields.gradient", field.gradient, OUTPUT | VECTOR),
+    VIEW("fields.curvature", field.curvature, OUTPUT),
+    FREE("fields.lenders"),
+    {"lenders", HOSTILE_VIEW, AT(lenders[0]), 0, 0, 0, NULL, NULL},
+    {"lenders", HOSTILE_NUMBERS, AT(lenders[0]), 0, 0, 0, NULL, NULL},
+    VIEW("request.borrows", request.borrows, OUTPUT | HOSTILE_BYTES),
+};
 static const probe probes_sphg_evaluate[] = {PROBE(NULL, call_evaluate, of_evaluate),
                                              PROBE(prepare_two_sided, call_evaluate, of_two_sided),
                                              PROBE(prepare_direct, call_evaluate, of_direct),
                                              PROBE(prepare_square, call_evaluate, of_square),
-                                             PROBE(prepare_quadratic, call_evaluate, of_quadratic)};
+                                             PROBE(prepare_quadratic, call_evaluate, of_quadratic),
+                                             PROBE(prepare_lending, call_evaluate, of_lending)};
 
 static const argument of_correction[] = {
     CONTEXT,

@@ -1,5 +1,6 @@
 #include "oracle_quadratic.h"
 #include "oracle_internal.h"
+#include "oracle_second.h"
 
 /* ---- The fourth moment ----------------------------------------------------------------------- */
 
@@ -47,15 +48,10 @@ quad oracle_mu4(sphg_kernel kernel, int dimension)
 
 /* ---- The basis ------------------------------------------------------------------------------- */
 
-typedef struct basis {
-    int d, n, a[oracle_pairs], b[oracle_pairs];
-    quad off, deviator, trace; /* what makes the unit matrix of a full neighbourhood's moments */
-} basis;
-
-static basis basis_of(const oracle_scene *scene)
+oracle_basis oracle_basis_of(const oracle_scene *scene)
 {
     const sphg_scheme *scheme = &scene->scheme;
-    basis made = {.d = scheme->dimension};
+    oracle_basis made = {.d = scheme->dimension};
     for (int a = 0; a < made.d; a++)
         for (int b = a; b < made.d; b++, made.n++)
             made.a[made.n] = a, made.b[made.n] = b;
@@ -68,7 +64,7 @@ static basis basis_of(const oracle_scene *scene)
 }
 
 /* Deviator and trace of a symmetric matrix, each by its own factor. */
-static void whitened(const basis *of, const quad *pairs, quad *q)
+void oracle_whitened(const oracle_basis *of, const quad *pairs, quad *q)
 {
     quad mean = 0;
     for (int k = 0; k < of->n; k++)
@@ -78,18 +74,18 @@ static void whitened(const basis *of, const quad *pairs, quad *q)
                                     : of->off * pairs[k];
 }
 
-static void offsets_of(const oracle_scene *scene, const basis *of, const oracle_pair *pair, quad *e,
-                       quad *q)
+void oracle_offsets_of(const oracle_scene *scene, const oracle_basis *of, const oracle_pair *pair,
+                       quad *e, quad *q)
 {
     quad products[oracle_pairs];
     for (int a = 0; a < of->d; a++)
         e[a] = -pair->x[a] / scene->scheme.support_radius;
     for (int k = 0; k < of->n; k++)
         products[k] = e[of->a[k]] * e[of->b[k]];
-    whitened(of, products, q);
+    oracle_whitened(of, products, q);
 }
 
-static quad weight_unit(const oracle_scene *scene, const oracle_point *point)
+quad oracle_weight_unit(const oracle_scene *scene, const oracle_point *point)
 {
     const quad h = scene->scheme.support_radius;
     return h * h / point->scale;
@@ -99,7 +95,7 @@ static quad weight_unit(const oracle_scene *scene, const oracle_point *point)
  */
 
 /* Gauss and Jordan with pivots; 0 where the matrix is singular to 100 bits. */
-static int inverse_of(int n, oracle_block given, quad shift, oracle_block inverse)
+int oracle_inverse_of(int n, oracle_block given, quad shift, oracle_block inverse)
 {
     oracle_block a;
     quad largest = 0;
@@ -135,7 +131,7 @@ static int inverse_of(int n, oracle_block given, quad shift, oracle_block invers
     return 1;
 }
 
-static quad norm_of(int n, oracle_block a)
+quad oracle_norm_of(int n, oracle_block a)
 {
     quad sum = 0;
     for (int i = 0; i < n; i++)
@@ -147,7 +143,7 @@ static quad norm_of(int n, oracle_block a)
 /* ---- Omega -------------------------------------------------------------------------------------
  */
 
-static quad smooth(quad x, quad low, quad high, quad *slope)
+quad oracle_smooth(quad x, quad low, quad high, quad *slope)
 {
     quad t = (x - low) / (high - low);
     t = t < 0 ? 0 : t > 1 ? 1 : t;
@@ -163,7 +159,7 @@ static void keep(const oracle_scene *scene, const oracle_point *point, oracle_se
     for (int k = 0; k < filter->n; k++) {
         quad slope = 0, share = filter->lambda[k] > filter->eps;
         if (scene->scheme.policy == SPHG_BLEND)
-            share = smooth(filter->lambda[k], filter->eps, 4 * filter->eps, &slope);
+            share = oracle_smooth(filter->lambda[k], filter->eps, 4 * filter->eps, &slope);
         second->kept *= share;
         if (share > 0) /* omega grows from 0 like a square: its change counts where it is small */
             second->change_of_kept +=
@@ -180,14 +176,15 @@ typedef struct moments {
     quad second_spread, third_spread, fourth_spread, trace2, trace4;
 } moments;
 
-static moments sum_moments(const oracle_scene *scene, const basis *of, const oracle_point *point)
+static moments sum_moments(const oracle_scene *scene, const oracle_basis *of,
+                           const oracle_point *point)
 {
     moments sums = {.trace2 = 0};
-    const quad unit = weight_unit(scene, point);
+    const quad unit = oracle_weight_unit(scene, point);
     for (int k = 0; k < point->pair_count; k++) {
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs], w = -pair->s * unit, spread = pair->spread * unit;
-        offsets_of(scene, of, pair, e, q);
+        oracle_offsets_of(scene, of, pair, e, q);
         for (int a = 0; a < of->d; a++)
             for (int m = 0; m < of->n; m++)
                 sums.third[a][m] += w * e[a] * q[m];
@@ -204,7 +201,7 @@ static moments sum_moments(const oracle_scene *scene, const basis *of, const ora
     return sums;
 }
 
-static void eliminate(const oracle_point *point, const basis *of, moments *sums,
+static void eliminate(const oracle_point *point, const oracle_basis *of, moments *sums,
                       oracle_second *second)
 {
     const oracle_filter *filter = &point->filter;
@@ -232,37 +229,41 @@ static void eliminate(const oracle_point *point, const basis *of, moments *sums,
         }
 }
 
-static quad shift_at(sphg_policy policy, quad t, quad eps)
+quad oracle_shift_at(sphg_policy policy, quad t, quad eps)
 {
     quad slope;
     if (policy != SPHG_BLEND)
         return t > eps ? 0 : 4 * eps;
-    return t >= 4 * eps ? 0 : 4 * eps * (1 - smooth(t, eps, 4 * eps, &slope));
+    return t >= 4 * eps ? 0 : 4 * eps * (1 - oracle_smooth(t, eps, 4 * eps, &slope));
 }
 
 void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
                          oracle_second *second)
 {
-    const basis of = basis_of(scene);
+    const oracle_basis of = oracle_basis_of(scene);
     const sphg_policy policy = scene->scheme.policy;
     moments sums = sum_moments(scene, &of, point);
     *second = (oracle_second){.rank = point->rank, .undecided = point->undecided};
+    for (int a = 0; a < of.d; a++)
+        for (int m = 0; m < of.n; m++)
+            second->m3[a][m] = sums.third[a][m];
+    second->second = sums.second_spread, second->third = sums.third_spread;
+    second->trace2 = sums.trace2;
     keep(scene, point, second);
     if (!(second->kept > 0))
         return;
     eliminate(point, &of, &sums, second);
     const quad threshold = scene->scheme.threshold > 0 ? scene->scheme.threshold : 1e-2;
     const quad k = second->norm_k;
-    second->second = sums.second_spread, second->third = sums.third_spread;
     second->eps = quad_max(threshold / 10, 16 * scene->unit * (sums.trace4 + k * k * sums.trace2));
     second->size = sums.fourth_spread + 2 * k * sums.third_spread + k * k * sums.second_spread;
     oracle_block whole;
-    const int solved = inverse_of(of.n, second->s, 0, whole);
-    second->t = solved ? 1 / norm_of(of.n, whole) : 0;
-    second->shift = shift_at(policy, second->t, second->eps);
+    const int solved = oracle_inverse_of(of.n, second->s, 0, whole);
+    second->t = solved ? 1 / oracle_norm_of(of.n, whole) : 0;
+    second->shift = oracle_shift_at(policy, second->t, second->eps);
     const int dropped = policy == SPHG_IDENTITY && second->shift > 0;
     if (!dropped)
-        inverse_of(of.n, second->s, second->shift, second->f);
+        oracle_inverse_of(of.n, second->s, second->shift, second->f);
     second->left = dropped ? 0 : of.n;
     for (int m = 0; m < of.n; m++) {
         second->left -= second->shift * second->f[m][m];
@@ -270,7 +271,7 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
             second->f[m][l] *= second->kept;
     }
     second->left *= second->kept;
-    second->norm_f = norm_of(of.n, second->f);
+    second->norm_f = oracle_norm_of(of.n, second->f);
     second->full = second->shift == 0 && point->rank == of.d;
     const int some = (int)(double)(second->left + (quad).5);
     if (second->full)
@@ -285,23 +286,19 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
 /* ---- Fields
  * --------------------------------------------------------------------------------------- */
 
-typedef struct change {
-    quad first[3], second[oracle_pairs];
-    quad first_size, second_size; /* sums of spread |dA| |e| and spread |dA| |q| */
-} change;
-
-static change sum_changes(const oracle_scene *scene, const basis *of, const oracle_point *point,
-                          const oracle_field *field, int i, int component, int width)
+oracle_change oracle_sum_changes(const oracle_scene *scene, const oracle_basis *of,
+                                 const oracle_point *point, const oracle_field *field, int i,
+                                 int component, int width)
 {
     const double *targets = field->at_targets ? field->at_targets : field->at_sources;
-    change sums = {.first_size = 0};
-    const quad unit = weight_unit(scene, point);
+    oracle_change sums = {.first_size = 0};
+    const quad unit = oracle_weight_unit(scene, point);
     for (int k = 0; k < point->pair_count; k++) {
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs];
         quad difference =
             (quad)field->at_sources[pair->j * width + component] - targets[i * width + component];
-        offsets_of(scene, of, pair, e, q);
+        oracle_offsets_of(scene, of, pair, e, q);
         for (int a = 0; a < of->d; a++)
             sums.first[a] -= pair->s * unit * e[a] * difference;
         for (int m = 0; m < of->n; m++)
@@ -314,8 +311,8 @@ static change sum_changes(const oracle_scene *scene, const basis *of, const orac
 }
 
 /* h, and how far it may be off over u; y = M2^-1 b1 */
-static quad solve_curvature(const basis *of, const oracle_second *second, const change *sums,
-                            quad y_norm, quad *h)
+static quad solve_curvature(const oracle_basis *of, const oracle_second *second,
+                            const oracle_change *sums, quad y_norm, quad *h)
 {
     quad right[oracle_pairs];
     for (int m = 0; m < of->n; m++) {
@@ -337,9 +334,9 @@ static quad solve_curvature(const basis *of, const oracle_second *second, const 
            second->change_of_kept * second->second * size;
 }
 
-static void curve_component(const oracle_scene *scene, const basis *of, const oracle_point *point,
-                            const oracle_second *second, const change *sums, quad *g, quad *hessian,
-                            oracle_curved *found)
+void oracle_curve_component(const oracle_scene *scene, const oracle_basis *of,
+                            const oracle_point *point, const oracle_second *second,
+                            const oracle_change *sums, quad *g, quad *hessian, oracle_curved *found)
 {
     const quad over = 1 / (quad)scene->scheme.support_radius;
     quad h[oracle_pairs] = {0}, matrix[oracle_pairs], y[3] = {0}, h_off = 0;
@@ -351,7 +348,7 @@ static void curve_component(const oracle_scene *scene, const basis *of, const or
                             point->filter.lambda[k];
         h_off = solve_curvature(of, second, sums, quad_norm(y, of->d), h);
     }
-    whitened(of, h, matrix);
+    oracle_whitened(of, h, matrix);
     for (int m = 0; m < of->n; m++)
         hessian[m] = matrix[m] * (of->a[m] == of->b[m] ? 2 : 1) * over * over;
     for (int a = 0; a < of->d; a++) {
@@ -370,8 +367,8 @@ static void curve_component(const oracle_scene *scene, const basis *of, const or
     found->hessian_bound += scene->unit * h_off * over * over * 2 * of->off;
 }
 
-static void contract(const basis *of, const oracle_field *field, quad gradient[9][3],
-                     oracle_curved *found)
+void oracle_contract_second(const oracle_basis *of, const oracle_field *field, quad gradient[9][3],
+                            oracle_curved *found)
 {
     const int d = of->d;
     if (field->shape == SPHG_SCALAR || field->shape == SPHG_VECTOR)
@@ -399,7 +396,7 @@ oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, 
 {
     const oracle_scene *scene = oracle_scene_of(reference);
     const oracle_point *point = oracle_at(reference, i);
-    const basis of = basis_of(scene);
+    const oracle_basis of = oracle_basis_of(scene);
     const int d = of.d, widths[] = {0, 1, d, of.n, d * d}, width = widths[field->shape];
     oracle_second second;
     oracle_solve_second(scene, point, &second);
@@ -407,8 +404,8 @@ oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, 
     oracle_curved found = {.undecided = second.undecided, .touched = !second.full};
     quad gradient[9][3], hessian[oracle_pairs];
     for (int c = 0; c < width; c++) {
-        const change sums = sum_changes(scene, &of, point, field, i, c, width);
-        curve_component(scene, &of, point, &second, &sums, gradient[c], hessian, &found);
+        const oracle_change sums = oracle_sum_changes(scene, &of, point, field, i, c, width);
+        oracle_curve_component(scene, &of, point, &second, &sums, gradient[c], hessian, &found);
         for (int m = 0; m < of.n; m++) {
             if (field->shape < SPHG_SYM_TENSOR)
                 found.hessian[c * of.n + m] = hessian[m];
@@ -416,6 +413,6 @@ oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, 
         }
     }
     found.gradient_bound += linear.bound;
-    contract(&of, field, gradient, &found);
+    oracle_contract_second(&of, field, gradient, &found);
     return found;
 }

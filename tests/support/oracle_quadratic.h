@@ -17,6 +17,7 @@ typedef struct oracle_second {
     quad change_of_kept;       /* what u does to omega, over omega and u */
     int full, rank, undecided;
     quad second, third; /* sums of spread |e|^2 and spread |e| |q| */
+    quad m3[3][oracle_pairs], trace2;
 } oracle_second;
 
 typedef struct oracle_curved {
@@ -32,5 +33,7 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
                          oracle_second *second);
 /* DIFFERENCE. hessian of vectors: component by component. */
 oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, int i);
+/* ADJOINT and SYMMETRIC: gradient, divergence, curl. */
+oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_field *field, int i);
 
 #endif

@@ -43,7 +43,7 @@ typedef struct victim {
     sphg_request request;
     sphg_sources sources[2];
     sphg_field field;
-    sphg_view at_sources[2];
+    sphg_view at_sources[2], lenders[2];
     sphg_subset subset;
     sphg_pairs pairs;
     sphg_inversion wanted;

@@ -179,6 +179,20 @@ void prepare_quadratic(victim *own)
     own->request.fields = &own->field;
 }
 
+/* What is lent has one number more than a symmetric tensor. */
+void prepare_lending(victim *own)
+{
+    const int d = own->test->dimension, width = 1 + d * (d + 1) / 2;
+    own->scheme.order = 2;
+    own->request.correction = own->request.rank = sphg_absent();
+    own->field.curvature = own->u;
+    own->field.curvature.stride = own->scalar_out.stride * width;
+    own->field.lenders = own->lenders;
+    own->lenders[0] = own->squares;
+    own->request.borrows = own->rank_out;
+    own->request.fields = &own->field;
+}
+
 void prepare_with_table(victim *own)
 {
     own->sources[0].correction = own->table;

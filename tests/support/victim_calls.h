@@ -34,6 +34,7 @@ void prepare_two_sided(victim *own);
 void prepare_direct(victim *own);
 void prepare_square(victim *own);
 void prepare_quadratic(victim *own);
+void prepare_lending(victim *own);
 void prepare_with_table(victim *own);
 void prepare_by_mls(victim *own);
 /* So that the arrays of pairs suffice. */

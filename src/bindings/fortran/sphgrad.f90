@@ -185,7 +185,8 @@ module sphgrad
     type(c_ptr) :: at_sources = c_null_ptr
     type(sphg_view) :: at_targets, value, gradient, divergence, curl, square
     integer(c_int32_t) :: mirror = 0
-    type(sphg_view) :: hessian, laplacian
+    type(sphg_view) :: hessian, laplacian, curvature
+    type(c_ptr) :: lenders = c_null_ptr
   end type sphg_field
 
   ! rank(k + 1): targets of rank k
@@ -203,6 +204,7 @@ module sphgrad
     type(sphg_view) :: target_volume, target_density, target_correction, correction, rank, &
       lambda_min
     type(c_ptr) :: stats = c_null_ptr
+    type(sphg_view) :: borrows
   end type sphg_request
 
   type, bind(c), public :: sphg_pairs

@@ -141,6 +141,20 @@ static void all_operators()
     context.evaluate(second, of_second);
     CHECK(stats.quadratic > 0 && std::isfinite(laplacian[100]) &&
           near(hessian[100][0] + hessian[100][3] + hessian[100][5], laplacian[100]));
+    std::vector<std::array<double, 7>> lent(n);
+    std::vector<std::uint8_t> borrows(n);
+    of_second.fields[0].curvature = lent, of_second.borrows = borrows;
+    context.evaluate(second, of_second);
+    sphgrad::request third{{sphgrad::sources(neighbors, sphgrad::same(1.0))}, {curved}};
+    std::vector<double> borrowed = laplacian;
+    third.fields[0].hessian = {}, third.fields[0].laplacian = borrowed;
+    third.fields[0].lenders = {lent}, third.subset = sphgrad::masked(borrows);
+    context.evaluate(second, third);
+    CHECK(borrows[0] == 1 && borrowed[0] != laplacian[0]);
+    for (std::size_t i = 0; i < n; ++i)
+        CHECK(lent[i][0] >= 0 && lent[i][0] <= 1 && (borrows[i] || borrowed[i] == laplacian[i]));
+    third.fields[0].lenders.push_back(lent);
+    check_throws(SPHG_ERROR_SIZE, "lenders", [&] { context.evaluate(second, third); });
 
     std::vector<std::int64_t> offsets;
     std::vector<std::int32_t> indices;

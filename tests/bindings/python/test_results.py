@@ -114,6 +114,27 @@ class Results(Case):
         again = sg.jacobian(n, values, 1, target_correction=found.correction)
         self.same(again, first.gradient)
 
+    def test_curvature_is_borrowed_at_a_surface(self):
+        x = cloud()
+        n = sg.Neighbors(x, sg.Scheme(H, order=2))
+        values = np.stack([x[:, 0] ** 2, x[:, 1] * x[:, 2], 2 * x[:, 2]], axis=1)
+        exact = np.zeros((len(x), 3, 3))
+        exact[:, 0, 0], exact[:, 2, 2] = 2 * x[:, 0], 2
+        exact[:, 1, 1], exact[:, 1, 2] = x[:, 2], x[:, 1]
+        first = sg.evaluate(n, sg.Field(values, gradient=True, curvature=True), volume=1, borrows=True)
+        lent = first.fields[0].curvature
+        self.assertEqual(lent.shape, (len(x), 19))
+        open_ones = first.borrows.astype(bool)
+        second = sg.evaluate(n, sg.Field(values, gradient=True, lenders=lent), volume=1,
+                             subset=open_ones)
+        alone = abs(first.fields[0].gradient - exact).max((1, 2))[open_ones]
+        borrowed = abs(second.fields[0].gradient - exact).max((1, 2))[open_ones]
+        self.assertLess(np.median(borrowed), .01 * np.median(alone) + 1e-4)
+        self.same(sg.evaluate(n, sg.Field(values, gradient=True, lenders=[lent]), volume=1,
+                              subset=open_ones).fields[0].gradient, second.fields[0].gradient)
+        with self.assertRaises(ValueError):
+            sg.evaluate(n, sg.Field(values, gradient=True, lenders=[lent, lent]), volume=1)
+
     def test_symmetric_form_conserves_momentum(self):
         x = cloud()
         found = sg.gradient(sg.Sources(sg.Neighbors(x, H), 1, np.full(len(x), 2.0),

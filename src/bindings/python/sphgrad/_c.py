@@ -154,7 +154,8 @@ class Field(c.Structure):
     _fields_ = [("shape", c.c_int), ("form", c.c_int), ("accumulate", c.c_int32),
                 ("at_sources", c.POINTER(View)), ("at_targets", View), ("value", View),
                 ("gradient", View), ("divergence", View), ("curl", View), ("square", View),
-                ("mirror", c.c_int32), ("hessian", View), ("laplacian", View)]
+                ("mirror", c.c_int32), ("hessian", View), ("laplacian", View),
+                ("curvature", View), ("lenders", c.POINTER(View))]
 
 
 class Stats(c.Structure):
@@ -167,7 +168,7 @@ class Request(c.Structure):
                 ("set_count", c.c_int32), ("field_count", c.c_int32),
                 ("subset", c.POINTER(Subset)), ("target_volume", View), ("target_density", View),
                 ("target_correction", View), ("correction", View), ("rank", View),
-                ("lambda_min", View), ("stats", c.POINTER(Stats))]
+                ("lambda_min", View), ("stats", c.POINTER(Stats)), ("borrows", View)]
 
 
 class Pairs(c.Structure):

@@ -30,7 +30,9 @@ class Field:
     tensor; `shape` names it where one item stands for all. at_targets: A_i, where the targets are not
     part of a source set. value, gradient, divergence, curl, square, hessian, laplacian: True, or the
     array to write to; a Hessian is (n, d (d + 1) / 2), of a vector (n, d, d (d + 1) / 2).
-    form: "difference", "direct", "symmetric" or "adjoint"."""
+    form: "difference", "direct", "symmetric" or "adjoint".
+    curvature: what targets lend, (n, 1 + d (d + 1) / 2), of a vector 1 + d times as many; lenders: such an
+    array, or a list of one per source set, from an earlier call; None: nobody lends."""
     values: object
     form: _c.Form = _c.Form.DIFFERENCE
     value: object = None
@@ -44,6 +46,8 @@ class Field:
     shape: object = None
     hessian: object = None
     laplacian: object = None
+    curvature: object = None
+    lenders: object = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -66,6 +70,7 @@ class FieldResult:
     square: object = None
     hessian: object = None
     laplacian: object = None
+    curvature: object = None
 
 
 @dataclasses.dataclass
@@ -76,6 +81,7 @@ class Evaluation:
     rank: object = None
     lambda_min: object = None
     stats: object = None
+    borrows: object = None
 
 
 def stats_of(stats):
@@ -223,6 +229,20 @@ def _field_shape(call, field, values):
     raise ValueError("a field without values needs its shape")
 
 
+def _lenders(call, field, numbers):
+    """The views that lend, one per source set; None: nobody does."""
+    if field.lenders is None:
+        return None
+    lent = list(field.lenders) if isinstance(field.lenders, (list, tuple)) else [field.lenders]
+    if len(lent) != len(call.sets):
+        raise ValueError(f"a field has lenders for {len(lent)} source sets of {len(call.sets)}")
+    views = (_c.View * len(lent))(*(
+        call.borrowed.input(one, of.neighbors.source_count, (numbers,), call.dtype, "lenders")
+        for one, of in zip(lent, call.sets)))
+    call.borrowed.keep(views)
+    return c.cast(views, c.POINTER(_c.View))
+
+
 def _field(call, field):
     """The C field, and what it writes."""
     several = isinstance(field.values, (list, tuple))
@@ -260,17 +280,24 @@ def _field(call, field):
         array, view = call.output(wanted, items, name, out, zeros=field.accumulate)
         setattr(result, name, view)
         setattr(found, name, array)
+    numbers = 1 + int(np.prod(item_shape(shape, call.dimension), dtype=int)) * \
+        item_shape(_c.Shape.SYM_TENSOR, call.dimension)[0]
+    found.curvature, result.curvature = call.output(field.curvature, (numbers,), "curvature")
+    lenders = _lenders(call, field, numbers)
+    if lenders is not None:
+        result.lenders = lenders
     return result, found
 
 
 def evaluate(sources, fields=(), *, volume=None, scheme=None, subset=None, target_volume=None,
              target_density=None, target_correction=None, correction=None, rank=None,
-             lambda_min=None, stats=False):
+             lambda_min=None, stats=False, borrows=None):
     """All that is named, in one sweep over the pairs.
 
     sources: Neighbors (and `volume`), Sources, or a list of them whose sums add up. fields: Field, or a
     list. subset: a slice, (begin, end), a mask of bool, or indices; others are not touched. correction,
-    rank, lambda_min: True, or the array to write to."""
+    rank, lambda_min, borrows: True, or the array to write to; borrows.astype(bool) is the subset of a
+    call with lenders."""
     call = Call(sources, volume, scheme, subset)
     fields = [fields] if isinstance(fields, Field) else list(fields)
     with call.context._calls() as context:
@@ -288,6 +315,7 @@ def evaluate(sources, fields=(), *, volume=None, scheme=None, subset=None, targe
         correction, request.correction = call.output(correction, (call.width,), "correction")
         rank, request.rank = call.output(rank, (), "rank", dtype=np.uint8)
         lambda_min, request.lambda_min = call.output(lambda_min, (), "lambda_min")
+        borrows, request.borrows = call.output(borrows, (), "borrows", dtype=np.uint8)
         c_stats = call.stats(stats)
         if c_stats is not None:
             request.stats = c.pointer(c_stats)
@@ -295,4 +323,4 @@ def evaluate(sources, fields=(), *, volume=None, scheme=None, subset=None, targe
                                                      c.byref(request)))
         call.borrowed.finish()
     return Evaluation([found for _, found in made], correction, rank, lambda_min,
-                      None if c_stats is None else stats_of(c_stats))
+                      None if c_stats is None else stats_of(c_stats), borrows)

@@ -1,0 +1,196 @@
+/* Order 2 (theory.md, section 9) from moments to corrections, and from these to results: gradients
+ * of pairs, gradients, Hessians and Laplacians of fields. */
+
+SPHGI_TEMPLATE void note_directions(vec resolved, int32_t lanes, uint8_t *directions)
+{
+    for (int l = 0; l < LANES && l < lanes; ++l) {
+        const int nearest = resolved[l] > R(0) ? (int)(resolved[l] + R(.5)) : 0;
+        directions[l] = (uint8_t)nearest;
+    }
+}
+
+SPHGI_TEMPLATE void quadratic_as(const struct sphgi_second *second, const real *sums,
+                                 const real *scale, const real *kept, int32_t l,
+                                 const struct sphgi_borrowing *borrowing, real *out,
+                                 uint8_t *directions, int32_t lanes, bool borrows, bool three)
+{
+    vec factor = splat(R(1)), f[PAIRS_MOST][PAIRS_MOST];
+    if (scale)
+        factor = load(scale);
+    struct block block;
+    struct resolution found;
+    const vec share = load(kept);
+    const mask some = less(splat(R(0)), share);
+    if (borrows)
+        look_for_lenders(borrowing, l, factor, &found);
+    eliminate(second, sums, factor, &block, three);
+    const vec resolved = resolve(second, &block, share, f, &found, borrows, three);
+    if (borrows)
+        note_borrowing(second, sums, factor, share, &block, &found, f, l, borrowing, three);
+    join_blocks(second, &block, f, some, factor, out, three);
+    note_directions(resolved, lanes, directions);
+}
+
+SPHGI_TEMPLATE void invert_quadratic_as(int32_t width, int32_t dimension,
+                                        const struct sphgi_second *second, const real *sums,
+                                        const real *scale, const real *kept, int32_t lanes,
+                                        const struct sphgi_borrowing *borrowing, real *out,
+                                        uint8_t *directions, bool borrows)
+{
+    for (int32_t l = 0; l < width; l += LANES)
+        if (dimension == 3)
+            quadratic_as(second, sums + l, scale ? scale + l : NULL, kept + l, l, borrowing,
+                         out + l, directions + l, lanes - l, borrows, true);
+        else
+            quadratic_as(second, sums + l, scale ? scale + l : NULL, kept + l, l, borrowing,
+                         out + l, directions + l, lanes - l, borrows, false);
+}
+
+static void invert_quadratic(int32_t width, int32_t dimension, const struct sphgi_second *second,
+                             const void *sums, const void *scale, const void *kept, int32_t lanes,
+                             const struct sphgi_borrowing *borrowing, void *coefficients,
+                             uint8_t *directions)
+{
+    if (borrowing)
+        invert_quadratic_as(width, dimension, second, sums, scale, kept, lanes, borrowing,
+                            coefficients, directions, true);
+    else
+        invert_quadratic_as(width, dimension, second, sums, scale, kept, lanes, NULL, coefficients,
+                            directions, false);
+}
+
+/* ---- Pairs ----------------------------------------------------------------------------------- */
+
+/* G_ij = w (P e + Q (e e^T)), e = -x, w = -s, the products of one axis halved. */
+SPHGI_TEMPLATE void quadratic_gradients_as(const struct sphgi_tile *tile, const real *c, vec scale,
+                                           bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3;
+    const real *cross = c + n * SPHGI_WIDTH;
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec x[3], g[3], p[PAIRS_MOST];
+        offsets_at(tile, k, three, x);
+        vectors_at(tile, k, SPHGI_FACTORS, three, g);
+        pair_products(g, x, three, p);
+        for (int a = 0; a < d; ++a) {
+            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * g[0];
+            for (int b = 1; b < d; ++b)
+                sum += load(c + pair_index(a, b, d) * SPHGI_WIDTH) * g[b];
+            for (int m = 0; m < n; ++m)
+                sum -= load(cross + (a * n + m) * SPHGI_WIDTH) *
+                       ((is_square(m, three) ? R(.5) : R(1)) * p[m]);
+            store(array_of(tile->arrays, SPHGI_GX) + a * SPHGI_TILE + k, scale * sum);
+        }
+    }
+}
+
+static void quadratic_gradients(const struct sphgi_tile *tile, int32_t dimension,
+                                const void *correction, double scale)
+{
+    if (dimension == 3)
+        quadratic_gradients_as(tile, correction, splat(R(scale)), true);
+    else
+        quadratic_gradients_as(tile, correction, splat(R(scale)), false);
+}
+
+/* Minus the gradient seen from j, times the weight: T = weight (P_j s x + Q_j s x x), the products
+ * of one axis halved: x has the other sign there. Rows hold P and Q in units of the host, which
+ * differ by a factor. */
+SPHGI_TEMPLATE void transposed_quadratic_as(const struct sphgi_tile *tile, const void *const *rows,
+                                            real between, const void *density,
+                                            enum sphgi_weight kind, bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3, streams = three ? 6 : 3;
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const vec weight = weight_of(tile, k, density, kind);
+        vec x[3], g[3], p[PAIRS_MOST], c[24];
+        offsets_at(tile, k, three, x);
+        vectors_at(tile, k, SPHGI_FACTORS, three, g);
+        for (int a = 0; a < d; ++a)
+            g[a] *= weight;
+        pair_products(g, x, three, p);
+        for (int s = 0; s < streams; ++s) {
+            const struct four row = gather_rows(rows[s], ids_at(tile, k));
+            c[4 * s] = row.x;
+            c[4 * s + 1] = row.y;
+            c[4 * s + 2] = row.z;
+            c[4 * s + 3] = row.w;
+        }
+        for (int a = 0; a < d; ++a) {
+            vec sum = splat(R(0));
+            for (int m = 0; m < n; ++m)
+                sum += c[n + a * n + m] * ((is_square(m, three) ? R(.5) : R(1)) * p[m]);
+            sum *= between;
+            for (int b = 0; b < d; ++b)
+                sum += c[pair_index(a, b, d)] * g[b];
+            store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
+        }
+    }
+}
+
+static void transposed_quadratic(const struct sphgi_tile *tile, int32_t dimension,
+                                 const void *const *rows, double between, const void *density,
+                                 enum sphgi_weight kind)
+{
+    if (dimension == 3)
+        transposed_quadratic_as(tile, rows, R(between), density, kind, true);
+    else
+        transposed_quadratic_as(tile, rows, R(between), density, kind, false);
+}
+
+/* ---- Results -------------------------------------------------------------------------------- */
+
+/* (g, h) = [P Q; Q^T R] (b1, b2), b2 over x_a x_a halved. */
+SPHGI_TEMPLATE void apply_quadratic_as(int32_t count, const real *c, const real *sums,
+                                       const real *second, real scale, real *j, real *h,
+                                       real *trace, bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3;
+    const real *cross = c + n * SPHGI_WIDTH, *rest = cross + d * n * SPHGI_WIDTH;
+    const vec once = splat(scale), twice = splat(scale * scale);
+    for (int32_t i = 0; i < count; ++i) {
+        vec b[3], e[PAIRS_MOST];
+        for (int a = 0; a < d; ++a)
+            b[a] = load(sums + (i * d + a) * SPHGI_WIDTH);
+        for (int k = 0; k < n; ++k)
+            e[k] = (is_square(k, three) ? R(.5) : R(1)) * load(second + (i * n + k) * SPHGI_WIDTH);
+        for (int a = 0; a < d; ++a) {
+            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * b[0];
+            for (int p = 1; p < d; ++p)
+                sum += load(c + pair_index(a, p, d) * SPHGI_WIDTH) * b[p];
+            for (int k = 0; k < n; ++k)
+                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * e[k];
+            store(j + (i * d + a) * SPHGI_WIDTH, once * sum);
+        }
+        vec squares = splat(R(0));
+        for (int k = 0; h && k < n; ++k) {
+            vec sum = load(cross + k * SPHGI_WIDTH) * b[0];
+            for (int a = 1; a < d; ++a)
+                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * b[a];
+            for (int p = 0; p < n; ++p)
+                sum += load(rest + pair_index(k, p, n) * SPHGI_WIDTH) * e[p];
+            sum = twice * sum;
+            if (is_square(k, three))
+                squares += sum;
+            store(h + (i * n + k) * SPHGI_WIDTH, sum);
+        }
+        if (h)
+            store(trace + i * SPHGI_WIDTH, squares);
+    }
+}
+
+static void apply_quadratic(int32_t width, int32_t dimension, int32_t count,
+                            const void *coefficients, const void *sums, const void *second,
+                            double scale, void *jacobian, void *hessian, void *laplacian)
+{
+    for (int32_t l = 0; l < width; l += LANES) {
+        const real *c = (const real *)coefficients + l;
+        const real *one = (const real *)sums + l, *two = (const real *)second + l;
+        real *j = (real *)jacobian + l, *h = hessian ? (real *)hessian + l : NULL;
+        real *trace = (real *)laplacian + l;
+        if (dimension == 3)
+            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, true);
+        else
+            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, false);
+    }
+}

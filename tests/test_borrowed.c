@@ -1,0 +1,875 @@
+/* Curvature that is lent and borrowed: against the oracle, by known errors of lattices, exact where
+ * order 2 alone is not, continuous, and without a trace where nobody lends. */
+#include "support/oracle_borrowed.h"
+#include "support/scenes.h"
+#include <string.h>
+
+static int pairs_of(int d)
+{
+    return d * (d + 1) / 2;
+}
+
+static stage second_order(stage on)
+{
+    on.scheme.order = 2;
+    return on;
+}
+
+/* ---- Calls ----------------------------------------------------------------------------------- */
+
+typedef struct curved {
+    fixture_array gradient, divergence, hessian, laplacian, curvature, borrows, rank;
+    sphg_stats stats;
+} curved;
+
+/* lent: what an earlier call found; NULL: nobody lends. */
+typedef struct how {
+    const fixture_array *lent;
+    const sphg_subset *subset;
+    int no_curvature;
+} how;
+
+static sphg_view wanted(const fixture_array *array)
+{
+    return array->width ? fixture_view(array) : sphg_absent();
+}
+
+static curved outputs_of(const stage *on, sphg_shape shape)
+{
+    const int n = on->points.count, d = on->points.dimension, width = fixture_width(shape, d);
+    const sphg_type type = test_field_type(on->test);
+    const int tensor = shape >= SPHG_SYM_TENSOR;
+    return (curved){
+        .gradient = fixture_output(type, n, tensor ? 0 : width * d),
+        .divergence = fixture_output(type, n, tensor ? d : shape == SPHG_VECTOR),
+        .hessian = fixture_output(type, n, tensor ? 0 : width * pairs_of(d)),
+        .laplacian = fixture_output(type, n, width),
+        .curvature = fixture_output(type, n, 1 + width * pairs_of(d)),
+        .borrows = fixture_output(SPHG_U8, n, 1),
+        .rank = fixture_output(SPHG_U8, n, 1),
+    };
+}
+
+static void ask(const curved *found, how asked, sphg_field *field)
+{
+    field->gradient = wanted(&found->gradient);
+    field->divergence = wanted(&found->divergence);
+    field->hessian = wanted(&found->hessian);
+    field->laplacian = wanted(&found->laplacian);
+    if (!asked.no_curvature)
+        field->curvature = fixture_view(&found->curvature);
+}
+
+static curved apply(const stage *on, sphg_shape shape, const double *numbers, how asked)
+{
+    const int width = fixture_width(shape, on->points.dimension);
+    curved found = outputs_of(on, shape);
+    fixture_array values =
+        fixture_numbers(test_field_type(on->test), on->points.count, width, numbers);
+    const sphg_view at_sources = fixture_view(&values);
+    const sphg_view lenders = asked.lent ? fixture_view(asked.lent) : sphg_absent();
+    sphg_sources sources = stage_sources(on);
+    sphg_field field = {.shape = shape, .at_sources = &at_sources};
+    ask(&found, asked, &field);
+    field.lenders = asked.lent ? &lenders : NULL;
+    sphg_request request = {.sources = &sources, .fields = &field, .set_count = 1};
+    request.field_count = 1;
+    request.subset = asked.subset;
+    request.rank = fixture_view(&found.rank);
+    request.borrows = fixture_view(&found.borrows);
+    request.stats = &found.stats;
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static void require_same_bits(const curved *a, const curved *b, const char *where)
+{
+    TEST_REQUIRE(fixture_same_bits(&a->gradient, &b->gradient), "gradient, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->divergence, &b->divergence), "divergence, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->hessian, &b->hessian), "Hessian, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->laplacian, &b->laplacian), "Laplacian, %s", where);
+    TEST_REQUIRE(fixture_same_bits(&a->curvature, &b->curvature), "curvature, %s", where);
+}
+
+/* ---- The oracle ------------------------------------------------------------------------------ */
+
+static double ratio_of(const fixture_array *found, int i, const quad *exact, quad bound)
+{
+    double numbers[27];
+    for (int k = 0; k < found->width; k++)
+        numbers[k] = fixture_get(found, i, k);
+    return oracle_ratio(found->width, numbers, exact, bound);
+}
+
+static void compare(const stage *on, sphg_shape shape, const curved *found, const double *numbers,
+                    const double *lent, int i)
+{
+    const oracle_field field = {shape, SPHG_DIFFERENCE, numbers, NULL};
+    const oracle_curved exact = oracle_apply_borrowed(on->reference, &field, lent, i);
+    if (exact.undecided)
+        return;
+    const struct {
+        const char *what;
+        const fixture_array *array;
+        const quad *numbers;
+        quad bound;
+    } rows[] = {{"gradient", &found->gradient, exact.gradient, exact.gradient_bound},
+                {"divergence", &found->divergence, exact.divergence, exact.gradient_bound},
+                {"Hessian", &found->hessian, exact.hessian, exact.hessian_bound},
+                {"Laplacian", &found->laplacian, exact.laplacian, exact.hessian_bound}};
+    for (int k = 0; k < 4; k++)
+        TEST_WITHIN(borrowed_ratio, ratio_of(rows[k].array, i, rows[k].numbers, rows[k].bound),
+                    test_text("%s of particle %d, %s, %s", rows[k].what, i, on->name,
+                              test_method_name(on->test->method)));
+}
+
+/* What is lent, and who would borrow. */
+static void compare_offer(const stage *on, const curved *found, const double *lent, int i)
+{
+    oracle_second second;
+    const oracle_point *point = oracle_at(on->reference, i);
+    oracle_solve_second(&on->scene, point, &second);
+    const oracle_offer offer = oracle_offer_of(&on->scene, point, &second);
+    if (second.undecided || point->undecided)
+        return;
+    const int width = found->curvature.width;
+    quad exact = offer.confidence, blur = offer.blur;
+    if (lent) {
+        exact = oracle_confidence_lent(&on->scene, point, exact, lent, width);
+        blur += 256 * on->scene.unit;
+    }
+    const double off = fixture_get(&found->curvature, i, 0) - (double)exact;
+    TEST_WITHIN(borrowed_confidence, fabs(off) / ((double)blur + on->scene.unit),
+                test_text("confidence of particle %d, %s", i, on->name));
+    TEST_REQUIRE(!offer.sure || fixture_get(&found->borrows, i, 0) == offer.open,
+                 "particle %d borrows: %g, %s", i, fixture_get(&found->borrows, i, 0), on->name);
+}
+
+/* What targets lend is c times their Hessian. */
+static void compare_lent(const stage *on, const curved *found, int i)
+{
+    const double c = fixture_get(&found->curvature, i, 0);
+    for (int k = 0; k < found->hessian.width; k++) {
+        double product = c * fixture_get(&found->hessian, i, k);
+        if (test_field_type(on->test) == SPHG_F32)
+            product = (double)(float)product;
+        TEST_REQUIRE(fixture_get(&found->curvature, i, 1 + k) == (c > 0 ? product : 0),
+                     "particle %d lends %g of component %d, %s", i, product, k, on->name);
+    }
+}
+
+static void results_match_the_oracle(const test_case *test)
+{
+    int borrowers = 0, lenders = 0;
+    for (int s = 0; s < scenes_hard_count; s++) {
+        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
+            const double *numbers = stage_random_field(&on, (sphg_shape)shape, 3);
+            const curved first = apply(&on, (sphg_shape)shape, numbers, (how){0});
+            const curved found =
+                apply(&on, (sphg_shape)shape, numbers, (how){.lent = &first.curvature});
+            const double *lent = fixture_doubles(&first.curvature);
+            const int step = on.points.count < 6 ? 1 : on.points.count / 6;
+            for (int i = 0; i < on.points.count; i += step) {
+                compare(&on, (sphg_shape)shape, &found, numbers, lent, i);
+                compare_offer(&on, &first, NULL, i);
+                compare_offer(&on, &found, lent, i);
+                compare_lent(&on, &first, i);
+                compare_lent(&on, &found, i);
+                borrowers += fixture_get(&first.borrows, i, 0) == 1;
+                lenders += fixture_get(&first.curvature, i, 0) > 0;
+            }
+        }
+    }
+    TEST_REQUIRE(borrowers > 20 && lenders > 10, "%d borrow, %d lend", borrowers, lenders);
+}
+
+/* Lenders need not be what this cloud would lend: any numbers do. */
+static void every_policy_and_instruction_set_matches_the_oracle(const test_case *test)
+{
+    static const int chosen[] = {0, 5, 10};
+    for (int s = 0; s < 3; s++)
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
+            for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+                const stage made = stage_of_scene(test, &scenes_hard[chosen[s]]);
+                stage on = second_order(stage_under(&made, (sphg_policy)policy, .0625));
+                on.context = fixture_context_on((sphg_isa)isa);
+                if (!on.context)
+                    continue;
+                on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
+                const int n = on.points.count,
+                          width = 1 + test->dimension * pairs_of(test->dimension);
+                double *lent = test_memory((size_t)(n * width) * sizeof *lent);
+                random_state random = random_seeded(8);
+                for (int k = 0; k < n * width; k++)
+                    lent[k] = (double)(float)random_between(&random, k % width ? -9 : 0,
+                                                            k % width ? 9 : 1);
+                const fixture_array given = fixture_numbers(test_field_type(test), n, width, lent);
+                const double *numbers = stage_random_field(&on, SPHG_VECTOR, 5);
+                const curved found = apply(&on, SPHG_VECTOR, numbers, (how){.lent = &given});
+                for (int i = 0; i < n; i += 1 + n / 4) {
+                    compare(&on, SPHG_VECTOR, &found, numbers, lent, i);
+                    compare_offer(&on, &found, lent, i);
+                }
+            }
+}
+
+/* ---- Lattices -------------------------------------------------------------------------------- */
+
+/* per_axis^d particles on [-1, 1]^d, moved by up to jitter spacings, with V = 1 / sum W. */
+static stage block_of(const test_case *test, int per_axis, double support, double jitter)
+{
+    const int d = test->dimension;
+    const double spacing = 2. / per_axis;
+    random_state random = random_seeded(5);
+    cloud points = cloud_lattice(d, per_axis, spacing);
+    for (int k = 0; k < points.count * d; k++)
+        points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing +
+                      (jitter > 0 ? jitter * spacing * random_between(&random, -1, 1) : 0);
+    const stage on = stage_of(test, "block", points, support * spacing * (1 + 1e-6));
+    sphg_scheme plain = on.scheme;
+    plain.method = SPHG_PLAIN;
+    const double one = 1;
+    double *volumes = test_memory((size_t)points.count * sizeof *volumes);
+    const sphg_view ones = sphg_same_f64(&one);
+    const sphg_sources sources = {.neighbors = on.neighbors, .volume = ones};
+    sphg_field field = {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &ones};
+    field.value = sphg_view_f64(volumes, sizeof *volumes);
+    const sphg_request request = {
+        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &plain, &request));
+    for (int i = 0; i < points.count; i++)
+        volumes[i] = 1 / volumes[i];
+    return second_order(stage_with_volumes(&on, volumes));
+}
+
+static int is_boundary(const stage *on, int i)
+{
+    const int d = on->points.dimension;
+    for (int a = 0; a < d; a++)
+        if (1 - fabs(on->points.x[i * d + a]) < 2 * on->points.spacing)
+            return 1;
+    return 0;
+}
+
+/* (cos 2x, cos y - sin 3x) in 2D, cos y - sin 3x + cos 2z in 3D: value, derivatives, Laplacian. */
+static void wave(int d, const double *x, double *value, double *slope, double *laplacian)
+{
+    if (d == 2) {
+        value[0] = cos(2 * x[0]), value[1] = cos(x[1]) - sin(3 * x[0]);
+        slope[0] = -2 * sin(2 * x[0]), slope[1] = 0;
+        slope[2] = -3 * cos(3 * x[0]), slope[3] = -sin(x[1]);
+        laplacian[0] = -4 * cos(2 * x[0]), laplacian[1] = 9 * sin(3 * x[0]) - cos(x[1]);
+        return;
+    }
+    value[0] = cos(x[1]) - sin(3 * x[0]) + cos(2 * x[2]);
+    slope[0] = -3 * cos(3 * x[0]), slope[1] = -sin(x[1]), slope[2] = -2 * sin(2 * x[2]);
+    laplacian[0] = -cos(x[1]) + 9 * sin(3 * x[0]) - 4 * cos(2 * x[2]);
+}
+
+typedef struct errors {
+    double boundary, inside, laplacian, mean;
+} errors;
+
+static errors errors_of(const stage *on, const curved *found)
+{
+    const int d = on->points.dimension, n = on->points.count;
+    errors worst = {0};
+    for (int i = 0; i < n; i++) {
+        double value[2], slope[4], laplacian[2], square = 0;
+        wave(d, on->points.x + i * d, value, slope, laplacian);
+        for (int k = 0; k < found->gradient.width; k++)
+            square += pow(fixture_get(&found->gradient, i, k) - slope[k], 2);
+        double *most = is_boundary(on, i) ? &worst.boundary : &worst.inside;
+        *most = fmax(*most, sqrt(square));
+        worst.mean += sqrt(square) / n;
+        for (int c = 0; c < found->laplacian.width && is_boundary(on, i); c++)
+            worst.laplacian =
+                fmax(worst.laplacian, fabs(fixture_get(&found->laplacian, i, c) - laplacian[c]));
+    }
+    return worst;
+}
+
+static double *waves_on(const stage *on)
+{
+    const int d = on->points.dimension, width = d == 2 ? 2 : 1;
+    double *numbers = test_memory((size_t)(on->points.count * width) * sizeof *numbers);
+    for (int i = 0; i < on->points.count; i++) {
+        double slope[4], laplacian[2];
+        wave(d, on->points.x + i * d, numbers + i * width, slope, laplacian);
+    }
+    return numbers;
+}
+
+/* The first call, and `passes` that borrow: each targets that would, the others keep theirs. */
+static errors errors_after(const stage *on, int passes, sphg_stats *stats)
+{
+    const sphg_shape shape = on->points.dimension == 2 ? SPHG_VECTOR : SPHG_SCALAR;
+    const double *numbers = waves_on(on);
+    curved found = apply(on, shape, numbers, (how){0});
+    const sphg_subset open = sphg_masked(found.borrows.data, on->points.count);
+    *stats = found.stats;
+    for (int pass = 0; pass < passes; pass++) {
+        curved next = apply(on, shape, numbers, (how){.lent = &found.curvature, .subset = &open});
+        const fixture_array *from[] = {&found.gradient, &found.laplacian, &found.curvature};
+        fixture_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < on->points.count; i++)
+                for (int c = 0; c < to[k]->width && !fixture_get(&found.borrows, i, 0); c++)
+                    fixture_put(to[k], i * to[k]->width + c, fixture_get(from[k], i, c));
+        next.borrows = found.borrows;
+        found = next;
+    }
+    return errors_of(on, &found);
+}
+
+typedef struct gate {
+    sphg_method method;
+    int per_axis;
+    double support, before, after, again, inside, laplacian;
+    int64_t full;
+} gate;
+
+static double relative(double found, double expected)
+{
+    return fabs(found / expected - 1);
+}
+
+static void check_gate(const test_case *test, const gate *known)
+{
+    if (known->method != test->method)
+        return;
+    const stage on = block_of(test, known->per_axis, known->support, 0);
+    sphg_stats stats;
+    const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
+    const errors twice = errors_after(&on, 2, &stats);
+    TEST_REQUIRE(relative(alone.boundary, known->before) < 6e-4 &&
+                     relative(once.boundary, known->after) < 4e-3 &&
+                     relative(twice.boundary, known->again) < 4e-3 &&
+                     relative(once.inside, known->inside) < 1e-3 &&
+                     relative(once.laplacian, known->laplacian) < 3e-4,
+                 "%d: %.5f, %.5f, %.5f, inside %.6f, Laplacian %.4f", known->per_axis,
+                 alone.boundary, once.boundary, twice.boundary, once.inside, once.laplacian);
+    TEST_REQUIRE(stats.quadratic == known->full, "%lld full", (long long)stats.quadratic);
+}
+
+static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
+{
+    static const gate gates[] = {
+        {SPHG_KGC, 40, 2, .09080, .02225, .02237, .011212, 1.3263, 1444},
+        {SPHG_KGC, 80, 2, .04527, .00570, .00573, .002811, .6787, 6084},
+        {SPHG_KGC, 160, 2, .02259, .00144, .00145, .000711, .3423, 24964},
+        {SPHG_KGC, 40, 2.5, .02228, .02282, .02282, .016812, 1.3533, 1600},
+        {SPHG_RKPM, 40, 2, .09077, .02224, .02234, .011212, 1.3263, 1444},
+        {SPHG_RKPM, 80, 2, .04526, .00570, .00572, .002811, .6787, 6084},
+    };
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++)
+        check_gate(test, &gates[g]);
+}
+
+static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
+{
+    static const gate gates[] = {
+        {SPHG_KGC, 12, 2, .53061, .19215, .19646, .124337, 4.7476, 1000},
+        {SPHG_KGC, 24, 2, .20425, .05889, .06030, .032273, 2.7002, 10648},
+        {SPHG_RKPM, 12, 2, .53055, .19199, .19567, .124337, 4.7444, 1000},
+    };
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++)
+        check_gate(test, &gates[g]);
+}
+
+/* Disordered particles: the largest error falls like the square of the spacing. */
+static void jitter_keeps_the_second_order(const test_case *test)
+{
+    static const struct {
+        int per_axis;
+        double alone, borrowed, mean;
+    } known[] = {{24, .178, .078, .0209}, {36, .125, .0335, .0093}, {48, .090, .0185, .0052}};
+    for (int k = 0; k < (test_is_shared() ? 2 : 3); k++) {
+        const stage on = block_of(test, known[k].per_axis, 2, .2);
+        sphg_stats stats;
+        const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
+        /* The largest of some ten thousand errors: another cloud has another. */
+        TEST_REQUIRE(alone.boundary > .6 * known[k].alone &&
+                         once.boundary < 1.5 * known[k].borrowed &&
+                         relative(once.mean, known[k].mean) < .02,
+                     "%d: %.4f, then %.4f, mean %.4f", known[k].per_axis, alone.boundary,
+                     once.boundary, once.mean);
+    }
+}
+
+/* ---- Exactness ------------------------------------------------------------------------------- */
+
+/* c.x + x^T Q x / 2 of small whole numbers. */
+static const double slopes[] = {3, -2, 1}, curvatures[] = {2, -4, 6, 4, -2, 8};
+
+static double *polynomial(const cloud *points, int degree)
+{
+    const int d = points->dimension;
+    double *numbers = test_memory((size_t)points->count * sizeof *numbers);
+    for (int i = 0; i < points->count; i++) {
+        const double *x = points->x + i * d;
+        for (int a = 0, k = 0; a < d; a++) {
+            numbers[i] += slopes[a] * x[a];
+            for (int b = a; degree == 2 && b < d; b++, k++)
+                numbers[i] += curvatures[k] * x[a] * x[b] * (a == b ? .5 : 1);
+        }
+    }
+    return numbers;
+}
+
+static double distance_from_exact(const stage *on, const curved *found, int i)
+{
+    const int d = on->points.dimension;
+    const double *x = on->points.x + i * d;
+    double slope[3] = {0}, square = 0;
+    for (int a = 0, k = 0; a < d; a++) {
+        slope[a] += slopes[a];
+        for (int b = a; b < d; b++, k++) {
+            slope[a] += curvatures[k] * x[b];
+            slope[b] += a == b ? 0 : curvatures[k] * x[a];
+            square += pow(on->scheme.support_radius *
+                              (fixture_get(&found->hessian, i, k) - curvatures[k]),
+                          2);
+        }
+    }
+    for (int a = 0; a < d; a++)
+        square += pow(fixture_get(&found->gradient, i, a) - slope[a], 2);
+    return sqrt(square);
+}
+
+static int exact_ones(const stage *on, const curved *found)
+{
+    int count = 0;
+    for (int i = 0; i < on->points.count; i++)
+        count += distance_from_exact(on, found, i) < 1e-10;
+    return count;
+}
+
+/* Who is exact alone: all inside; with lenders beside it: all but the corners of a corner; then
+ * all. */
+static void quadratic_fields_are_exact_where_lenders_are(const test_case *test)
+{
+    const int d = test->dimension, per_axis = d == 3 ? 12 : 16;
+    const stage on = block_of(test, per_axis, 2, 0);
+    const double *numbers = polynomial(&on.points, 2);
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved second = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &first.curvature});
+    const curved third = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &second.curvature});
+    const int counts[] = {exact_ones(&on, &first), exact_ones(&on, &second),
+                          exact_ones(&on, &third)};
+    const int all = on.points.count, before = d == 3 ? 1000 : 196, after = d == 3 ? 1720 : all;
+    TEST_REQUIRE(counts[0] == before && counts[1] == after && counts[2] == all, "%d, %d, %d of %d",
+                 counts[0], counts[1], counts[2], all);
+}
+
+/* Where particles are lost in a crowd of unlike neighbours, too. */
+static void each_pass_makes_more_exact(const test_case *test)
+{
+    random_state random = random_seeded(3);
+    const int d = test->dimension;
+    const stage on = second_order(
+        stage_of(test, "surface", cloud_free_surface(d, d == 2 ? 12 : 7, .25, &random), .5));
+    const double *numbers = polynomial(&on.points, 2);
+    curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    int before = exact_ones(&on, &found);
+    const int first = before;
+    for (int pass = 0; pass < 3; pass++) {
+        const curved next = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &found.curvature});
+        const int now = exact_ones(&on, &next);
+        TEST_REQUIRE(now >= before, "%d, then %d in pass %d", before, now, pass);
+        before = now;
+        found = next;
+    }
+    TEST_REQUIRE(before > first + on.points.count / 20, "%d, then %d of %d", first, before,
+                 on.points.count);
+}
+
+static void linear_fields_are_left_alone(const test_case *test)
+{
+    random_state random = random_seeded(4);
+    const int d = test->dimension;
+    const stage on = second_order(
+        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 6, .25, .2, &random), .5));
+    const double *numbers = polynomial(&on.points, 1);
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &first.curvature});
+    for (int i = 0; i < on.points.count; i++)
+        for (int a = 0; a < d && fixture_get(&found.rank, i, 0) >= d; a++)
+            TEST_WITHIN(linear_with_lenders,
+                        fabs(fixture_get(&found.gradient, i, a) - slopes[a]) / on.scene.unit,
+                        test_text("particle %d", i));
+}
+
+/* ---- Nobody, somebody ------------------------------------------------------------------------ */
+
+/* Lenders without confidence, and clouds without lenders. */
+static void who_is_lent_nothing_keeps_every_bit(const test_case *test)
+{
+    const int d = test->dimension;
+    random_state random = random_seeded(6);
+    const cloud clouds[] = {cloud_jittered(d, d == 2 ? 9 : 5, .25, .2, &random),
+                            cloud_plane(d, d == 2 ? 8 : 5, .25),
+                            cloud_line(d, 5, .125),
+                            cloud_single(d),
+                            cloud_pair(d, .3),
+                            cloud_coincident(d, 3, 1, .25)};
+    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
+        const stage on = second_order(stage_of(test, test_text("cloud %d", (int)c), clouds[c], .5));
+        const double *numbers = stage_random_field(&on, SPHG_VECTOR, 11);
+        const curved first = apply(&on, SPHG_VECTOR, numbers, (how){0});
+        const int width = first.curvature.width;
+        double *lent = test_memory((size_t)(on.points.count * width) * sizeof *lent);
+        for (int k = 0; k < on.points.count * width && c > 0; k++)
+            lent[k] = fixture_get(&first.curvature, k / width, k % width);
+        const fixture_array given =
+            fixture_numbers(test_field_type(test), on.points.count, width, lent);
+        const curved found = apply(&on, SPHG_VECTOR, numbers, (how){.lent = &given});
+        require_same_bits(&first, &found, on.name);
+        for (int i = 0; i < on.points.count && c > 0; i++)
+            TEST_REQUIRE(fixture_get(&found.curvature, i, 0) == 0 &&
+                             fixture_get(&found.borrows, i, 0) == 1,
+                         "particle %d, %s", i, on.name);
+    }
+}
+
+/* The mask is those who would borrow: others have the same results with lenders, to the bit. */
+static void a_mask_of_borrowers_leaves_nothing_out(const test_case *test)
+{
+    random_state random = random_seeded(7);
+    const int d = test->dimension;
+    stage on = second_order(
+        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 12 : 7, .25, .3, &random), .5));
+    const double *numbers = stage_random_field(&on, SPHG_VECTOR, 12);
+    const curved first = apply(&on, SPHG_VECTOR, numbers, (how){0});
+    const curved all = apply(&on, SPHG_VECTOR, numbers, (how){.lent = &first.curvature});
+    const sphg_subset open = sphg_masked(first.borrows.data, on.points.count);
+    const how some = {.lent = &first.curvature, .subset = &open};
+    const curved masked = apply(&on, SPHG_VECTOR, numbers, some);
+    const fixture_array positions = fixture_positions(test, &on.points);
+    sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
+    geometry.list_free = 1;
+    on.neighbors = fixture_search(on.context, &on.scheme, &geometry);
+    const curved anew = apply(&on, SPHG_VECTOR, numbers, some);
+    require_same_bits(&masked, &anew, "list-free");
+    const int32_t chosen[] = {0, 7,
+                              on.points.count - 1}; /* so few that rows are copied one by one */
+    const sphg_subset few = sphg_listed(chosen, 3);
+    const curved apart =
+        apply(&on, SPHG_VECTOR, numbers, (how){.lent = &first.curvature, .subset = &few});
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < all.hessian.width; c++)
+            TEST_REQUIRE(fixture_get(&apart.hessian, chosen[k], c) ==
+                             fixture_get(&all.hessian, chosen[k], c),
+                         "target %d", chosen[k]);
+    int borrowers = 0;
+    for (int i = 0; i < on.points.count; i++) {
+        const int borrows = (int)fixture_get(&first.borrows, i, 0);
+        borrowers += borrows;
+        TEST_REQUIRE(borrows || fixture_is_canary(&masked.gradient, i), "target %d is written", i);
+        const curved *expected = borrows ? &masked : &first;
+        for (int k = 0; k < all.hessian.width; k++)
+            TEST_REQUIRE(fixture_get(&all.hessian, i, k) == fixture_get(&expected->hessian, i, k),
+                         "Hessian of %d", i);
+        for (int k = 0; k < all.gradient.width; k++)
+            TEST_REQUIRE(fixture_get(&all.gradient, i, k) == fixture_get(&expected->gradient, i, k),
+                         "gradient of %d", i);
+    }
+    TEST_REQUIRE(borrowers > 10 && borrowers < on.points.count, "%d of %d borrow", borrowers,
+                 on.points.count);
+}
+
+/* A call of several fields: one borrows, one does not, and a third has lenders of its own. */
+static void fields_borrow_each_for_itself(const test_case *test)
+{
+    random_state random = random_seeded(9);
+    const int d = test->dimension;
+    const stage on = second_order(
+        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .3, &random), .5));
+    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 13);
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved second = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &first.curvature});
+    const curved third = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &second.curvature});
+    const curved *const expected[] = {&second, &first, &third};
+    const fixture_array *const lent[] = {&first.curvature, NULL, &second.curvature};
+    const fixture_array values =
+        fixture_numbers(test_field_type(test), on.points.count, 1, numbers);
+    const sphg_view at_sources = fixture_view(&values);
+    sphg_sources sources = stage_sources(&on);
+    sphg_field fields[3];
+    sphg_view lenders[3];
+    curved found[3];
+    for (int k = 0; k < 3; k++) {
+        found[k] = outputs_of(&on, SPHG_SCALAR);
+        fields[k] = (sphg_field){.shape = SPHG_SCALAR, .at_sources = &at_sources};
+        ask(&found[k], (how){0}, &fields[k]);
+        if (lent[k])
+            lenders[k] = fixture_view(lent[k]);
+        fields[k].lenders = lent[k] ? &lenders[k] : NULL;
+    }
+    const sphg_request request = {
+        .sources = &sources, .fields = fields, .set_count = 1, .field_count = 3};
+    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    for (int k = 0; k < 3; k++)
+        require_same_bits(expected[k], &found[k], test_text("field %d", k));
+}
+
+/* Particles [first, first + count) as sources of all, which stand apart. */
+typedef struct part {
+    sphg_sources set;
+    sphg_view at_sources, lenders;
+} part;
+
+static sphg_view from(sphg_view view, int first)
+{
+    view.x = (const char *)view.x + first * view.stride;
+    return view;
+}
+
+static part part_of(const stage *on, const sphg_view *positions, const sphg_view *values,
+                    const fixture_array *lent, int first, int count)
+{
+    part made = {.at_sources = from(*values, first)};
+    sphg_geometry geometry =
+        sphg_targets_apart(*positions, on->points.count, from(*positions, first), count);
+    geometry.precision = test_field_type(on->test);
+    made.set.neighbors = fixture_search(on->context, &on->scheme, &geometry);
+    made.set.volume = from(fixture_view(&on->volume), first);
+    made.lenders = from(fixture_view(lent), first);
+    return made;
+}
+
+static curved apply_parts(const stage *on, const sphg_view *values, const part *parts, int count)
+{
+    const curved found = outputs_of(on, SPHG_SCALAR);
+    sphg_sources sets[2];
+    sphg_view at_sources[2], lenders[2];
+    for (int s = 0; s < count; s++)
+        sets[s] = parts[s].set, at_sources[s] = parts[s].at_sources, lenders[s] = parts[s].lenders;
+    sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources, .lenders = lenders};
+    ask(&found, (how){0}, &field);
+    field.at_targets = *values;
+    sphg_request request = {
+        .sources = sets, .fields = &field, .set_count = count, .field_count = 1};
+    request.target_volume = fixture_view(&on->volume);
+    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+/* Half of the particles each; where a view is absent, or says 0, its set lends nothing. */
+static void source_sets_lend_each_for_itself(const test_case *test)
+{
+    random_state random = random_seeded(10);
+    const int d = test->dimension;
+    stage on = second_order(
+        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .2, &random), .5));
+    const int n = on.points.count, half = n / 2;
+    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 14);
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const fixture_array places = fixture_positions(test, &on.points);
+    const fixture_array held = fixture_numbers(test_field_type(test), n, 1, numbers);
+    const sphg_view positions = fixture_view(&places), values = fixture_view(&held);
+    curved all[2];
+    for (int lend = 0; lend < 2; lend++) {
+        double *lent = fixture_doubles(&first.curvature);
+        const int width = first.curvature.width;
+        for (int k = half * width; k < n * width && !lend; k++)
+            lent[k] = 0;
+        const fixture_array given = fixture_numbers(test_field_type(test), n, width, lent);
+        const part whole = part_of(&on, &positions, &values, &given, 0, n);
+        part parts[] = {part_of(&on, &positions, &values, &given, 0, half),
+                        part_of(&on, &positions, &values, &given, half, n - half)};
+        if (!lend)
+            parts[1].lenders = sphg_absent();
+        all[lend] = apply_parts(&on, &values, &whole, 1);
+        const curved found = apply_parts(&on, &values, parts, 2);
+        fixture_require_close(&all[lend].gradient, &found.gradient, "gradient of two sets");
+        fixture_require_close(&all[lend].hessian, &found.hessian, "Hessian of two sets");
+        fixture_require_close(&all[lend].curvature, &found.curvature, "what two sets lend");
+    }
+    TEST_REQUIRE(!fixture_same_bits(&all[0].gradient, &all[1].gradient),
+                 "the second set's loans are not read");
+}
+
+/* ---- Continuity ------------------------------------------------------------------------------ */
+
+typedef struct slide {
+    sphg_context *context;
+    sphg_neighbors *neighbors;
+    sphg_scheme scheme;
+    cloud points;
+    double (*gradient)[3], (*hessian)[6], (*lent[2])[7], *value;
+} slide;
+
+static slide slide_of(const test_case *test, int per_axis)
+{
+    random_state random = random_seeded(7);
+    const int d = test->dimension;
+    const cloud block = cloud_jittered(d, per_axis, 1, .15, &random);
+    const size_t n = (size_t)block.count + 1;
+    slide made = {.context = fixture_context_of(1), .scheme = fixture_scheme(test, 2)};
+    made.scheme.order = 2;
+    made.points = (cloud){.dimension = d, .count = (int)n, .spacing = 1};
+    made.points.x = test_memory(n * (size_t)d * sizeof(double));
+    memcpy(made.points.x, block.x, (n - 1) * (size_t)d * sizeof(double));
+    made.gradient = test_memory(n * sizeof *made.gradient);
+    made.hessian = test_memory(n * sizeof *made.hessian);
+    made.lent[0] = test_memory(n * sizeof *made.lent[0]);
+    made.lent[1] = test_memory(n * sizeof *made.lent[1]);
+    made.value = test_memory(n * sizeof *made.value);
+    FIXTURE_OK(made.context, sphg_neighbors_create(made.context, &made.neighbors));
+    return made;
+}
+
+static void evaluate_slide(slide *on, int passes)
+{
+    const int d = on->points.dimension, n = on->points.count;
+    const double one = 1;
+    const sphg_sources sources = {.neighbors = on->neighbors, .volume = sphg_same_f64(&one)};
+    const sphg_view at_sources = sphg_view_f64(on->value, 8);
+    for (int i = 0; i < n; i++) {
+        const double *x = on->points.x + i * d, y = x[1], z = d == 3 ? x[2] : 0;
+        on->value[i] = sin(1.3 * x[0]) + .5 * y * y + .3 * x[0] * y + .4 * z * z - .2 * y * z;
+    }
+    for (int pass = 0; pass <= passes; pass++) {
+        const sphg_view lenders = sphg_view_f64(on->lent[pass % 2][0], sizeof on->lent[0][0]);
+        sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
+        field.gradient = sphg_view_f64(on->gradient[0], sizeof on->gradient[0]);
+        field.hessian = sphg_view_f64(on->hessian[0], sizeof on->hessian[0]);
+        field.curvature = sphg_view_f64(on->lent[(pass + 1) % 2][0], sizeof on->lent[0][0]);
+        field.lenders = pass ? &lenders : NULL;
+        const sphg_request request = {
+            .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    }
+}
+
+/* A particle passes through the block, or along its face; nobody's result may jump. Second
+ * derivatives in the units of h, whose basis is some five times longer. */
+static double largest_step(const test_case *test, int per_axis, int along, int passes, int steps)
+{
+    slide on = slide_of(test, per_axis);
+    const int d = test->dimension, n = on.points.count, width = d + pairs_of(d);
+    double(*before)[9] = test_memory((size_t)n * sizeof *before), worst = 0;
+    const double h2 = on.scheme.support_radius * on.scheme.support_radius;
+    for (int step = 0; step <= steps; step++) {
+        const double at = (double)step / steps;
+        const double x[] = {along ? -1.9 : -3 + 3.4 * at, along ? -2.5 + (per_axis + 4) * at : 1.37,
+                            .61};
+        memcpy(on.points.x + (n - 1) * d, x, (size_t)d * sizeof *x);
+        sphg_geometry geometry = sphg_all(sphg_view_f64(on.points.x, 8 * d), n);
+        geometry.list_free = 1;
+        FIXTURE_OK(on.context,
+                   sphg_neighbors_search(on.context, on.neighbors, &on.scheme, &geometry));
+        evaluate_slide(&on, passes);
+        for (int i = 0; i < n; i++)
+            for (int k = 0; k < width; k++) {
+                const double now = k < d ? on.gradient[i][k] : h2 * on.hessian[i][k - d] / 5;
+                if (step)
+                    worst = fmax(worst, fabs(now - before[i][k]));
+                before[i][k] = now;
+            }
+    }
+    sphg_neighbors_destroy(on.neighbors);
+    return worst;
+}
+
+static void a_sliding_neighbour_makes_no_jump(const test_case *test)
+{
+    static const struct {
+        int along, passes;
+    } ways[] = {{0, 0}, {0, 1}, {1, 1}, {0, 2}};
+    for (int k = 0; k < 4; k++) {
+        const int per_axis = test->dimension == 2 ? 5 : 3;
+        const double once = largest_step(test, per_axis, ways[k].along, ways[k].passes, 10000);
+        const double twice = largest_step(test, per_axis, ways[k].along, ways[k].passes, 20000);
+        TEST_REQUIRE(twice < .01 && twice < .6 * once, "%g, then %g, %d passes", once, twice,
+                     ways[k].passes);
+    }
+}
+
+/* ---- What is refused ------------------------------------------------------------------------- */
+
+static void require_refused(const stage *on, const sphg_field *field, const sphg_request *asked,
+                            const sphg_scheme *scheme, const char *words)
+{
+    sphg_request request = *asked;
+    request.fields = field;
+    request.field_count = field ? 1 : 0;
+    const sphg_result result = sphg_evaluate(on->context, scheme, &request);
+    const char *message = sphg_last_message(on->context);
+    TEST_REQUIRE(result == SPHG_ERROR_UNSUPPORTED && strstr(message, words), "%d: %s", (int)result,
+                 message);
+}
+
+static void what_cannot_be_borrowed_is_refused_by_name(const test_case *test)
+{
+    random_state random = random_seeded(15);
+    const int d = test->dimension;
+    const stage on =
+        second_order(stage_of(test, "block", cloud_jittered(d, 4, .25, .2, &random), .5));
+    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 16);
+    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved out = outputs_of(&on, SPHG_SCALAR);
+    const fixture_array values =
+        fixture_numbers(test_field_type(test), on.points.count, 1, numbers);
+    const fixture_array table = stage_table(&on);
+    const sphg_view at_sources = fixture_view(&values), lenders = fixture_view(&found.curvature);
+    const sphg_sources sources = stage_sources(&on);
+    sphg_scheme first = on.scheme;
+    first.order = 1;
+    sphg_request request = {.sources = &sources, .set_count = 1};
+    sphg_field lends = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
+    sphg_field borrows = lends;
+    lends.curvature = fixture_view(&out.curvature);
+    borrows.gradient = fixture_view(&out.gradient);
+    borrows.lenders = &lenders;
+    require_refused(&on, &lends, &request, &first, "fields[0].curvature needs scheme.order 2");
+    require_refused(&on, &borrows, &request, &first, "fields[0].lenders needs scheme.order 2");
+    request.target_correction = fixture_view(&table);
+    require_refused(&on, &lends, &request, &on.scheme, "curvature beside a table");
+    require_refused(&on, &borrows, &request, &on.scheme, "lenders beside a table");
+    request.target_correction = sphg_absent();
+    const fixture_array wanted_table =
+        fixture_output(test_field_type(test), on.points.count, table.width);
+    request.correction = fixture_view(&wanted_table);
+    require_refused(&on, &borrows, &request, &on.scheme, "lenders beside a wanted correction");
+    request.correction = sphg_absent();
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+        lends.form = borrows.form = (sphg_form)form;
+        require_refused(&on, &lends, &request, &on.scheme, "difference form");
+        require_refused(&on, &borrows, &request, &on.scheme, "difference form");
+    }
+    request.borrows = fixture_view(&out.borrows);
+    require_refused(&on, NULL, &request, &first, "borrows needs scheme.order 2");
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(results_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED,
+               0),
+    TEST_ENTRY(every_policy_and_instruction_set_matches_the_oracle, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(lattice_errors_are_the_known_ones_in_2d, TEST_BIT(TEST_F64), TEST_2D,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
+    TEST_ENTRY(lattice_errors_are_the_known_ones_in_3d, TEST_BIT(TEST_F64), TEST_3D,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
+    TEST_ENTRY(quadratic_fields_are_exact_where_lenders_are, TEST_BIT(TEST_F64),
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(each_pass_makes_more_exact, TEST_BIT(TEST_F64), TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(linear_fields_are_left_alone, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(who_is_lent_nothing_keeps_every_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(a_mask_of_borrowers_leaves_nothing_out, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(fields_borrow_each_for_itself, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(source_sets_lend_each_for_itself, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(a_sliding_neighbour_makes_no_jump, 0, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
+    TEST_ENTRY(what_cannot_be_borrowed_is_refused_by_name, TEST_ALL_PRECISIONS, 0, 0, 0),
+    TEST_ENTRY(jitter_keeps_the_second_order, TEST_BIT(TEST_F64), TEST_3D, TEST_BIT(SPHG_KGC), 0),
+};
+TEST_MAIN(entries)
