@@ -48,7 +48,8 @@ int main(void)
     sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     failed = failed || sphg_evaluate(context, &scheme, &request);
-    double error[4] = {gradient_error()}, curvature[4] = {0};
+    const char *const names[] = {"order 1", "order 2", "lent once", "lent twice"};
+    double error[4] = {gradient_error()}, curvature[4] = {12}; /* order 1 has no Laplacian: 0 */
 
     scheme.order = 2;
     field.laplacian = sphg_view_f64(laplacian, sizeof *laplacian);
@@ -65,9 +66,8 @@ int main(void)
     if (failed)
         fprintf(stderr, "%s\n", sphg_last_message(context));
     for (int call = 0; call < 4 && !failed; call++)
-        printf("%-14s gradient: error %-8.1e Laplacian: error %.1e\n",
-               (const char *[]){"order 1", "order 2", "lent once", "lent twice"}[call], error[call],
-               call ? curvature[call] : NAN);
+        printf("%-10s largest errors: gradient %.1e, Laplacian %.1e\n", names[call], error[call],
+               curvature[call]);
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
     return failed || error[1] < .1 || error[3] > 1e-9 || curvature[3] > 1e-9;

@@ -26,13 +26,13 @@
     X(order_of_summation, 256, 43.3, "random cloud: hundreds of terms, C up to 25 / eps")          \
     X(quadratic_ratio_full, 1, .13, "order 2: over D_g and D_h, nothing shifted")                  \
     X(quadratic_ratio_touched, 4, 1.9, "order 2: where the shift or the threshold acts")           \
-    X(quadratic_two_sided, 4, 1.9, "order 2: G of both sides over their bounds")                   \
-    X(borrowed_ratio, 4, 1.9, "borrowed curvature: over bounds of its own, lenders as given")      \
-    X(borrowed_confidence, 4, 1.9, "c over what rounding of S and M2 makes of it")                 \
+    X(quadratic_two_sided, 4, .75, "order 2: G of both sides over their bounds")                   \
+    X(borrowed_ratio, 4, .78, "borrowed curvature: over bounds of its own, lenders as given")      \
+    X(borrowed_confidence, 2, .26, "c over what rounding of S and M2 makes of it")                 \
     /* Properties without the oracle, in units of u */                                             \
     X(linear_exactness, 32, 6.7, "times |J| / lambda_min: the condition of the moments")           \
     X(quadratic_exactness, 32, 5.1, "times the size of curvature / lambda_q, or |F|")              \
-    X(linear_with_lenders, 4096, 700, "condition of M2, slopes around 3, as without lenders")      \
+    X(linear_with_lenders, 4096, 604, "rounding of b2 - K^T b1 over t, slopes around 3")           \
     X(linear_momentum, 8, 1.3, "random signs: a rounding per particle, relative to sum |f|")       \
     X(angular_momentum, 8, 0.7, "relative to sum |x| |f|; C M = 1 to the condition of M")          \
     X(adjointness, 16, 4.8, "two sweeps rounded on their own, relative to the work of one")        \
