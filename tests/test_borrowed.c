@@ -1,126 +1,24 @@
 /* Curvature that is lent and borrowed: against the oracle, by known errors of lattices, exact where
  * order 2 alone is not, continuous, and without a trace where nobody lends. */
+#include "support/curved.h"
 #include "support/oracle_borrowed.h"
 #include "support/scenes.h"
 #include <string.h>
 
-static int pairs_of(int d)
+static curved apply(const stage *on, sphg_shape shape, const double *numbers, curved_how how)
 {
-    return d * (d + 1) / 2;
-}
-
-static stage second_order(stage on)
-{
-    on.scheme.order = 2;
-    return on;
-}
-
-/* ---- Calls ----------------------------------------------------------------------------------- */
-
-typedef struct curved {
-    fixture_array gradient, divergence, hessian, laplacian, curvature, borrows, rank;
-    sphg_stats stats;
-} curved;
-
-/* lent: what an earlier call found; NULL: nobody lends. */
-typedef struct how {
-    const fixture_array *lent;
-    const sphg_subset *subset;
-    int no_curvature;
-} how;
-
-static sphg_view wanted(const fixture_array *array)
-{
-    return array->width ? fixture_view(array) : sphg_absent();
-}
-
-static curved outputs_of(const stage *on, sphg_shape shape)
-{
-    const int n = on->points.count, d = on->points.dimension, width = fixture_width(shape, d);
-    const sphg_type type = test_field_type(on->test);
-    const int tensor = shape >= SPHG_SYM_TENSOR;
-    return (curved){
-        .gradient = fixture_output(type, n, tensor ? 0 : width * d),
-        .divergence = fixture_output(type, n, tensor ? d : shape == SPHG_VECTOR),
-        .hessian = fixture_output(type, n, tensor ? 0 : width * pairs_of(d)),
-        .laplacian = fixture_output(type, n, width),
-        .curvature = fixture_output(type, n, 1 + width * pairs_of(d)),
-        .borrows = fixture_output(SPHG_U8, n, 1),
-        .rank = fixture_output(SPHG_U8, n, 1),
-    };
-}
-
-static void ask(const curved *found, how asked, sphg_field *field)
-{
-    field->gradient = wanted(&found->gradient);
-    field->divergence = wanted(&found->divergence);
-    field->hessian = wanted(&found->hessian);
-    field->laplacian = wanted(&found->laplacian);
-    if (!asked.no_curvature)
-        field->curvature = fixture_view(&found->curvature);
-}
-
-static curved apply(const stage *on, sphg_shape shape, const double *numbers, how asked)
-{
-    const int width = fixture_width(shape, on->points.dimension);
-    curved found = outputs_of(on, shape);
-    fixture_array values =
-        fixture_numbers(test_field_type(on->test), on->points.count, width, numbers);
-    const sphg_view at_sources = fixture_view(&values);
-    const sphg_view lenders = asked.lent ? fixture_view(asked.lent) : sphg_absent();
-    sphg_sources sources = stage_sources(on);
-    sphg_field field = {.shape = shape, .at_sources = &at_sources};
-    ask(&found, asked, &field);
-    field.lenders = asked.lent ? &lenders : NULL;
-    sphg_request request = {.sources = &sources, .fields = &field, .set_count = 1};
-    request.field_count = 1;
-    request.subset = asked.subset;
-    request.rank = fixture_view(&found.rank);
-    request.borrows = fixture_view(&found.borrows);
-    request.stats = &found.stats;
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-    return found;
-}
-
-static void require_same_bits(const curved *a, const curved *b, const char *where)
-{
-    TEST_REQUIRE(fixture_same_bits(&a->gradient, &b->gradient), "gradient, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->divergence, &b->divergence), "divergence, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->hessian, &b->hessian), "Hessian, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->laplacian, &b->laplacian), "Laplacian, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->curvature, &b->curvature), "curvature, %s", where);
+    how.lends = 1;
+    return curved_apply(on, shape, numbers, how);
 }
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
-
-static double ratio_of(const fixture_array *found, int i, const quad *exact, quad bound)
-{
-    double numbers[27];
-    for (int k = 0; k < found->width; k++)
-        numbers[k] = fixture_get(found, i, k);
-    return oracle_ratio(found->width, numbers, exact, bound);
-}
 
 static void compare(const stage *on, sphg_shape shape, const curved *found, const double *numbers,
                     const double *lent, int i)
 {
     const oracle_field field = {shape, SPHG_DIFFERENCE, numbers, NULL};
     const oracle_curved exact = oracle_apply_borrowed(on->reference, &field, lent, i);
-    if (exact.undecided)
-        return;
-    const struct {
-        const char *what;
-        const fixture_array *array;
-        const quad *numbers;
-        quad bound;
-    } rows[] = {{"gradient", &found->gradient, exact.gradient, exact.gradient_bound},
-                {"divergence", &found->divergence, exact.divergence, exact.gradient_bound},
-                {"Hessian", &found->hessian, exact.hessian, exact.hessian_bound},
-                {"Laplacian", &found->laplacian, exact.laplacian, exact.hessian_bound}};
-    for (int k = 0; k < 4; k++)
-        TEST_WITHIN(borrowed_ratio, ratio_of(rows[k].array, i, rows[k].numbers, rows[k].bound),
-                    test_text("%s of particle %d, %s, %s", rows[k].what, i, on->name,
-                              test_method_name(on->test->method)));
+    curved_compare(on, found, &exact, i, TEST_TOLERANCE_borrowed_ratio);
 }
 
 /* What is lent, and who would borrow. */
@@ -162,12 +60,12 @@ static void results_match_the_oracle(const test_case *test)
 {
     int borrowers = 0, lenders = 0;
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
         for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
             const double *numbers = stage_random_field(&on, (sphg_shape)shape, 3);
-            const curved first = apply(&on, (sphg_shape)shape, numbers, (how){0});
+            const curved first = apply(&on, (sphg_shape)shape, numbers, (curved_how){0});
             const curved found =
-                apply(&on, (sphg_shape)shape, numbers, (how){.lent = &first.curvature});
+                apply(&on, (sphg_shape)shape, numbers, (curved_how){.lent = &first.curvature});
             const double *lent = fixture_doubles(&first.curvature);
             const int step = on.points.count < 6 ? 1 : on.points.count / 6;
             for (int i = 0; i < on.points.count; i += step) {
@@ -192,13 +90,13 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
             for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
                 const stage made = stage_of_scene(test, &scenes_hard[chosen[s]]);
-                stage on = second_order(stage_under(&made, (sphg_policy)policy, .0625));
+                stage on = curved_stage(stage_under(&made, (sphg_policy)policy, .0625));
                 on.context = fixture_context_on((sphg_isa)isa);
                 if (!on.context)
                     continue;
                 on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
                 const int n = on.points.count,
-                          width = 1 + test->dimension * pairs_of(test->dimension);
+                          width = 1 + test->dimension * curved_pairs(test->dimension);
                 double *lent = test_memory((size_t)(n * width) * sizeof *lent);
                 random_state random = random_seeded(8);
                 for (int k = 0; k < n * width; k++)
@@ -206,7 +104,7 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
                                                             k % width ? 9 : 1);
                 const fixture_array given = fixture_numbers(test_field_type(test), n, width, lent);
                 const double *numbers = stage_random_field(&on, SPHG_VECTOR, 5);
-                const curved found = apply(&on, SPHG_VECTOR, numbers, (how){.lent = &given});
+                const curved found = apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &given});
                 for (int i = 0; i < n; i += 1 + n / 4) {
                     compare(&on, SPHG_VECTOR, &found, numbers, lent, i);
                     compare_offer(&on, &found, lent, i);
@@ -240,7 +138,7 @@ static stage block_of(const test_case *test, int per_axis, double support, doubl
     FIXTURE_OK(on.context, sphg_evaluate(on.context, &plain, &request));
     for (int i = 0; i < points.count; i++)
         volumes[i] = 1 / volumes[i];
-    return second_order(stage_with_volumes(&on, volumes));
+    return curved_stage(stage_with_volumes(&on, volumes));
 }
 
 static int is_boundary(const stage *on, int i)
@@ -306,11 +204,12 @@ static errors errors_after(const stage *on, int passes, sphg_stats *stats)
 {
     const sphg_shape shape = on->points.dimension == 2 ? SPHG_VECTOR : SPHG_SCALAR;
     const double *numbers = waves_on(on);
-    curved found = apply(on, shape, numbers, (how){0});
+    curved found = apply(on, shape, numbers, (curved_how){0});
     const sphg_subset open = sphg_masked(found.borrows.data, on->points.count);
     *stats = found.stats;
     for (int pass = 0; pass < passes; pass++) {
-        curved next = apply(on, shape, numbers, (how){.lent = &found.curvature, .subset = &open});
+        curved next =
+            apply(on, shape, numbers, (curved_how){.lent = &found.curvature, .subset = &open});
         const fixture_array *from[] = {&found.gradient, &found.laplacian, &found.curvature};
         fixture_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
         for (int k = 0; k < 3; k++)
@@ -400,41 +299,16 @@ static void jitter_keeps_the_second_order(const test_case *test)
 
 /* ---- Exactness ------------------------------------------------------------------------------- */
 
-/* c.x + x^T Q x / 2 of small whole numbers. */
-static const double slopes[] = {3, -2, 1}, curvatures[] = {2, -4, 6, 4, -2, 8};
-
-static double *polynomial(const cloud *points, int degree)
-{
-    const int d = points->dimension;
-    double *numbers = test_memory((size_t)points->count * sizeof *numbers);
-    for (int i = 0; i < points->count; i++) {
-        const double *x = points->x + i * d;
-        for (int a = 0, k = 0; a < d; a++) {
-            numbers[i] += slopes[a] * x[a];
-            for (int b = a; degree == 2 && b < d; b++, k++)
-                numbers[i] += curvatures[k] * x[a] * x[b] * (a == b ? .5 : 1);
-        }
-    }
-    return numbers;
-}
-
 static double distance_from_exact(const stage *on, const curved *found, int i)
 {
     const int d = on->points.dimension;
-    const double *x = on->points.x + i * d;
-    double slope[3] = {0}, square = 0;
-    for (int a = 0, k = 0; a < d; a++) {
-        slope[a] += slopes[a];
-        for (int b = a; b < d; b++, k++) {
-            slope[a] += curvatures[k] * x[b];
-            slope[b] += a == b ? 0 : curvatures[k] * x[a];
-            square += pow(on->scheme.support_radius *
-                              (fixture_get(&found->hessian, i, k) - curvatures[k]),
-                          2);
-        }
-    }
+    double slope[3], square = 0;
+    curved_slope_at(&on->points, i, slope);
     for (int a = 0; a < d; a++)
         square += pow(fixture_get(&found->gradient, i, a) - slope[a], 2);
+    for (int k = 0; k < curved_pairs(d); k++)
+        square += pow(
+            on->scheme.support_radius * (fixture_get(&found->hessian, i, k) - curved_second[k]), 2);
     return sqrt(square);
 }
 
@@ -452,10 +326,10 @@ static void quadratic_fields_are_exact_where_lenders_are(const test_case *test)
 {
     const int d = test->dimension, per_axis = d == 3 ? 12 : 16;
     const stage on = block_of(test, per_axis, 2, 0);
-    const double *numbers = polynomial(&on.points, 2);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
-    const curved second = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &first.curvature});
-    const curved third = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &second.curvature});
+    const double *numbers = curved_polynomial(&on.points, 2);
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const curved second = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &first.curvature});
+    const curved third = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &second.curvature});
     const int counts[] = {exact_ones(&on, &first), exact_ones(&on, &second),
                           exact_ones(&on, &third)};
     const int all = on.points.count, before = d == 3 ? 1000 : 196, after = d == 3 ? 1720 : all;
@@ -468,14 +342,15 @@ static void each_pass_makes_more_exact(const test_case *test)
 {
     random_state random = random_seeded(3);
     const int d = test->dimension;
-    const stage on = second_order(
+    const stage on = curved_stage(
         stage_of(test, "surface", cloud_free_surface(d, d == 2 ? 12 : 7, .25, &random), .5));
-    const double *numbers = polynomial(&on.points, 2);
-    curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const double *numbers = curved_polynomial(&on.points, 2);
+    curved found = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
     int before = exact_ones(&on, &found);
     const int first = before;
     for (int pass = 0; pass < 3; pass++) {
-        const curved next = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &found.curvature});
+        const curved next =
+            apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &found.curvature});
         const int now = exact_ones(&on, &next);
         TEST_REQUIRE(now >= before, "%d, then %d in pass %d", before, now, pass);
         before = now;
@@ -489,15 +364,15 @@ static void linear_fields_are_left_alone(const test_case *test)
 {
     random_state random = random_seeded(4);
     const int d = test->dimension;
-    const stage on = second_order(
+    const stage on = curved_stage(
         stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 6, .25, .2, &random), .5));
-    const double *numbers = polynomial(&on.points, 1);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
-    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &first.curvature});
+    const double *numbers = curved_polynomial(&on.points, 1);
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const curved found = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &first.curvature});
     for (int i = 0; i < on.points.count; i++)
         for (int a = 0; a < d && fixture_get(&found.rank, i, 0) >= d; a++)
             TEST_WITHIN(linear_with_lenders,
-                        fabs(fixture_get(&found.gradient, i, a) - slopes[a]) / on.scene.unit,
+                        fabs(fixture_get(&found.gradient, i, a) - curved_slopes[a]) / on.scene.unit,
                         test_text("particle %d", i));
 }
 
@@ -515,17 +390,17 @@ static void who_is_lent_nothing_keeps_every_bit(const test_case *test)
                             cloud_pair(d, .3),
                             cloud_coincident(d, 3, 1, .25)};
     for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
-        const stage on = second_order(stage_of(test, test_text("cloud %d", (int)c), clouds[c], .5));
+        const stage on = curved_stage(stage_of(test, test_text("cloud %d", (int)c), clouds[c], .5));
         const double *numbers = stage_random_field(&on, SPHG_VECTOR, 11);
-        const curved first = apply(&on, SPHG_VECTOR, numbers, (how){0});
+        const curved first = apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
         const int width = first.curvature.width;
         double *lent = test_memory((size_t)(on.points.count * width) * sizeof *lent);
         for (int k = 0; k < on.points.count * width && c > 0; k++)
             lent[k] = fixture_get(&first.curvature, k / width, k % width);
         const fixture_array given =
             fixture_numbers(test_field_type(test), on.points.count, width, lent);
-        const curved found = apply(&on, SPHG_VECTOR, numbers, (how){.lent = &given});
-        require_same_bits(&first, &found, on.name);
+        const curved found = apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &given});
+        curved_require_same_bits(&first, &found, on.name);
         for (int i = 0; i < on.points.count && c > 0; i++)
             TEST_REQUIRE(fixture_get(&found.curvature, i, 0) == 0 &&
                              fixture_get(&found.borrows, i, 0) == 1,
@@ -538,25 +413,25 @@ static void a_mask_of_borrowers_leaves_nothing_out(const test_case *test)
 {
     random_state random = random_seeded(7);
     const int d = test->dimension;
-    stage on = second_order(
+    stage on = curved_stage(
         stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 12 : 7, .25, .3, &random), .5));
     const double *numbers = stage_random_field(&on, SPHG_VECTOR, 12);
-    const curved first = apply(&on, SPHG_VECTOR, numbers, (how){0});
-    const curved all = apply(&on, SPHG_VECTOR, numbers, (how){.lent = &first.curvature});
+    const curved first = apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
+    const curved all = apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &first.curvature});
     const sphg_subset open = sphg_masked(first.borrows.data, on.points.count);
-    const how some = {.lent = &first.curvature, .subset = &open};
+    const curved_how some = {.lent = &first.curvature, .subset = &open};
     const curved masked = apply(&on, SPHG_VECTOR, numbers, some);
     const fixture_array positions = fixture_positions(test, &on.points);
     sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
     geometry.list_free = 1;
     on.neighbors = fixture_search(on.context, &on.scheme, &geometry);
     const curved anew = apply(&on, SPHG_VECTOR, numbers, some);
-    require_same_bits(&masked, &anew, "list-free");
+    curved_require_same_bits(&masked, &anew, "list-free");
     const int32_t chosen[] = {0, 7,
                               on.points.count - 1}; /* so few that rows are copied one by one */
     const sphg_subset few = sphg_listed(chosen, 3);
     const curved apart =
-        apply(&on, SPHG_VECTOR, numbers, (how){.lent = &first.curvature, .subset = &few});
+        apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &first.curvature, .subset = &few});
     for (int k = 0; k < 3; k++)
         for (int c = 0; c < all.hessian.width; c++)
             TEST_REQUIRE(fixture_get(&apart.hessian, chosen[k], c) ==
@@ -584,12 +459,12 @@ static void fields_borrow_each_for_itself(const test_case *test)
 {
     random_state random = random_seeded(9);
     const int d = test->dimension;
-    const stage on = second_order(
+    const stage on = curved_stage(
         stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .3, &random), .5));
     const double *numbers = stage_random_field(&on, SPHG_SCALAR, 13);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
-    const curved second = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &first.curvature});
-    const curved third = apply(&on, SPHG_SCALAR, numbers, (how){.lent = &second.curvature});
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const curved second = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &first.curvature});
+    const curved third = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &second.curvature});
     const curved *const expected[] = {&second, &first, &third};
     const fixture_array *const lent[] = {&first.curvature, NULL, &second.curvature};
     const fixture_array values =
@@ -600,9 +475,9 @@ static void fields_borrow_each_for_itself(const test_case *test)
     sphg_view lenders[3];
     curved found[3];
     for (int k = 0; k < 3; k++) {
-        found[k] = outputs_of(&on, SPHG_SCALAR);
+        found[k] = curved_outputs(&on, SPHG_SCALAR, 1);
         fields[k] = (sphg_field){.shape = SPHG_SCALAR, .at_sources = &at_sources};
-        ask(&found[k], (how){0}, &fields[k]);
+        curved_ask(&found[k], &fields[k]);
         if (lent[k])
             lenders[k] = fixture_view(lent[k]);
         fields[k].lenders = lent[k] ? &lenders[k] : NULL;
@@ -611,7 +486,7 @@ static void fields_borrow_each_for_itself(const test_case *test)
         .sources = &sources, .fields = fields, .set_count = 1, .field_count = 3};
     FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
     for (int k = 0; k < 3; k++)
-        require_same_bits(expected[k], &found[k], test_text("field %d", k));
+        curved_require_same_bits(expected[k], &found[k], test_text("field %d", k));
 }
 
 /* Particles [first, first + count) as sources of all, which stand apart. */
@@ -641,13 +516,13 @@ static part part_of(const stage *on, const sphg_view *positions, const sphg_view
 
 static curved apply_parts(const stage *on, const sphg_view *values, const part *parts, int count)
 {
-    const curved found = outputs_of(on, SPHG_SCALAR);
+    const curved found = curved_outputs(on, SPHG_SCALAR, 1);
     sphg_sources sets[2];
     sphg_view at_sources[2], lenders[2];
     for (int s = 0; s < count; s++)
         sets[s] = parts[s].set, at_sources[s] = parts[s].at_sources, lenders[s] = parts[s].lenders;
     sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources, .lenders = lenders};
-    ask(&found, (how){0}, &field);
+    curved_ask(&found, &field);
     field.at_targets = *values;
     sphg_request request = {
         .sources = sets, .fields = &field, .set_count = count, .field_count = 1};
@@ -661,11 +536,11 @@ static void source_sets_lend_each_for_itself(const test_case *test)
 {
     random_state random = random_seeded(10);
     const int d = test->dimension;
-    stage on = second_order(
+    stage on = curved_stage(
         stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .2, &random), .5));
     const int n = on.points.count, half = n / 2;
     const double *numbers = stage_random_field(&on, SPHG_SCALAR, 14);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
     const fixture_array places = fixture_positions(test, &on.points);
     const fixture_array held = fixture_numbers(test_field_type(test), n, 1, numbers);
     const sphg_view positions = fixture_view(&places), values = fixture_view(&held);
@@ -749,7 +624,7 @@ static void evaluate_slide(slide *on, int passes)
 static double largest_step(const test_case *test, int per_axis, int along, int passes, int steps)
 {
     slide on = slide_of(test, per_axis);
-    const int d = test->dimension, n = on.points.count, width = d + pairs_of(d);
+    const int d = test->dimension, n = on.points.count, width = d + curved_pairs(d);
     double(*before)[9] = test_memory((size_t)n * sizeof *before), worst = 0;
     const double h2 = on.scheme.support_radius * on.scheme.support_radius;
     for (int step = 0; step <= steps; step++) {
@@ -807,10 +682,10 @@ static void what_cannot_be_borrowed_is_refused_by_name(const test_case *test)
     random_state random = random_seeded(15);
     const int d = test->dimension;
     const stage on =
-        second_order(stage_of(test, "block", cloud_jittered(d, 4, .25, .2, &random), .5));
+        curved_stage(stage_of(test, "block", cloud_jittered(d, 4, .25, .2, &random), .5));
     const double *numbers = stage_random_field(&on, SPHG_SCALAR, 16);
-    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
-    const curved out = outputs_of(&on, SPHG_SCALAR);
+    const curved found = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const curved out = curved_outputs(&on, SPHG_SCALAR, 1);
     const fixture_array values =
         fixture_numbers(test_field_type(test), on.points.count, 1, numbers);
     const fixture_array table = stage_table(&on);

@@ -1,147 +1,35 @@
 /* Order 2: against the oracle, exact on quadratic fields where the rank says so, on linear ones
  * wherever order 1 is, continuous, and never worse than finite. */
-#include "support/oracle_quadratic.h"
+#include "support/curved.h"
 #include "support/scenes.h"
 #include <string.h>
 
 enum { PAIRS_MOST = 6 };
 
-static int pairs_of(int d)
-{
-    return d * (d + 1) / 2;
-}
-
 static int full_rank(int d)
 {
-    return d + pairs_of(d);
-}
-
-/* ---- Results --------------------------------------------------------------------------------- */
-
-typedef struct curved {
-    fixture_array gradient, divergence, curl, hessian, laplacian, rank, table;
-    sphg_stats stats;
-} curved;
-
-static stage second_order(stage on)
-{
-    on.scheme.order = 2;
-    return on;
-}
-
-static curved outputs_of(const stage *on, sphg_shape shape)
-{
-    const int n = on->points.count, d = on->points.dimension, width = fixture_width(shape, d);
-    const sphg_type type = test_field_type(on->test);
-    const int tensor = shape >= SPHG_SYM_TENSOR, vector = shape == SPHG_VECTOR;
-    curved made = {
-        .gradient = fixture_output(type, n, tensor ? 0 : width * d),
-        .divergence = fixture_output(type, n, tensor ? d : vector),
-        .curl = fixture_output(type, n,
-                               !vector  ? 0
-                               : d == 2 ? 1
-                                        : 3),
-        .hessian = fixture_output(type, n, tensor ? 0 : width * pairs_of(d)),
-        .laplacian = fixture_output(type, n, width),
-        .rank = fixture_output(SPHG_U8, n, 1),
-        .table = fixture_output(type, n, sphg_correction_width(&on->scheme)),
-    };
-    return made;
-}
-
-static sphg_view wanted(const fixture_array *array)
-{
-    return array->width ? fixture_view(array) : sphg_absent();
-}
-
-typedef struct how {
-    const fixture_array *table;
-    const sphg_subset *subset;
-    int no_table; /* leave out correction, rank and stats */
-} how;
-
-static curved apply(const stage *on, sphg_shape shape, const double *numbers, how asked)
-{
-    const int width = fixture_width(shape, on->points.dimension);
-    curved found = outputs_of(on, shape);
-    fixture_array values =
-        fixture_numbers(test_field_type(on->test), on->points.count, width, numbers);
-    sphg_view at_sources = fixture_view(&values);
-    sphg_sources sources = stage_sources(on);
-    sphg_field field = {.shape = shape, .at_sources = &at_sources};
-    field.gradient = wanted(&found.gradient);
-    field.divergence = wanted(&found.divergence);
-    field.curl = wanted(&found.curl);
-    field.hessian = wanted(&found.hessian);
-    field.laplacian = wanted(&found.laplacian);
-    sphg_request request = {.sources = &sources, .fields = &field, .set_count = 1};
-    request.field_count = 1;
-    request.subset = asked.subset;
-    if (asked.table) {
-        request.target_correction = fixture_view(asked.table);
-    } else if (!asked.no_table) {
-        request.correction = fixture_view(&found.table);
-        request.rank = fixture_view(&found.rank);
-        request.stats = &found.stats;
-    }
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-    return found;
-}
-
-static void require_same_bits(const curved *a, const curved *b, const char *where)
-{
-    TEST_REQUIRE(fixture_same_bits(&a->gradient, &b->gradient), "gradient, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->divergence, &b->divergence), "divergence, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->curl, &b->curl), "curl, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->hessian, &b->hessian), "Hessian, %s", where);
-    TEST_REQUIRE(fixture_same_bits(&a->laplacian, &b->laplacian), "Laplacian, %s", where);
+    return d + curved_pairs(d);
 }
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
-
-static double ratio_of(const fixture_array *found, int i, const quad *exact, quad bound)
-{
-    double numbers[27];
-    for (int k = 0; k < found->width; k++)
-        numbers[k] = fixture_get(found, i, k);
-    return oracle_ratio(found->width, numbers, exact, bound);
-}
 
 static void compare(const stage *on, sphg_shape shape, const curved *found, const double *numbers,
                     int i)
 {
     const oracle_field field = {shape, SPHG_DIFFERENCE, numbers, NULL};
     const oracle_curved exact = oracle_apply_second(on->reference, &field, i);
-    if (exact.undecided)
-        return;
-    const struct {
-        const char *what;
-        const fixture_array *array;
-        const quad *numbers;
-        quad bound;
-    } rows[] = {{"gradient", &found->gradient, exact.gradient, exact.gradient_bound},
-                {"divergence", &found->divergence, exact.divergence, exact.gradient_bound},
-                {"curl", &found->curl, exact.curl, exact.gradient_bound},
-                {"Hessian", &found->hessian, exact.hessian, exact.hessian_bound},
-                {"Laplacian", &found->laplacian, exact.laplacian, exact.hessian_bound}};
-    for (int k = 0; k < 5; k++) {
-        const char *where = test_text("%s of particle %d, %s, %s", rows[k].what, i, on->name,
-                                      test_method_name(on->test->method));
-        const double ratio = ratio_of(rows[k].array, i, rows[k].numbers, rows[k].bound);
-        if (exact.touched)
-            TEST_WITHIN(quadratic_ratio_touched, ratio, where);
-        else
-            TEST_WITHIN(quadratic_ratio_full, ratio, where);
-    }
+    curved_compare(on, found, &exact, i,
+                   exact.touched ? TEST_TOLERANCE_quadratic_ratio_touched
+                                 : TEST_TOLERANCE_quadratic_ratio_full);
 }
 
 static void results_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
         for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
             const double *numbers = stage_random_field(&on, (sphg_shape)shape, 3);
-            const curved found = apply(&on, (sphg_shape)shape, numbers, (how){0});
+            const curved found = curved_apply(&on, (sphg_shape)shape, numbers, (curved_how){0});
             const int step = on.points.count < 6 ? 1 : on.points.count / 6;
             for (int i = 0; i < on.points.count; i += step)
                 compare(&on, (sphg_shape)shape, &found, numbers, i);
@@ -153,7 +41,7 @@ static void results_match_the_oracle(const test_case *test)
 static void two_sided_forms_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
         const fixture_array table = stage_table(&on);
         for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
             const sphg_form form = (sphg_form)(shape % 2 ? SPHG_ADJOINT : SPHG_SYMMETRIC);
@@ -170,7 +58,7 @@ static void two_sided_forms_match_the_oracle(const test_case *test)
                 const quad *const numbers[] = {exact.gradient, exact.divergence, exact.curl};
                 for (int k = 0; k < 3; k++)
                     TEST_WITHIN(quadratic_two_sided,
-                                ratio_of(arrays[k], i, numbers[k], exact.gradient_bound),
+                                curved_ratio(arrays[k], i, numbers[k], exact.gradient_bound),
                                 test_text("result %d of particle %d, %s, %s", k, i, on.name,
                                           test_method_name(test->method)));
             }
@@ -185,13 +73,13 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
             for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
                 const stage made = stage_of_scene(test, &scenes_hard[chosen[s]]);
-                stage on = second_order(stage_under(&made, (sphg_policy)policy, .0625));
+                stage on = curved_stage(stage_under(&made, (sphg_policy)policy, .0625));
                 on.context = fixture_context_on((sphg_isa)isa);
                 if (!on.context)
                     continue;
                 on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
                 const double *numbers = stage_random_field(&on, SPHG_VECTOR, 5);
-                const curved found = apply(&on, SPHG_VECTOR, numbers, (how){0});
+                const curved found = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
                 for (int i = 0; i < on.points.count; i += 1 + on.points.count / 4)
                     compare(&on, SPHG_VECTOR, &found, numbers, i);
             }
@@ -205,9 +93,9 @@ static void uneven_volumes_match_the_oracle(const test_case *test)
     double *volumes = test_memory((size_t)even.points.count * sizeof *volumes);
     for (int i = 0; i < even.points.count; i++)
         volumes[i] = fixture_get(&even.volume, i, 0) * (i % 9 == 4 ? heavy : 1);
-    const stage on = second_order(stage_with_volumes(&even, volumes));
+    const stage on = curved_stage(stage_with_volumes(&even, volumes));
     const double *numbers = stage_random_field(&on, SPHG_VECTOR, 15);
-    const curved found = apply(&on, SPHG_VECTOR, numbers, (how){0});
+    const curved found = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
     int raised = 0;
     for (int i = 0; i < on.points.count; i += 3) {
         oracle_second second;
@@ -224,7 +112,7 @@ static void volumes_that_are_alike_need_not_be_told(const test_case *test)
     random_state random = random_seeded(17);
     const int d = test->dimension;
     const cloud points = cloud_jittered(d, d == 2 ? 9 : 5, .25, .1, &random);
-    const stage on = second_order(stage_of(test, "like volumes", points, .75));
+    const stage on = curved_stage(stage_of(test, "like volumes", points, .75));
     const double volume = pow(.25, d);
     const float narrow = (float)volume;
     const int f64 = test_field_type(test) == SPHG_F64;
@@ -233,7 +121,7 @@ static void volumes_that_are_alike_need_not_be_told(const test_case *test)
     const sphg_view at_sources = fixture_view(&values);
     curved found[2];
     for (int mean = 0; mean < 2; mean++) {
-        found[mean] = outputs_of(&on, SPHG_SCALAR);
+        found[mean] = curved_outputs(&on, SPHG_SCALAR, 0);
         const sphg_view same = f64 ? sphg_same_f64(&volume) : sphg_same_f32(&narrow);
         fixture_array positions = fixture_positions(test, (cloud *)&on.points);
         sphg_geometry geometry = sphg_targets_apart(fixture_view(&positions), points.count,
@@ -258,9 +146,9 @@ static void rank_is_the_oracles(const test_case *test)
 {
     int open = 0, all = 0;
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
         const double *numbers = stage_random_field(&on, SPHG_SCALAR, 4);
-        const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+        const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
         int64_t full = 0;
         for (int i = 0; i < on.points.count; i++)
             full += fixture_get(&found.rank, i, 0) == full_rank(on.points.dimension);
@@ -288,36 +176,6 @@ static void rank_is_the_oracles(const test_case *test)
 
 /* ---- Exactness ------------------------------------------------------------------------------- */
 
-/* A = c.x + x^T Q x / 2 of small whole numbers, so that values are exact in f32, too. */
-static const double slopes[] = {3, -2, 1}, curvatures[] = {2, -4, 6, 4, -2, 8};
-
-static double *polynomial(const cloud *points, int degree)
-{
-    const int d = points->dimension;
-    double *numbers = test_memory((size_t)points->count * sizeof *numbers);
-    for (int i = 0; i < points->count; i++) {
-        const double *x = points->x + i * d;
-        for (int a = 0, k = 0; a < d; a++) {
-            numbers[i] += slopes[a] * x[a];
-            for (int b = a; degree == 2 && b < d; b++, k++)
-                numbers[i] += curvatures[k] * x[a] * x[b] * (a == b ? .5 : 1);
-        }
-    }
-    return numbers;
-}
-
-static void gradient_at(const cloud *points, int i, int degree, double *gradient)
-{
-    const int d = points->dimension;
-    const double *x = points->x + i * d;
-    memcpy(gradient, slopes, (size_t)d * sizeof *gradient);
-    for (int a = 0, k = 0; degree == 2 && a < d; a++)
-        for (int b = a; b < d; b++, k++) {
-            gradient[a] += curvatures[k] * x[b];
-            gradient[b] += a == b ? 0 : curvatures[k] * x[a];
-        }
-}
-
 static double distance_to(const fixture_array *found, int i, const double *exact)
 {
     double square = 0;
@@ -332,7 +190,7 @@ static stage exact_stage(const test_case *test, double jitter, double support)
     const int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 9 : 6, .25, jitter, &random);
     cloud_snap(&points, 0x1p-6);
-    return second_order(stage_of(test, test_text("jitter %g", jitter), points, support * .25));
+    return curved_stage(stage_of(test, test_text("jitter %g", jitter), points, support * .25));
 }
 
 /* In units of u / lambda_q, which t bounds, the gradient over H times the curvature. */
@@ -344,7 +202,8 @@ static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
         const stage on = exact_stage(test, jitters[k % 3], supports[k / 3]);
         const int n = on.points.count, d = on.points.dimension;
         const double h = on.scheme.support_radius;
-        const curved found = apply(&on, SPHG_SCALAR, polynomial(&on.points, 2), (how){0});
+        const curved found =
+            curved_apply(&on, SPHG_SCALAR, curved_polynomial(&on.points, 2), (curved_how){0});
         int full = 0;
         for (int i = 0; i < n; i++) {
             double exact[3];
@@ -353,13 +212,13 @@ static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
                 continue;
             if (full++ % 3) /* the reference is in quad */
                 continue;
-            gradient_at(&on.points, i, 2, exact);
+            curved_slope_at(&on.points, i, exact);
             oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
             const double scale = on.scene.unit / (double)second.t;
             const double slope = distance_to(&found.gradient, i, exact) / (h * size + 6 * h);
             TEST_WITHIN(quadratic_exactness, slope / scale / 4, test_text("gradient, %s", on.name));
             TEST_WITHIN(quadratic_exactness,
-                        distance_to(&found.hessian, i, curvatures) / (size + 24 / h) / scale / 4,
+                        distance_to(&found.hessian, i, curved_second) / (size + 24 / h) / scale / 4,
                         test_text("Hessian, %s", on.name));
         }
         TEST_REQUIRE(full > (supports[k / 3] > 2.4 ? .9 : .2) * n, "only %d of %d, %s, H %g", full,
@@ -371,7 +230,8 @@ static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
 {
     for (int k = 0; k < 3; k++) {
         const stage on = exact_stage(test, .2 * k, 2);
-        const curved found = apply(&on, SPHG_SCALAR, polynomial(&on.points, 1), (how){0});
+        const curved found =
+            curved_apply(&on, SPHG_SCALAR, curved_polynomial(&on.points, 1), (curved_how){0});
         const double none[PAIRS_MOST] = {0}, h = on.scheme.support_radius;
         int partial = 0;
         for (int i = 0; i < on.points.count; i++) {
@@ -384,7 +244,8 @@ static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
                 continue;
             oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
             const double scale = on.scene.unit * (1 + (double)second.norm_f);
-            TEST_WITHIN(quadratic_exactness, distance_to(&found.gradient, i, slopes) / scale / 4,
+            TEST_WITHIN(quadratic_exactness,
+                        distance_to(&found.gradient, i, curved_slopes) / scale / 4,
                         test_text("gradient, %s", on.name));
             TEST_WITHIN(quadratic_exactness, distance_to(&found.hessian, i, none) * h / scale / 24,
                         test_text("Hessian, %s", on.name));
@@ -399,7 +260,7 @@ static void constants_have_exactly_no_derivative(const test_case *test)
     double *numbers = test_memory((size_t)on.points.count * sizeof *numbers);
     for (int i = 0; i < on.points.count; i++)
         numbers[i] = .1;
-    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
     for (int i = 0; i < on.points.count; i++)
         for (int k = 0; k < found.hessian.width; k++)
             assert_true(fixture_get(&found.hessian, i, k) == 0 &&
@@ -437,7 +298,7 @@ static stage gate_stage(const test_case *test, int per_axis, double support)
     cloud points = cloud_lattice(d, per_axis, spacing);
     for (int k = 0; k < points.count * d; k++)
         points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing;
-    stage on = second_order(stage_of(test, "lattice", points, support * spacing * (1 + 1e-6)));
+    stage on = curved_stage(stage_of(test, "lattice", points, support * spacing * (1 + 1e-6)));
     double *volumes = test_memory((size_t)points.count * sizeof *volumes);
     for (int i = 0; i < points.count; i++)
         volumes[i] = volume_of(&on.points, &on.scheme, i);
@@ -481,7 +342,7 @@ static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
             v[2 * i] = cos(2 * x[0]);
             v[2 * i + 1] = cos(x[1]) - sin(3 * x[0]);
         }
-        const curved found = apply(&on, SPHG_VECTOR, v, (how){0});
+        const curved found = curved_apply(&on, SPHG_VECTOR, v, (curved_how){0});
         double gradient[2] = {0}, hessian[2] = {0}, laplacian[2] = {0};
         for (int i = 0; i < on.points.count; i++) {
             const double x = on.points.x[2 * i], y = on.points.x[2 * i + 1];
@@ -524,7 +385,7 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
             const double *x = on.points.x + 3 * i;
             a[i] = cos(x[1]) - sin(3 * x[0]) + cos(2 * x[2]);
         }
-        const curved found = apply(&on, SPHG_SCALAR, a, (how){0});
+        const curved found = curved_apply(&on, SPHG_SCALAR, a, (curved_how){0});
         for (int i = 0; i < on.points.count; i++) {
             const double *x = on.points.x + 3 * i;
             const double exact[] = {-3 * cos(3 * x[0]), -sin(x[1]), -2 * sin(2 * x[2])};
@@ -549,21 +410,23 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
 static void tables_give_the_bits_of_one_sweep(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s += 5) {
-        const stage on = second_order(stage_of_scene(test, &scenes_hard[s]));
+        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
         const double *numbers = stage_random_field(&on, SPHG_VECTOR, 6);
-        const curved fused = apply(&on, SPHG_VECTOR, numbers, (how){.no_table = 1});
-        const curved found = apply(&on, SPHG_VECTOR, numbers, (how){0});
-        const curved read = apply(&on, SPHG_VECTOR, numbers, (how){.table = &found.table});
-        require_same_bits(&fused, &found, on.name);
-        require_same_bits(&found, &read, on.name);
+        const curved fused = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){.no_table = 1});
+        const curved found = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
+        const curved read =
+            curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){.table = &found.table});
+        curved_require_same_bits(&fused, &found, on.name);
+        curved_require_same_bits(&found, &read, on.name);
     }
 }
 
 static void laplacians_are_traces_of_hessians(const test_case *test)
 {
     const stage on = exact_stage(test, .3, 2.5);
-    const int d = test->dimension, step = pairs_of(d);
-    const curved found = apply(&on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 7), (how){0});
+    const int d = test->dimension, step = curved_pairs(d);
+    const curved found =
+        curved_apply(&on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 7), (curved_how){0});
     for (int i = 0; i < on.points.count; i++)
         for (int c = 0; c < d; c++) {
             double trace = fixture_get(&found.hessian, i, c * step);
@@ -582,19 +445,19 @@ static void pairs_found_anew_give_the_same_bits(const test_case *test)
     const stage on = exact_stage(test, .3, 2.5);
     stage other = on;
     const double *numbers = stage_random_field(&on, SPHG_VECTOR, 8);
-    const curved kept = apply(&on, SPHG_VECTOR, numbers, (how){0});
+    const curved kept = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
     const fixture_array positions = fixture_positions(test, &other.points);
     sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
     geometry.list_free = 1;
     other.neighbors = fixture_search(on.context, &on.scheme, &geometry);
-    const curved again = apply(&other, SPHG_VECTOR, numbers, (how){0});
-    require_same_bits(&kept, &again, "list-free");
+    const curved again = curved_apply(&other, SPHG_VECTOR, numbers, (curved_how){0});
+    curved_require_same_bits(&kept, &again, "list-free");
     TEST_REQUIRE(fixture_same_bits(&kept.table, &again.table), "tables");
     int32_t chosen[12];
     for (int k = 0; k < 12; k++)
         chosen[k] = k * 3;
     const sphg_subset few = sphg_listed(chosen, 12);
-    const curved some = apply(&on, SPHG_VECTOR, numbers, (how){.subset = &few});
+    const curved some = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){.subset = &few});
     for (int k = 0; k < 12; k++)
         for (int c = 0; c < some.hessian.width; c++)
             TEST_REQUIRE(fixture_get(&some.hessian, chosen[k], c) ==
@@ -616,8 +479,9 @@ static void two_sided_forms_have_the_same_bits_in_any_company(const test_case *t
         fixture_numbers(test_field_type(test), on.points.count, 1, stress.numbers);
     const sphg_view at_sources = fixture_view(&values);
     const stage_result force = stage_outputs(&on, &stress, on.points.count);
-    const curved slope = outputs_of(&on, SPHG_SCALAR);
-    const curved expected = apply(&on, SPHG_SCALAR, stress.numbers, (how){.table = &table});
+    const curved slope = curved_outputs(&on, SPHG_SCALAR, 0);
+    const curved expected =
+        curved_apply(&on, SPHG_SCALAR, stress.numbers, (curved_how){.table = &table});
     sphg_field fields[2] = {{.shape = SPHG_SCALAR, .at_sources = &at_sources},
                             {.shape = SPHG_SCALAR, .at_sources = &at_sources}};
     fields[0].form = SPHG_ADJOINT;
@@ -648,8 +512,8 @@ static void two_source_sets_are_one_cloud(const test_case *test)
     const stage on = exact_stage(test, .1, 3);
     const int n = on.points.count, half = n / 2;
     const double *numbers = stage_random_field(&on, SPHG_SCALAR, 9);
-    const curved whole = apply(&on, SPHG_SCALAR, numbers, (how){0});
-    const curved found = outputs_of(&on, SPHG_SCALAR);
+    const curved whole = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const curved found = curved_outputs(&on, SPHG_SCALAR, 0);
     stage moved = on;
     const fixture_array positions = fixture_positions(test, &moved.points);
     const fixture_array values = fixture_numbers(test_field_type(test), n, 1, numbers);
@@ -686,7 +550,7 @@ static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
     const stage on = exact_stage(test, .3, 2.5);
     const int n = on.points.count, d = test->dimension;
     const double *numbers = stage_random_field(&on, SPHG_SCALAR, 10);
-    const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+    const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
     int64_t *offsets = test_memory((size_t)(n + 1) * sizeof *offsets);
     sphg_pairs pairs = {.offsets = offsets, .capacity = 0};
     sphg_sources sources = stage_sources(&on);
@@ -771,7 +635,7 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
             .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
         FIXTURE_OK(context, sphg_evaluate(context, &scheme, &request));
         for (int i = 0; i < n; i++)
-            for (int k = 0; k < d + pairs_of(d); k++) {
+            for (int k = 0; k < d + curved_pairs(d); k++) {
                 const double now = k < d ? gradient[i][k] : h * h * hessian[i][k - d] / 5;
                 if (step)
                     worst = fmax(worst, fabs(now - before[i][k]));
@@ -819,9 +683,9 @@ static void degenerate_clouds_have_the_result_of_order_1(const test_case *test)
                             cloud_coincident(d, 3, 1, .25)};
     for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
         const stage made = stage_of(test, test_text("cloud %d", (int)c), clouds[c], .6);
-        const stage on = second_order(made);
+        const stage on = curved_stage(made);
         const double *numbers = stage_random_field(&on, SPHG_SCALAR, 11);
-        const curved found = apply(&on, SPHG_SCALAR, numbers, (how){0});
+        const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
         const stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
         const stage_result linear = stage_apply(&made, &field, NULL);
         require_finite(&found.gradient, on.name);
@@ -843,10 +707,10 @@ static void few_neighbours_give_numbers(const test_case *test)
     const int d = test->dimension;
     for (int count = 2; count < 14; count++) {
         random_state random = random_seeded((uint64_t)count);
-        const stage on = second_order(
+        const stage on = curved_stage(
             stage_of(test, test_text("%d", count), cloud_random(d, count, 1, &random), 3));
-        const curved found =
-            apply(&on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 12), (how){0});
+        const curved found = curved_apply(
+            &on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 12), (curved_how){0});
         require_finite(&found.gradient, on.name);
         require_finite(&found.hessian, on.name);
         for (int i = 0; i < count; i++)
@@ -876,7 +740,7 @@ static void require_refused(const stage *on, sphg_field field, sphg_scheme schem
 static void what_order_2_lacks_is_refused_by_name(const test_case *test)
 {
     const stage on = exact_stage(test, .2, 2);
-    const curved found = outputs_of(&on, SPHG_SCALAR);
+    const curved found = curved_outputs(&on, SPHG_SCALAR, 0);
     sphg_scheme first = on.scheme;
     first.order = 1;
     sphg_field field = {.shape = SPHG_SCALAR, .hessian = fixture_view(&found.hessian)};

@@ -186,18 +186,12 @@ static void borrow_component(const oracle_scene *scene, const oracle_basis *of,
 {
     const quad over = 1 / (quad)scene->scheme.support_radius;
     const borrower b = borrower_of(scene, of, point, second, made);
-    quad y[3] = {0}, all[oracle_pairs], matrix[oracle_pairs];
-    for (int a = 0; a < of->d && second->kept > 0; a++)
-        for (int k = 0; k < of->d; k++)
-            for (int c = 0; c < of->d; c++)
-                y[a] += point->filter.axes[a][k] * point->filter.axes[c][k] * sums->first[c] /
-                        point->filter.lambda[k];
-    const curvature h = curve(of, second, &b, sums, made, quad_norm(y, of->d));
+    const quad slope = second->kept > 0 ? oracle_slope_norm(of, point, sums) : 0;
+    const curvature h = curve(of, second, &b, sums, made, slope);
+    quad all[oracle_pairs];
     for (int m = 0; m < of->n; m++)
         all[m] = h.own[m] + h.borrowed[m];
-    oracle_whitened(of, all, matrix);
-    for (int m = 0; m < of->n; m++)
-        hessian[m] = matrix[m] * (of->a[m] == of->b[m] ? 2 : 1) * over * over;
+    oracle_hessian_of(of, all, over, hessian);
     for (int a = 0; a < of->d; a++) {
         g[a] = 0;
         for (int c = 0; c < of->d; c++)

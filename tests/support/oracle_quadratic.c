@@ -334,23 +334,34 @@ static quad solve_curvature(const oracle_basis *of, const oracle_second *second,
            second->change_of_kept * second->second * size;
 }
 
+quad oracle_slope_norm(const oracle_basis *of, const oracle_point *point, const oracle_change *sums)
+{
+    quad y[3] = {0};
+    for (int a = 0; a < of->d; a++)
+        for (int k = 0; k < of->d; k++)
+            for (int b = 0; b < of->d; b++)
+                y[a] += point->filter.axes[a][k] * point->filter.axes[b][k] * sums->first[b] /
+                        point->filter.lambda[k];
+    return quad_norm(y, of->d);
+}
+
+void oracle_hessian_of(const oracle_basis *of, const quad *h, quad over, quad *hessian)
+{
+    quad matrix[oracle_pairs];
+    oracle_whitened(of, h, matrix);
+    for (int m = 0; m < of->n; m++)
+        hessian[m] = matrix[m] * (of->a[m] == of->b[m] ? 2 : 1) * over * over;
+}
+
 void oracle_curve_component(const oracle_scene *scene, const oracle_basis *of,
                             const oracle_point *point, const oracle_second *second,
                             const oracle_change *sums, quad *g, quad *hessian, oracle_curved *found)
 {
     const quad over = 1 / (quad)scene->scheme.support_radius;
-    quad h[oracle_pairs] = {0}, matrix[oracle_pairs], y[3] = {0}, h_off = 0;
-    if (second->kept > 0) {
-        for (int a = 0; a < of->d; a++)
-            for (int k = 0; k < of->d; k++)
-                for (int b = 0; b < of->d; b++)
-                    y[a] += point->filter.axes[a][k] * point->filter.axes[b][k] * sums->first[b] /
-                            point->filter.lambda[k];
-        h_off = solve_curvature(of, second, sums, quad_norm(y, of->d), h);
-    }
-    oracle_whitened(of, h, matrix);
-    for (int m = 0; m < of->n; m++)
-        hessian[m] = matrix[m] * (of->a[m] == of->b[m] ? 2 : 1) * over * over;
+    quad h[oracle_pairs] = {0}, h_off = 0;
+    if (second->kept > 0)
+        h_off = solve_curvature(of, second, sums, oracle_slope_norm(of, point, sums), h);
+    oracle_hessian_of(of, h, over, hessian);
     for (int a = 0; a < of->d; a++) {
         g[a] = 0;
         for (int b = 0; b < of->d; b++)
