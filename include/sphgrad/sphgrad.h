@@ -249,10 +249,11 @@ typedef struct sphg_scheme {
                               methods: lambda grows with them; 100 times too small, in a wrong
                               unit, they give rank 0 everywhere and no error */
     int32_t order; /* 0, 1: exact on linear fields; 2 (KGC, MLS, RKPM; not DIRECT): on quadratic
-                      ones where `rank` is d (d + 3) / 2. For momentum use 1: the ADJOINT of 2
-                      pushes free surfaces 2 to 5 times harder under constant stress. Inside a fluid H = 2 spacings suffice, at
-                      surfaces 2.5 to 3; curvature that neighbours do not resolve counts as 0, down
-                      to what order 1 gives. Its threshold is a tenth of eps */
+                      ones where `rank` is d (d + 3) / 2. Inside a fluid H = 2 spacings suffice, at
+                      surfaces 2.5 to 3, or 2 with `lenders`; else curvature that neighbours do not
+                      resolve counts as 0, down to what order 1 gives. Its threshold is a tenth of
+                      eps. Momentum wants order 1: the ADJOINT of order 2 pushes a free surface 2 to
+                      5 times harder under constant stress */
 } sphg_scheme;
 
 /* Numbers per item of a correction table: linearised d (d + 1) / 2, C_i as SYM_TENSOR; classic
@@ -487,13 +488,13 @@ typedef struct sphg_field {
                                     -> d of them, one for each component (y and z start those) */
     sphg_view laplacian;         /* [a/L^2] DIFFERENCE, order 2: its trace, shape as A. For diffusion
                                     in time only where no surface is free: unstable there */
-    sphg_view curvature; /* DIFFERENCE, order 2: what a target lends, c and c times its Hessian (of a
-                            vector: Hessians), 1 + d (d + 1) / 2 numbers (1 + d times as many); c in
-                            [0, 1]: how sure it is. Never accumulated */
-    const sphg_view *lenders; /* DIFFERENCE, order 2, no tables: such numbers of an earlier call, a view
-                                 per source set (absent: lends nothing); NULL: nobody lends. What a
-                                 target cannot resolve of its curvature is its lenders', not 0: second
-                                 order at free surfaces, too, from H = 2 spacings on */
+    sphg_view curvature; /* DIFFERENCE, order 2: what a target lends: c in [0, 1], how sure it is,
+                            and c times the Hessian of each component; 1 + d (d + 1) / 2 numbers, of
+                            a vector 1 + d times as many. Never accumulated */
+    const sphg_view *lenders; /* DIFFERENCE, order 2, no tables: such numbers of an earlier call, a
+                                 view per source set (absent: it lends nothing); NULL: nobody lends.
+                                 Curvature that a target cannot resolve is then its lenders', not 0.
+                                 MPI: between the calls refresh the ghosts' rows */
 } sphg_field;
 
 /* Counts over those targets of one call whose corrections were computed. */
@@ -527,7 +528,7 @@ typedef struct sphg_request {
     sphg_view lambda_min; /* smallest normalised moment, >= 0: exact where decomposed, elsewhere a
                              lower bound, at most a factor sqrt(d) too small */
     sphg_stats *stats;
-    sphg_view borrows; /* U8, order 2: 1 where lenders could change results: a mask for the call that
+    sphg_view borrows; /* U8, order 2: 1 where lenders could change results: the mask of a call that
                           has them */
 } sphg_request;
 
