@@ -3,9 +3,6 @@
 #include "support/scenes.h"
 #include <string.h>
 
-/* What watches memory need not wait for as many numbers. */
-enum { EACH = TEST_SLOWED ? 2 : 1 };
-
 /* Some of the targets, spread evenly: the oracle is slow. */
 static int sampled(const stage *on, int k, int samples)
 {
@@ -23,7 +20,7 @@ static void compare_field(const stage *on, sphg_shape shape, sphg_form form,
 {
     stage_field field = {shape, form, stage_random_field(on, shape, 3)};
     stage_result found = stage_apply(on, &field, table);
-    for (int k = 0; k < sample_count(on, samples); k += EACH)
+    for (int k = 0; k < sample_count(on, samples); k += test_reference_stride())
         stage_compare(on, &field, &found, sampled(on, k, samples));
 }
 
@@ -150,7 +147,7 @@ static void corrections_match_the_oracle(const test_case *test)
     for (int s = 0; s < scenes_hard_count; s++) {
         stage on = stage_of_scene(test, &scenes_hard[s]);
         fixture_array table = stage_table(&on);
-        for (int k = 0; k < sample_count(&on, 6); k += EACH)
+        for (int k = 0; k < sample_count(&on, 6); k += test_reference_stride())
             compare_correction(&on, &table, sampled(&on, k, 6));
     }
 }
@@ -188,7 +185,7 @@ static void ranks_and_smallest_moments_match_the_oracle(const test_case *test)
             ranks[(int)fixture_get(&rank, i, 0) & 3]++;
             smallest = fmin(smallest, fixture_get(&lambda, i, 0));
         }
-        for (int k = 0; k < sample_count(&on, 8); k += EACH) {
+        for (int k = 0; k < sample_count(&on, 8); k += test_reference_stride()) {
             int i = sampled(&on, k, 8);
             require_rank_and_moment(&on, i, fixture_get(&rank, i, 0), fixture_get(&lambda, i, 0));
         }
@@ -264,7 +261,7 @@ static void pair_gradients_match_the_oracle(const test_case *test)
     for (int s = 0; s < scenes_hard_count; s += 3) {
         stage on = stage_of_scene(test, &scenes_hard[s]);
         pair_list list = list_pairs(&on);
-        for (int k = 0; k < sample_count(&on, 4); k += EACH)
+        for (int k = 0; k < sample_count(&on, 4); k += test_reference_stride())
             compare_row(&on, &list, sampled(&on, k, 4));
     }
 }
@@ -284,7 +281,7 @@ static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
     stage on = stage_of_scene(test, &scenes_hard[0]);
     fixture_array table = stage_table(&on);
     int width = table.width, d = test->dimension;
-    for (int k = 0; k < sample_count(&on, 4); k += EACH) {
+    for (int k = 0; k < sample_count(&on, 4); k += test_reference_stride()) {
         int i = sampled(&on, k, 4);
         const oracle_point *point = oracle_at(on.reference, i);
         double correction[16];

@@ -4,7 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-enum { POOLED_MOST = 64 }; /* pages in front of the guard */
+enum { POOLED_MOST = 512 }; /* pages in front of the guard */
 
 /* Stands right in front of the array, at whatever alignment that leaves. */
 typedef struct mapping {

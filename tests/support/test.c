@@ -263,6 +263,11 @@ int test_is_shared(void)
     return share.parts > 1;
 }
 
+int test_reference_stride(void)
+{
+    return TEST_SLOWED || test_is_shared() ? 3 : 1;
+}
+
 static int has_several(unsigned set)
 {
     return (set & (set - 1)) != 0;

@@ -60,6 +60,11 @@ sphg_isa test_isa(void);
  * one case is always run. True when that is asked for: a case may then be smaller, too. */
 int test_is_shared(void);
 
+/* Which of the targets that stand beside the reference are taken: each one; or, where the run is
+ * shared or slowed by what watches it, every third. The reference is what takes the time, and it
+ * says the same in each build. */
+int test_reference_stride(void);
+
 /* Runs everything, or what matches the pattern in argv[1] ('*' and '?' are wildcards), and prints
  * the worst value measured against each tolerance. Returns main's result. */
 int test_run(int argc, char **argv, const test_entry *entries, size_t count);
