@@ -27,8 +27,8 @@ run_tsan() {
 }
 
 # The areas that take SPHG_TEST_LONG=1; of the ensembles, whose reference is in quad, one process for
-# each precision. Then what tests/run halves, whole, and with Clang what it leaves out: the bench, the scenes and
-# what they repeat; all scenes of the examples; and threads under ThreadSanitizer.
+# each precision. Then what tests/run halves, whole, and what it leaves out: the bench under sanitizers, and with Clang
+# the scenes, too; all scenes of the examples; and threads under ThreadSanitizer.
 run_long() {
     local area precision preset process processes=() status=0
     build_preset release -DSPHG_BUILD_TESTS=ON || return 1
@@ -45,7 +45,8 @@ run_long() {
     done
     cat build/release/f32.log build/release/f64.log
     unset SPHG_TEST_LONG
-    build_preset asan -DSPHG_BUILD_TESTS=ON && ctest --preset asan -L area -j "$(nproc)" || status=1
+    build_preset asan -DSPHG_BUILD_TESTS=ON -DSPHG_BUILD_BENCH=ON &&
+        ctest --preset asan -j "$(nproc)" || status=1
     build_preset clang -DSPHG_BUILD_TESTS=ON -DSPHG_BUILD_BENCH=ON -DSPHG_BUILD_SCENES=ON &&
         ctest --preset clang -j "$(nproc)" || status=1
     examples/run all --check || status=1
