@@ -70,10 +70,11 @@ int command_frontier(int argc, char **argv)
     frontier_measure(&frontier);
     frontier_print(&frontier);
     frontier_write_csv(&frontier);
+    frontier_write_steps(&frontier);
     if (frontier.settings.json)
         frontier_write_json(&frontier, frontier.settings.json, "sphgrad-bench");
     const bool drawn = frontier_draw(&frontier);
-    printf("\nwritten to %s: frontier.csv, frontier.gp%s\n", frontier.output,
+    printf("\nwritten to %s: frontier.csv, frontier_steps.csv, frontier.gp%s\n", frontier.output,
            drawn ? ", frontier.png" : "");
     for (int k = 0; k < frontier.point_count; k++)
         samples_destroy(&frontier.points[k].time);

@@ -51,12 +51,10 @@ int frontier_points(const struct frontier *frontier, enum frontier_field field,
 /* Fastest first. */
 void frontier_sort(const struct frontier_point *points[], int count);
 
-/* The way in words. */
-void frontier_describe(const struct frontier_point *point, char *text, size_t size);
-
 void frontier_measure(struct frontier *frontier);
 void frontier_print(const struct frontier *frontier);
 void frontier_write_csv(const struct frontier *frontier);
+void frontier_write_steps(const struct frontier *frontier);
 void frontier_write_json(const struct frontier *frontier, const char *path, const char *executable);
 bool frontier_draw(const struct frontier *frontier); /* after the CSV; false: no picture */
 #endif

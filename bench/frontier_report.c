@@ -26,13 +26,6 @@ static const char *option_name(const struct frontier_point *point)
     return point->method == SPHG_PLAIN ? "one sweep" : point->by_table ? "table" : "fused";
 }
 
-void frontier_describe(const struct frontier_point *point, char *text, size_t size)
-{
-    snprintf(text, size, "%s, %s, %s, %s, %s", method_names[point->method],
-             kernel_title(point->kernel), precision_names[point->precision],
-             path_names[point->path], option_name(point));
-}
-
 static int compare_times(const void *left, const void *right)
 {
     const struct frontier_point *const *a = left, *const *b = right;
@@ -161,6 +154,35 @@ void frontier_write_csv(const struct frontier *frontier)
                 point->on_frontier[1]);
     }
     plot_close(file, "frontier.csv");
+}
+
+/* The points of each frontier, fastest first: "1", "2" and so on, over the host's lists "a", "b".
+ */
+void frontier_write_steps(const struct frontier *frontier)
+{
+    static const char *const fields[] = {"trigonometric", "linear"}, *const sides[] = {"search",
+                                                                                       "host"};
+    const struct frontier_point **points =
+        allocate_or_exit((size_t)frontier->point_count, sizeof *points);
+    FILE *file = plot_file(frontier->output, "frontier_steps.csv");
+    fprintf(file, "field,side,mark,ns,error,method,kernel,precision,path,option\n");
+    for (int k = 0; k < FRONTIER_FIELDS * SIDES; k++) {
+        const enum frontier_field field = (enum frontier_field)(k / SIDES);
+        const enum frontier_side side = (enum frontier_side)(k % SIDES);
+        const int count = frontier_points(frontier, field, side, points);
+        for (int n = 0; n < count; n++) {
+            char mark[16];
+            snprintf(mark, sizeof mark, side == SIDE_HOST ? "%c" : "%d",
+                     side == SIDE_HOST ? 'a' + n % 26 : n + 1);
+            fprintf(file, "%s,%s,%s,%.6g,%.6e,%s,%s,%s,%s,%s\n", fields[field], sides[side], mark,
+                    frontier_time(frontier, points[n]), frontier_error(points[n], field),
+                    method_names[points[n]->method], kernel_title(points[n]->kernel),
+                    precision_names[points[n]->precision], path_names[points[n]->path],
+                    option_name(points[n]));
+        }
+    }
+    plot_close(file, "frontier_steps.csv");
+    free(points);
 }
 
 void frontier_write_json(const struct frontier *frontier, const char *path, const char *executable)

@@ -320,7 +320,9 @@ suspects 'volumes a thousand times too small' 1e-3 || complain 'volumes are not 
 [ -n "$at_least" ] || grep -q 'Hardly any particle has full rank. First suspect: --support' "$work/output" || complain 'no suspect'
 
 if [ -n "$reader" ]; then
-    "$reader" "$work"/files/* >"$work/output" 2>&1 || { name=reader && complain "exit status $?"; }
+    "$reader" "$work"/files/* >"$work/output" 2>&1
+    code=$? name=reader
+    [ "$code" -eq 0 ] || complain "exit status $code"
     echo "$files files by the reader"
     [ "$files" -gt 70 ] || status=1
 fi
