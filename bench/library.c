@@ -1,5 +1,5 @@
 #include "library.h"
-#include "names.h"
+#include "particles/names.h"
 #include "options.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* The library as the benchmark uses it: any failure ends the program with the library's words. */
 #ifndef SPHGRAD_BENCH_LIBRARY_H
 #define SPHGRAD_BENCH_LIBRARY_H
-#include "numbers.h"
+#include "particles/numbers.h"
 #include <stdbool.h>
 
 sphg_context *library_open(int32_t threads); /* 0: the library's default */

@@ -9,26 +9,44 @@
 
 struct command {
     const char *name, *summary;
+    const char *meaning; /* what its tables say, in the last line of what it prints */
     int (*run)(int argc, char **argv);
 };
 
-/* The first is the default. */
+/* The first is the default. Durations are those of two cores. */
 static const struct command commands[] = {
-    {"table1", "time the corrections and gradients of a million particles (default)",
+    {"table1", "time the corrections and gradients of a million particles (default, @table1)",
+     "the shorter, the sooner a step ends; a gradient is exact where its error is one of rounding",
      command_table1},
-    {"fields", "error of plain and corrected derivatives on a square: tables, CSV, pictures",
+    {"fields",
+     "error of plain and corrected derivatives on a square: tables, CSV, pictures (@fields)",
+     "a field is exact where its error is one of rounding, and converges where the order is "
+     "positive",
      command_fields},
-    {"limit", "how near the library comes to the arithmetic limit of this machine", command_limit},
-    {"lists", "time a pair of sums over a host's own lists, and of pairs written out",
+    {"limit", "how near the library comes to the arithmetic limit of this machine (@limit)",
+     "at 100 % the library would do nothing but the arithmetic that its formulas ask for",
+     command_limit},
+    {"lists", "time a pair of sums over a host's own lists, and of pairs written out (@lists)",
+     "a host with lists of its own saves the build and pays what its rows take more than kept "
+     "lists",
      command_lists},
-    {"skip", "what it saves not to compute what a scene does not need", command_skip},
-    {"frontier", "run time against error of every way to a gradient: tables, CSV, picture",
+    {"skip", "what it saves not to compute what a scene does not need (@skip)",
+     "what is left out is time saved; the same bits: what is still computed does not notice",
+     command_skip},
+    {"frontier",
+     "run time against error of every way to a gradient: tables, CSV, picture (@frontier)",
+     "who wants a smaller error than a way on the frontier gives has to pay for the next one",
      command_frontier},
-    {"scaling", "time a particle over sizes, threads, neighbours, orders and clouds",
+    {"scaling", "time a particle over sizes, threads, neighbours, orders and clouds (@scaling)",
+     "where a column stays level, the time of a particle does not depend on what its group changes",
      command_scaling},
-    {"stability", "sweeps into degenerate, distant and uneven particles: tables, CSV, pictures",
+    {"stability",
+     "sweeps into degenerate, distant and uneven particles: tables, CSV, pictures (@stability)",
+     "every promise holds where ratios stay below their limits and the last three columns are 0",
      command_stability},
-    {"solver", "time a matrix of the batches: moment inversion, eigenvalues, SVD", command_solver},
+    {"solver", "time a matrix of the batches: moment inversion, eigenvalues, SVD (@solver)",
+     "nothing can be faster than the copy, which moves the same numbers and computes nothing",
+     command_solver},
 };
 static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 
@@ -53,7 +71,10 @@ static int run(const struct command *command, int argc, char **argv)
     char name[64]; /* in front of messages about options */
     snprintf(name, sizeof name, "sphgrad-bench %s", command->name);
     argv[0] = name;
-    return command->run(argc, argv);
+    options_end_help(command->summary);
+    const int status = command->run(argc, argv);
+    printf("\nmeaning    %s\n", command->meaning);
+    return status;
 }
 
 int main(int argc, char **argv)

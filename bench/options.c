@@ -19,6 +19,13 @@ void options_refuse(const char *format, ...)
     exit(EXIT_REFUSED);
 }
 
+static char end_of_help[128];
+
+void options_end_help(const char *text)
+{
+    snprintf(end_of_help, sizeof end_of_help, "\v%s", text);
+}
+
 /* The outer parser: hands the input on and takes what is no option. Without an error stream argp
  * adds no second line to getopt's message. */
 static error_t parse_outer(int key, char *text, struct argp_state *state)
@@ -42,7 +49,7 @@ void options_parse(const struct argp *argp, int argc, char **argv, void *input)
         if (strcmp(argv[k], "-h") == 0)
             argv[k] = help;
     const struct argp_child children[] = {{argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
-    const struct argp outer = {.parser = parse_outer, .children = children};
+    const struct argp outer = {.parser = parse_outer, .doc = end_of_help, .children = children};
     if (argp_parse(&outer, argc, argv, ARGP_IN_ORDER, NULL, input))
         exit(EXIT_REFUSED);
 }

@@ -12,6 +12,9 @@ enum {
  * options only: anything else is refused. */
 void options_parse(const struct argp *argp, int argc, char **argv, void *input);
 
+/* What --help says behind the options. */
+void options_end_help(const char *text);
+
 /* Prints the line and exits. */
 __attribute__((format(printf, 1, 2), noreturn)) void options_refuse(const char *format, ...);
 

@@ -1,6 +1,6 @@
 #include "settings.h"
 #include "library.h"
-#include "names.h"
+#include "particles/names.h"
 #include "options.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
  * Needs dam_break_splash.csv in the folder that the environment variable SPHG_TEST_DATA names, or
  * in ../shared/data beside the checkout; skips where there is none. */
 #include "support/fixture.h"
-#include "../bench/csv.h"
+#include "tables/csv.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "field_study.h"
-#include "lattice.h"
+#include "particles/lattice.h"
 #include "library.h"
 
 #include <math.h>

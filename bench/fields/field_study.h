@@ -3,8 +3,8 @@
  * gradients and curls are from the true ones. Volumes are V_j = 1 / sum_k W_jk, j included. */
 #ifndef SPHGRAD_BENCH_FIELD_STUDY_H
 #define SPHGRAD_BENCH_FIELD_STUDY_H
-#include "names.h"
-#include "numbers.h"
+#include "particles/names.h"
+#include "particles/numbers.h"
 
 #include <stdbool.h>
 

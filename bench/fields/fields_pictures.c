@@ -1,7 +1,7 @@
 /* The pictures of the command `fields`: scripts for gnuplot, left beside the data so that they can
  * be changed and run again. */
 #include "fields.h"
-#include "plot.h"
+#include "report/plot.h"
 
 #include <stdio.h>
 
@@ -24,7 +24,8 @@ static bool draw(const char *directory, const struct lattice_results *results,
     const struct study_setting *setting = &results->setting;
     const char *ending = setting->jitter > 0 ? "_jittered" : "";
     const char *const parts[] = {
-        "fields_common.gp", picture->quantity ? "fields_panels.gp" : "fields_convergence.gp", NULL};
+        "fields/fields_common.gp",
+        picture->quantity ? "fields/fields_panels.gp" : "fields/fields_convergence.gp", NULL};
     char script[64], given[512];
     snprintf(script, sizeof script, "%s%s.gp", picture->name, ending);
     snprintf(given, sizeof given,

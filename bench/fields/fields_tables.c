@@ -1,6 +1,6 @@
 /* The CSV files of the command `fields`. */
 #include "fields.h"
-#include "plot.h"
+#include "report/plot.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The command `lists`. */
 #include "lists.h"
 #include "commands.h"
-#include "machine.h"
+#include "report/machine.h"
 #include "options.h"
 
 #include <stdlib.h>

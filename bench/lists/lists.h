@@ -2,9 +2,9 @@
  * pairs that the library writes out for loops of a host's own. */
 #ifndef SPHGRAD_BENCH_LISTS_H
 #define SPHGRAD_BENCH_LISTS_H
-#include "names.h"
+#include "particles/names.h"
 #include "settings.h"
-#include "timing.h"
+#include "report/timing.h"
 
 #include <stdbool.h>
 

@@ -1,10 +1,10 @@
 /* The measurements of lists. */
-#include "lattice.h"
+#include "particles/lattice.h"
 #include "library.h"
 #include "lists.h"
 #include "options.h"
-#include "particles.h"
-#include "progress.h"
+#include "particles/particles.h"
+#include "report/progress.h"
 
 #include <math.h>
 #include <stdlib.h>

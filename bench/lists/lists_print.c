@@ -1,12 +1,13 @@
 /* Times a pair on a terminal and for machines. */
 #include "library.h"
 #include "lists.h"
-#include "report_json.h"
-#include "text.h"
+#include "report/report_json.h"
+#include "report/text.h"
 
 #include <stdio.h>
 
-const char *const supply_names[SUPPLIES] = {"kept lists", "list-free", "host's CSR", "host's rows",
+const char *const supply_names[SUPPLIES] = {"kept lists",          "list-free",
+                                            "host's CSR",          "host's rows",
                                             "host's row function", "host's CSR, copied"};
 const char *const lists_work_names[LISTS_WORKS] = {"build", "matrices", "gradient", "fused"};
 
@@ -68,8 +69,6 @@ void lists_print(const struct lists *lists)
     text_print_if_busy(&lists->supplied[SUPPLY_KEPT][WORK_FUSED], settings->threads);
     print_supplies(lists);
     print_exports(lists);
-    printf("\nA host with lists of its own saves the build and pays what its rows of sums take "
-           "more than kept lists.\n");
 }
 
 static void report_time(struct report *report, const struct lists *lists, const char *name,

@@ -1,6 +1,6 @@
 /* read_tables FILE...: reads tables of particles in one process, for builds that watch what it
  * does; prints how many rows each has, or what is wrong with it. */
-#include "csv.h"
+#include "tables/csv.h"
 #include <stdio.h>
 
 int main(int argc, char **argv)

@@ -1,0 +1,60 @@
+/* Run time against error of every way to a velocity gradient: what is measured and reported. */
+#ifndef SPHGRAD_BENCH_FRONTIER_H
+#define SPHGRAD_BENCH_FRONTIER_H
+#include "particles/names.h"
+#include "settings.h"
+#include "report/timing.h"
+
+#include <stdbool.h>
+
+enum frontier_path { PATH_KEPT, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
+enum frontier_field { FRONTIER_TRIGONOMETRIC, FRONTIER_LINEAR, FRONTIER_FIELDS };
+
+enum { FRONTIER_METHODS = 6, FRONTIER_KERNELS = 7, FRONTIER_PRECISIONS = 3 };
+
+/* One way. */
+struct frontier_point {
+    sphg_method method;
+    sphg_kernel kernel;
+    enum precision precision;
+    enum frontier_path path;
+    bool by_table;       /* matrices first, then the gradient by their table; else in one sweep */
+    struct samples time; /* [ms] search or taking over lists, matrices, gradient */
+    /* |J_i - J|_F over the root mean square of |J|_F, over all particles. */
+    double mean[FRONTIER_FIELDS], most[FRONTIER_FIELDS];
+    bool on_frontier[FRONTIER_FIELDS]; /* nothing of its side is as fast and as accurate */
+};
+
+struct frontier {
+    struct settings settings;
+    const char *output;
+    int32_t count; /* particles */
+    double pairs;  /* a particle */
+    int point_count;
+    struct frontier_point *points;
+};
+
+extern const char *const path_names[PATHS];
+
+/* The field's mean error for the trigonometric field, its largest for the linear one. */
+double frontier_error(const struct frontier_point *point, enum frontier_field field);
+double frontier_time(const struct frontier *frontier,
+                     const struct frontier_point *point); /* [ns] */
+
+/* Ways that search for themselves and ways over lists of the host, who searched, do not compete:
+ * each side has a frontier of its own. Its points, fastest first; the count is returned. */
+enum frontier_side { SIDE_SEARCH, SIDE_HOST, SIDES };
+enum frontier_side frontier_side(const struct frontier_point *point);
+int frontier_points(const struct frontier *frontier, enum frontier_field field,
+                    enum frontier_side side, const struct frontier_point *points[]);
+
+/* Fastest first. */
+void frontier_sort(const struct frontier_point *points[], int count);
+
+void frontier_measure(struct frontier *frontier);
+void frontier_print(const struct frontier *frontier);
+void frontier_write_csv(const struct frontier *frontier);
+void frontier_write_steps(const struct frontier *frontier);
+void frontier_write_json(const struct frontier *frontier, const char *path, const char *executable);
+bool frontier_draw(const struct frontier *frontier); /* after the CSV; false: no picture */
+#endif

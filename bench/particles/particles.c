@@ -1,0 +1,195 @@
+#include "particles.h"
+#include "tables/csv.h"
+#include "lattice.h"
+#include "options.h"
+
+#include <math.h>
+#include <stdio.h>
+
+const double lattice_spacing = 1.0 / 128;
+
+static void create_tables(struct particles *particles, enum precision precision, int32_t count)
+{
+    particles->count = count;
+    particles->positions = numbers_create(position_type(precision), count, particles->dimension);
+    particles->velocities = numbers_create(field_type(precision), count, particles->dimension);
+    particles->volumes = numbers_create(field_type(precision), count, 1);
+}
+
+void particles_linear_field(const struct particles *particles, struct numbers *field)
+{
+    for (int32_t i = 0; i < particles->count; i++) {
+        numbers_set(field, i, 0, -numbers_get(&particles->positions, i, 1));
+        numbers_set(field, i, 1, numbers_get(&particles->positions, i, 0));
+        if (particles->dimension == 3)
+            numbers_set(field, i, 2, 2 * numbers_get(&particles->positions, i, 2));
+    }
+}
+
+static struct particles create_lattice(const struct particle_source *source)
+{
+    const struct lattice lattice = {.dimension = 3,
+                                    .side = source->side,
+                                    .spacing = lattice_spacing,
+                                    .jitter = source->jitter,
+                                    .shuffled = source->shuffled};
+    struct particles particles = {.dimension = 3, .volume_origin = "spacing^3"};
+    create_tables(&particles, source->precision, lattice_count(&lattice));
+    lattice_fill(&lattice, &particles.positions);
+    for (int32_t i = 0; i < particles.count; i++)
+        numbers_set(&particles.volumes, i, 0, lattice_spacing * lattice_spacing * lattice_spacing);
+    return particles;
+}
+
+/* Refuses what the precision cannot hold. */
+static void store(struct numbers *numbers, int32_t i, int32_t component, double value,
+                  const struct csv *csv)
+{
+    numbers_set(numbers, i, component, value);
+    if (!isfinite(numbers_get(numbers, i, component)))
+        options_refuse("%s, line %lld: %g is beyond the precision", csv->path,
+                       (long long)csv->lines[i], value);
+}
+
+/* Where volumes come from: the file's, its densities with masses or --mass, or the positions. What
+ * is not needed is not read. */
+static const char *choose_volumes(const struct particle_source *source, struct csv *csv)
+{
+    const bool given = csv->columns[QUANTITY_VOLUME] >= 0;
+    const bool densities = csv->columns[QUANTITY_DENSITY] >= 0;
+    const bool masses = csv->columns[QUANTITY_MASS] >= 0 && source->mass <= 0;
+    if (source->mass > 0 && (given || !densities))
+        options_refuse("--mass: %s has %s", csv->path, given ? "volumes" : "no densities");
+    const bool by_density = !given && densities && (masses || source->mass > 0);
+    if (!by_density)
+        csv->columns[QUANTITY_DENSITY] = -1;
+    if (!by_density || !masses)
+        csv->columns[QUANTITY_MASS] = -1;
+    if (given)
+        return "as given";
+    if (by_density)
+        return masses ? "mass / density" : "--mass / density";
+    return densities ? "1 / sum W (densities want --mass)" : "1 / sum W";
+}
+
+static double volume_of(const struct particle_source *source, const struct csv *csv, int32_t row)
+{
+    const double *values = csv->values[row];
+    const bool given = csv->columns[QUANTITY_VOLUME] >= 0;
+    const double volume = values[QUANTITY_VOLUME], density = values[QUANTITY_DENSITY];
+    const double mass = csv->columns[QUANTITY_MASS] >= 0 ? values[QUANTITY_MASS] : source->mass;
+    if (given ? volume < 0 : density <= 0)
+        options_refuse("%s, line %lld: the %s is %g", csv->path, (long long)csv->lines[row],
+                       given ? "volume" : "density", given ? volume : density);
+    if (!given && mass < 0)
+        options_refuse("%s, line %lld: the mass is %g", csv->path, (long long)csv->lines[row],
+                       mass);
+    return given ? volume : mass / density;
+}
+
+static bool is_constant(const struct csv *csv, int axis)
+{
+    for (int32_t i = 1; i < csv->row_count; i++)
+        if (csv->values[i][QUANTITY_X + axis] != csv->values[0][QUANTITY_X + axis])
+            return false;
+    return true;
+}
+
+/* A file is in 2D if it has two coordinates, or one of three never changes: fills `axes` with those
+ * that count. */
+static void choose_axes(struct particles *particles, const struct csv *csv, int axes[3])
+{
+    int missing = 0, flat = 0, last = -1;
+    for (int axis = 0; axis < 3; axis++) {
+        const bool absent = csv->columns[QUANTITY_X + axis] < 0;
+        missing += absent;
+        if (absent || is_constant(csv, axis)) {
+            flat++;
+            last = axis;
+        }
+    }
+    particles->dimension = missing || flat == 1 ? 2 : 3;
+    if (missing)
+        snprintf(particles->flat, sizeof particles->flat, "2D: the file has no %c", "xyz"[last]);
+    else if (flat == 1)
+        snprintf(particles->flat, sizeof particles->flat, "2D: all %c are %g", "xyz"[last],
+                 csv -> values[0][QUANTITY_X + last]);
+    int count = 0;
+    for (int axis = 0; axis < 3; axis++)
+        if (particles->dimension == 3 || axis != last)
+            axes[count++] = axis;
+}
+
+static void describe_columns(struct particles *particles, const struct csv *csv)
+{
+    size_t length = 0;
+    const size_t size = sizeof particles->columns;
+    for (int quantity = 0; quantity < QUANTITIES && length < size; quantity++) {
+        char name[32];
+        if (csv->columns[quantity] >= 0)
+            length += (size_t)snprintf(particles->columns + length, size - length, "%s%s",
+                                       length ? ", " : "",
+                                       csv_name(csv, (enum quantity)quantity, name, sizeof name));
+    }
+}
+
+static void read_vectors(struct numbers *vectors, const struct csv *csv, enum quantity first,
+                         const int axes[3])
+{
+    for (int32_t i = 0; i < vectors->count; i++)
+        for (int32_t k = 0; k < vectors->width; k++)
+            store(vectors, i, k, csv->values[i][(int)first + axes[k]], csv);
+}
+
+static void read_volumes(struct particles *particles, const struct particle_source *source,
+                         const struct csv *csv)
+{
+    if (csv->columns[QUANTITY_VOLUME] < 0 && csv->columns[QUANTITY_DENSITY] < 0) {
+        numbers_destroy(&particles->volumes);
+        return;
+    }
+    for (int32_t i = 0; i < particles->count; i++)
+        store(&particles->volumes, i, 0, volume_of(source, csv, i), csv);
+}
+
+static struct particles read_particles(const struct particle_source *source)
+{
+    struct csv csv;
+    if (!csv_open(&csv, source->input))
+        options_refuse("%s", csv.message);
+    struct particles particles = {.volume_origin = choose_volumes(source, &csv)};
+    describe_columns(&particles, &csv);
+    if (!csv_read(&csv))
+        options_refuse("%s", csv.message);
+    particles.more = csv.more;
+    int axes[3] = {0, 1, 2};
+    choose_axes(&particles, &csv, axes);
+    particles.own_velocities = csv.columns[QUANTITY_VX + axes[0]] >= 0;
+    create_tables(&particles, source->precision, csv.row_count);
+    read_vectors(&particles.positions, &csv, QUANTITY_X, axes);
+    if (particles.own_velocities)
+        read_vectors(&particles.velocities, &csv, QUANTITY_VX, axes);
+    read_volumes(&particles, source, &csv);
+    csv_destroy(&csv);
+    if (source->shuffled) {
+        shuffle_rows(&particles.positions);
+        shuffle_rows(&particles.velocities);
+        shuffle_rows(&particles.volumes);
+    }
+    return particles;
+}
+
+struct particles particles_create(const struct particle_source *source)
+{
+    struct particles particles = source->input ? read_particles(source) : create_lattice(source);
+    if (!particles.own_velocities)
+        particles_linear_field(&particles, &particles.velocities);
+    return particles;
+}
+
+void particles_destroy(struct particles *particles)
+{
+    numbers_destroy(&particles->positions);
+    numbers_destroy(&particles->velocities);
+    numbers_destroy(&particles->volumes);
+}

@@ -1,0 +1,91 @@
+#define _POSIX_C_SOURCE 200809L /* clock_gettime */
+#include "timing.h"
+#include "particles/numbers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+static double read_clock(clockid_t clock)
+{
+    struct timespec time;
+    clock_gettime(clock, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+struct moment now(void)
+{
+    return (struct moment){read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+struct samples samples_create(int32_t capacity)
+{
+    return (struct samples){allocate_or_exit((size_t)capacity, sizeof(struct moment)), 0, capacity};
+}
+
+void samples_destroy(struct samples *samples)
+{
+    free(samples->values);
+    *samples = (struct samples){0};
+}
+
+void samples_add(struct samples *samples, struct moment duration)
+{
+    if (samples->count < samples->capacity)
+        samples->values[samples->count++] = duration;
+}
+
+void samples_add_since(struct samples *samples, struct moment start)
+{
+    const struct moment end = now();
+    samples_add(samples, (struct moment){end.wall - start.wall, end.cpu - start.cpu});
+}
+
+static int compare_numbers(const void *left, const void *right)
+{
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+static double standard_deviation(const double *values, int32_t count, double mean)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < count; k++)
+        sum += (values[k] - mean) * (values[k] - mean);
+    return count > 1 ? sqrt(sum / (count - 1)) : 0;
+}
+
+/* Sorts the values. */
+static struct spread spread_of(double *values, int32_t count)
+{
+    if (count == 0)
+        return (struct spread){NAN, NAN, NAN, NAN, NAN};
+    qsort(values, (size_t)count, sizeof *values, compare_numbers);
+    double sum = 0;
+    for (int32_t k = 0; k < count; k++)
+        sum += values[k];
+    struct spread spread = {.mean = sum / count, .min = values[0], .max = values[count - 1]};
+    spread.median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+    spread.deviation = standard_deviation(values, count, spread.mean);
+    return spread;
+}
+
+static struct spread spread_of_clock(const struct samples *samples, int cpu)
+{
+    double *values = allocate_or_exit((size_t)samples->count, sizeof *values);
+    for (int32_t k = 0; k < samples->count; k++)
+        values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
+    const struct spread spread = spread_of(values, samples->count);
+    free(values);
+    return spread;
+}
+
+struct spread samples_wall(const struct samples *samples)
+{
+    return spread_of_clock(samples, 0);
+}
+
+struct spread samples_cpu(const struct samples *samples)
+{
+    return spread_of_clock(samples, 1);
+}

@@ -1,0 +1,46 @@
+/* Time a particle over sizes, threads, neighbours, orders and clouds: what is measured. */
+#ifndef SPHGRAD_BENCH_SCALING_H
+#define SPHGRAD_BENCH_SCALING_H
+#include "scaling_cloud.h"
+#include "settings.h"
+#include "report/timing.h"
+
+enum scaling_work {
+    SCALING_SEARCH,
+    SCALING_MATRICES,
+    SCALING_GRADIENT,
+    SCALING_FUSED,
+    SCALING_WORKS
+};
+
+struct scaling_case {
+    const char *group;
+    char label[48];
+    struct cloud_setting cloud;
+    int32_t threads;
+    struct samples time[SCALING_WORKS];
+    int32_t count;
+    double pairs, bytes; /* a particle */
+    double deficient;    /* share of particles without full rank */
+    double error;        /* largest |J_i - J|_F / |J|_F of a linear field where rank is full */
+    int64_t not_finite;  /* numbers of Jacobians */
+};
+
+struct scaling {
+    struct settings settings;
+    const char *output;
+    bool full; /* up to 30 times the particles */
+    int case_count;
+    struct scaling_case *cases; /* those of a group stand together */
+};
+
+extern const char *const scaling_work_names[SCALING_WORKS];
+
+void scaling_create_cases(struct scaling *scaling);
+void scaling_measure(struct scaling *scaling); /* the cases of a group in turn, round by round */
+double scaling_time(const struct scaling_case *one, enum scaling_work work); /* [ns a particle] */
+void scaling_print(const struct scaling *scaling);
+void scaling_write_csv(const struct scaling *scaling);
+void scaling_write_json(const struct scaling *scaling, const char *path, const char *executable);
+bool scaling_draw(const struct scaling *scaling); /* after the CSV; false: no picture */
+#endif

@@ -1,0 +1,26 @@
+/* Clouds of particles that a solver may bring. */
+#ifndef SPHGRAD_BENCH_SCALING_CLOUD_H
+#define SPHGRAD_BENCH_SCALING_CLOUD_H
+#include "particles/numbers.h"
+
+#include <stdbool.h>
+
+enum cloud_shape {
+    CLOUD_LATTICE,
+    CLOUD_JITTERED,
+    CLOUD_ROTATED, /* jittered, then turned against the axes */
+    CLOUD_SHEETS,  /* jittered sheets of one layer, out of each other's reach */
+    CLOUD_SPRAY,   /* some three neighbours each */
+    CLOUD_FAR      /* jittered, 100 000 H from the origin */
+};
+
+struct cloud_setting {
+    enum cloud_shape shape;
+    int32_t dimension, particles; /* the nearest cube or square is taken */
+    double support, jitter;       /* in spacings */
+    bool shuffled;
+};
+
+/* Positions in f32, spacing lattice_spacing. */
+struct numbers cloud_positions(const struct cloud_setting *setting);
+#endif

@@ -1,0 +1,265 @@
+/* The measurements of solver. */
+#include "report/progress.h"
+#include "solver.h"
+#include "team.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Short calls are repeated until a sample takes so long [ms]. */
+static const double sample_time = 2;
+
+/* What a group runs on. All cases share the results' memory. */
+struct scene {
+    struct solver_group *group;
+    sphg_context *contexts[LIBRARY_PATHS]; /* NULL: not measured */
+    struct numbers batches[SOLVER_CASES], results[3];
+    int32_t threads, calls[SOLVER_CASES][LIBRARY_PATHS];
+};
+
+static struct scene open_scene(const struct solver *solver, struct solver_group *group)
+{
+    struct scene scene = {.group = group, .threads = solver->settings.threads};
+    for (int path = 0; path < LIBRARY_PATHS; path++)
+        if (solver->available[path])
+            scene.contexts[path] = library_open_path(scene.threads, path);
+    for (int k = 0; k < SOLVER_CASES; k++)
+        if (solver_has(group, k))
+            scene.batches[k] =
+                solver_batch(&solver_cases[k], group->type, group->dimension, group->count);
+    for (int k = 0; k < 3; k++)
+        scene.results[k] = numbers_create(group->type, group->count, 9);
+    return scene;
+}
+
+static void close_scene(struct scene *scene)
+{
+    for (int path = 0; path < LIBRARY_PATHS; path++)
+        sphg_context_destroy(scene->contexts[path]);
+    for (int k = 0; k < SOLVER_CASES; k++)
+        numbers_destroy(&scene->batches[k]);
+    for (int k = 0; k < 3; k++)
+        numbers_destroy(&scene->results[k]);
+}
+
+/* Result k of the work, packed as a host would have it. */
+static struct numbers result_of(const struct scene *scene, enum solver_work work, int k)
+{
+    struct numbers result = scene->results[k];
+    result.width = solver_widths_of(work, scene->group->dimension).out[k];
+    return result;
+}
+
+/* ---- What is timed -------------------------------------------------------------------------- */
+
+struct copy {
+    const struct scene *scene;
+    int k;
+};
+
+/* Bytes of items [begin, end) of a table. */
+static char *items(const struct numbers *table, int32_t begin, int32_t end, size_t *size)
+{
+    const size_t item = (size_t)numbers_view(table).stride;
+    *size = item * (size_t)(end - begin);
+    return (char *)table->data + item * (size_t)begin;
+}
+
+/* Results wider than the input take some of it twice. In pieces as the library's. */
+static void copy_share(void *data, int32_t begin, int32_t end)
+{
+    enum { PIECE = 32 };
+    const struct copy *copy = data;
+    const enum solver_work work = solver_cases[copy->k].work;
+    for (int32_t first = begin; first < end; first += PIECE)
+        for (int k = 0; k < 3; k++) {
+            const struct numbers out = result_of(copy->scene, work, k);
+            const int32_t last = end - first < PIECE ? end : first + PIECE;
+            size_t in_size, out_size;
+            const char *from = items(&copy->scene->batches[copy->k], first, last, &in_size);
+            char *to = items(&out, first, last, &out_size);
+            memcpy(to, from, out_size < in_size ? out_size : in_size);
+            if (out_size > in_size)
+                memcpy(to + in_size, from, out_size - in_size);
+        }
+}
+
+static void invert(const struct scene *scene, int k, int path, sphg_stats *stats)
+{
+    const struct solver_group *group = scene->group;
+    const sphg_scheme scheme = {.dimension = group->dimension, .support_radius = 1};
+    const struct numbers corrections = result_of(scene, SOLVER_INVERSION, 0);
+    const sphg_inversion wanted = {.correction = numbers_view(&corrections), .stats = stats};
+    library_check(scene->contexts[path],
+                  sphg_invert_moments(scene->contexts[path], &scheme, group->count,
+                                      numbers_view(&scene->batches[k]), sphg_absent(), &wanted));
+}
+
+static void run_case(const struct scene *scene, int k, int path)
+{
+    const struct solver_case *one = &solver_cases[k];
+    const struct solver_group *group = scene->group;
+    sphg_context *context = scene->contexts[path];
+    const sphg_view matrices = numbers_view(&scene->batches[k]);
+    sphg_view out[3];
+    for (int r = 0; r < 3; r++) {
+        const struct numbers result = result_of(scene, one->work, r);
+        out[r] = numbers_view(&result);
+    }
+    if (one->spectrum == SOLVER_COPIED) {
+        struct copy copy = {scene, k};
+        team_run(scene->threads, copy_share, &copy, group->count, SOLVER_SMALL / 8);
+    } else if (one->work == SOLVER_INVERSION)
+        invert(scene, k, path, NULL);
+    else if (one->work == SOLVER_EIGEN)
+        library_check(
+            context, sphg_eigen(context, group->dimension, group->count, matrices, out[0], out[1]));
+    else
+        library_check(context, sphg_svd(context, group->count, matrices, out[0], out[1], out[2]));
+}
+
+static void time_case(const struct scene *scene, int k, int path)
+{
+    const int32_t calls = scene->calls[k][path];
+    const struct moment start = now();
+    for (int32_t call = 0; call < calls; call++)
+        run_case(scene, k, path);
+    const struct moment end = now();
+    const struct moment one = {(end.wall - start.wall) / calls, (end.cpu - start.cpu) / calls};
+    samples_add(&scene->group->results[k].times[path], one);
+}
+
+/* ---- What came out -------------------------------------------------------------------------- */
+
+/* An item as a full matrix. */
+static void matrix_of(const struct numbers *table, int32_t item, int32_t d, double a[3][3])
+{
+    const bool symmetric = table->width < d * d;
+    int32_t n = 0;
+    for (int32_t r = 0; r < d; r++)
+        for (int32_t c = symmetric ? r : 0; c < d; c++) {
+            a[r][c] = numbers_get(table, item, n++);
+            if (symmetric)
+                a[c][r] = a[r][c];
+        }
+}
+
+/* sum_k p[r][k] values[k] q[k or c][c or k] */
+static double entry_of(int32_t d, double p[3][3], const double values[3], double q[3][3],
+                       bool transposed, int32_t r, int32_t c)
+{
+    double sum = 0;
+    for (int32_t k = 0; k < d; k++)
+        sum += p[r][k] * values[k] * (transposed ? q[c][k] : q[k][c]);
+    return sum;
+}
+
+/* |C M - 1|, |Q L Q^T - A| or |U S V^T - A|, the largest entry, over that of A. */
+static double deviation_of(const struct scene *scene, int k, int32_t item)
+{
+    const int32_t d = scene->group->dimension;
+    const enum solver_work work = solver_cases[k].work;
+    const bool inverse = work == SOLVER_INVERSION;
+    double a[3][3], p[3][3], q[3][3], values[3] = {1, 1, 1}, worst = 0, largest = 0;
+    const struct numbers first = result_of(scene, work, 0), second = result_of(scene, work, 1),
+                         third = result_of(scene, work, 2);
+    matrix_of(&scene->batches[k], item, d, a);
+    matrix_of(work == SOLVER_EIGEN ? &second : &first, item, d, p);
+    if (inverse)
+        memcpy(q, a, sizeof q);
+    else
+        matrix_of(work == SOLVER_EIGEN ? &second : &third, item, d, q);
+    for (int32_t r = 0; r < d && !inverse; r++)
+        values[r] = numbers_get(work == SOLVER_EIGEN ? &first : &second, item, r);
+    for (int32_t r = 0; r < d; r++)
+        for (int32_t c = 0; c < d; c++) {
+            const double wanted = inverse ? r == c : a[r][c];
+            const double off = fabs(entry_of(d, p, values, q, !inverse, r, c) - wanted);
+            if (!(off < (double)INFINITY))
+                return (double)INFINITY;
+            worst = fmax(worst, off);
+            largest = fmax(largest, fabs(a[r][c]));
+        }
+    return worst / largest;
+}
+
+/* Runs the case once, which also warms up, and looks at its first results, NaN until they are
+ * written. Corrections that the threshold touched are no inverses. */
+static void check_case(struct scene *scene, int k, int path)
+{
+    const struct solver_case *one = &solver_cases[k];
+    struct solver_result *result = &scene->group->results[k];
+    const int32_t count = scene->group->count;
+    sphg_stats stats = {.decomposed = 0};
+    for (int r = 0; r < 3; r++)
+        memset(scene->results[r].data, 0xff,
+               (size_t)count * (size_t)numbers_view(&scene->results[r]).stride);
+    run_case(scene, k, path);
+    if (one->spectrum == SOLVER_MOMENTS)
+        invert(scene, k, path, &stats);
+    result->decomposed[path] = (double)stats.decomposed / count;
+    result->deviation[path] = 0;
+    if (one->spectrum != SOLVER_COPIED && one->share == 0)
+        for (int32_t i = 0; i < count && i < SOLVER_SMALL; i++)
+            result->deviation[path] = fmax(result->deviation[path], deviation_of(scene, k, i));
+}
+
+/* How many calls make a sample, from one call in the warm state. */
+static void calibrate(struct scene *scene, int k, int path)
+{
+    const struct moment start = now();
+    run_case(scene, k, path);
+    const double time = now().wall - start.wall;
+    const double calls = ceil(sample_time / fmax(time, 1e-4));
+    scene->calls[k][path] = (int32_t)fmin(calls, 1e5);
+}
+
+static bool is_measured(const struct scene *scene, int k, int path)
+{
+    if (!solver_has(scene->group, k))
+        return false;
+    if (solver_cases[k].spectrum == SOLVER_COPIED) /* by no path, and only once */
+        return path == 0;
+    return scene->contexts[path] != NULL;
+}
+
+static void for_all(struct scene *scene, void (*action)(struct scene *, int, int))
+{
+    for (int k = 0; k < SOLVER_CASES; k++)
+        for (int path = 0; path < LIBRARY_PATHS; path++)
+            if (is_measured(scene, k, path))
+                action(scene, k, path);
+}
+
+static void prepare(struct scene *scene, int k, int path)
+{
+    check_case(scene, k, path);
+    calibrate(scene, k, path);
+}
+
+static void measure(struct scene *scene, int k, int path)
+{
+    time_case(scene, k, path);
+}
+
+void solver_measure(struct solver *solver)
+{
+    const int32_t rounds = solver->settings.repetitions;
+    for (int g = 0; g < solver->group_count; g++) {
+        struct solver_group *group = &solver->groups[g];
+        progress_show("group %d of %d: warm-up", g + 1, solver->group_count);
+        for (int k = 0; k < SOLVER_CASES; k++)
+            for (int path = 0; path < LIBRARY_PATHS; path++)
+                group->results[k].times[path] = samples_create(rounds);
+        struct scene scene = open_scene(solver, group);
+        for_all(&scene, prepare);
+        for (int32_t round = 0; round < rounds; round++) {
+            progress_show("group %d of %d: round %d of %d", g + 1, solver->group_count, round + 1,
+                          rounds);
+            for_all(&scene, measure);
+        }
+        close_scene(&scene);
+    }
+    progress_clear();
+}

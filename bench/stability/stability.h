@@ -1,0 +1,91 @@
+/* How the operators bear degenerate, distant and uneven particles: what is swept and measured. */
+#ifndef SPHGRAD_BENCH_STABILITY_H
+#define SPHGRAD_BENCH_STABILITY_H
+#include "particles/names.h"
+#include "settings.h"
+#include "report/timing.h"
+
+#include <stdbool.h>
+
+enum stability_sweep {
+    SWEEP_SLAB,       /* (spacing / thickness)^2, about the condition number of the moments */
+    SWEEP_THRESHOLD,  /* eps */
+    SWEEP_OFFSET,     /* distance from the origin / H */
+    SWEEP_SCALE,      /* k: lengths times 2^k */
+    SWEEP_NEIGHBOURS, /* of each target */
+    SWEEP_VOLUMES,    /* largest over smallest volume */
+    SWEEP_JITTER,     /* share of the spacing by which each coordinate moves */
+    SWEEP_MERGING,    /* distance of two layers / H */
+    SWEEP_CROWDS,     /* equal particles in each of five places; runs alone, when asked for */
+    SWEEPS = SWEEP_CROWDS
+};
+
+enum { STABILITY_METHODS = 6, STABILITY_POLICIES = 4, STABILITY_PRECISIONS = 3 };
+
+/* One place of a sweep for one method, precision and policy; the worst of all rounds. */
+struct stability_case {
+    enum stability_sweep sweep;
+    sphg_method method;
+    sphg_kernel kernel;
+    sphg_policy policy;
+    enum precision precision;
+    double at, end; /* scale and merging walk from `at` to `end`, in `steps` steps; else the same */
+    int32_t steps;
+    struct moment time; /* of all calls of the library */
+
+    int64_t targets;    /* seen by the library */
+    int64_t not_finite; /* numbers among the results */
+    int64_t rank_sum, full, decomposed, empty;
+    int32_t rank_least;
+    double linear_sum;  /* of |J_i - J|_F / |J|_F of a linear field */
+    double linear_full; /* the largest where rank is full; plain SPH: the largest */
+    double noise;       /* largest |J_i|_F H of a random field in [-1, 1] */
+
+    int64_t compared,
+        undecided; /* targets beside the reference; left out, since rounding decides */
+    int64_t wrong_ranks;
+    double ratio_full, ratio_touched; /* largest error over its bound */
+    double condition;                 /* largest of the normalised moments compared */
+
+    int64_t other_bits; /* scale: targets that are not the power of two times those of k = 0 */
+    double jump;        /* merging: largest |J_i - J_i'|_F H between steps, random field */
+    double jump_left;   /* the same when the step it happens in is halved eight times */
+    double correction_jump,
+        correction_jump_left; /* |C_i - C_i'|_F m_ref; not for classic methods */
+};
+
+struct stability {
+    struct settings settings;
+    const char *output;
+    bool quick;
+    int first, last; /* sweeps */
+    int32_t seed;    /* of all random numbers */
+    sphg_kernel kernel;
+    int32_t compared; /* targets of a case that stand beside the reference */
+    int case_count;
+    struct stability_case *cases; /* those of a sweep stand together */
+};
+
+extern const char *const sweep_names[SWEEPS + 2]; /* NULL-terminated */
+extern const char *const policy_names[STABILITY_POLICIES];
+
+void stability_create_cases(struct stability *stability);
+bool stability_is_corrected(const struct stability_case *one); /* not plain SPH */
+double stability_threshold(const struct stability_case *one);  /* eps */
+void stability_measure(struct stability *stability);
+
+/* Shares and means of a case. */
+double stability_rank(const struct stability_case *one);
+double stability_fallback(const struct stability_case *one); /* share that is decomposed */
+double stability_linear(const struct stability_case *one);
+double stability_ratio(const struct stability_case *one);
+
+/* Lines on stderr for promises that a case breaks; how many there are. */
+int stability_check(const struct stability *stability);
+
+void stability_print(const struct stability *stability);
+void stability_write_csv(const struct stability *stability);
+void stability_write_json(const struct stability *stability, const char *path,
+                          const char *executable);
+bool stability_draw(const struct stability *stability); /* after the CSV; false: no picture */
+#endif

@@ -1,0 +1,154 @@
+/* The walk through the cases of stability. Each case is measured by one thread, so that figures
+ * do not depend on their number. */
+#include "library.h"
+#include "report/progress.h"
+#include "stability_reference.h"
+#include "team.h"
+
+#include <math.h>
+#include <stdatomic.h>
+
+enum { HALVINGS = 8 };
+
+/* What the work on a case needs. */
+struct bench {
+    const struct stability *stability;
+    struct stability_case *one;
+    sphg_context *context;
+    int32_t round;
+};
+
+static struct trial run_at(const struct bench *bench, double at, int exponent)
+{
+    struct stability_cloud cloud =
+        stability_cloud_create(bench->stability, bench->one->sweep, at, bench->round);
+    struct trial trial = trial_create(bench->context, bench->one, &cloud, exponent);
+    trial_run(&trial, bench->one);
+    stability_cloud_destroy(&cloud);
+    return trial;
+}
+
+static void compare(const struct bench *bench, const struct trial *trial)
+{
+    reference_compare(trial, bench->stability->compared, bench->one);
+}
+
+static void measure_place(const struct bench *bench)
+{
+    struct trial trial = run_at(bench, bench->one->at, 0);
+    compare(bench, &trial);
+    trial_destroy(&trial);
+}
+
+static void measure_scales(const struct bench *bench)
+{
+    struct stability_case *one = bench->one;
+    struct trial base = run_at(bench, 0, 0);
+    for (int32_t k = 0; k <= one->steps; k++) {
+        const int exponent = (int)lround(one->at + (one->end - one->at) * k / one->steps);
+        struct trial trial = run_at(bench, 0, exponent);
+        one->other_bits += trial_other_bits(&trial, &base, exponent);
+        if (k == 0 || k == one->steps)
+            compare(bench, &trial);
+        trial_destroy(&trial);
+    }
+    trial_destroy(&base);
+}
+
+/* Halves the step from `near` to `far` again and again and stays with the half that jumps more:
+ * what is left of a jump that is none is as small as the step. */
+static void bisect(const struct bench *bench, double near, double far)
+{
+    struct stability_case *one = bench->one;
+    struct trial here = run_at(bench, near, 0), there = run_at(bench, far, 0);
+    for (int k = 0; k < HALVINGS; k++) {
+        const double middle = (near + far) / 2;
+        struct trial between = run_at(bench, middle, 0);
+        const bool first = trial_jump(&here, &between) > trial_jump(&between, &there);
+        struct trial *moved = first ? &there : &here;
+        trial_destroy(moved);
+        *moved = between;
+        *(first ? &far : &near) = middle;
+    }
+    one->jump_left = fmax(one->jump_left, trial_jump(&here, &there));
+    one->correction_jump_left =
+        fmax(one->correction_jump_left, trial_correction_jump(&here, &there));
+    trial_destroy(&here);
+    trial_destroy(&there);
+}
+
+static void measure_merging(const struct bench *bench)
+{
+    struct stability_case *one = bench->one;
+    const double step = (one->end - one->at) / one->steps;
+    struct trial trial = run_at(bench, one->at, 0);
+    double largest = 0;
+    int32_t largest_at = 1;
+    compare(bench, &trial);
+    for (int32_t k = 1; k <= one->steps; k++) {
+        struct trial next = run_at(bench, one->at + k * step, 0);
+        const double jump = trial_jump(&trial, &next);
+        if (jump > largest)
+            largest = jump, largest_at = k;
+        one->correction_jump = fmax(one->correction_jump, trial_correction_jump(&trial, &next));
+        trial_destroy(&trial);
+        trial = next;
+    }
+    trial_destroy(&trial);
+    one->jump = fmax(one->jump, largest);
+    bisect(bench, one->at + (largest_at - 1) * step, one->at + largest_at * step);
+}
+
+static void measure_case(const struct bench *bench)
+{
+    if (bench->one->sweep == SWEEP_SCALE)
+        measure_scales(bench);
+    else if (bench->one->sweep == SWEEP_MERGING)
+        measure_merging(bench);
+    else
+        measure_place(bench);
+}
+
+/* ---- All of them ---------------------------------------------------------------------------- */
+
+struct work {
+    struct stability *stability;
+    atomic_int next;
+};
+
+static void report(const struct stability *stability, int index)
+{
+    const struct stability_case *one = &stability->cases[index];
+    progress_show("%s %s %s %s at %g: %d of %d", sweep_names[one->sweep], method_names[one->method],
+                  precision_names[one->precision], policy_names[one->policy], one->at, index + 1,
+                  stability->case_count);
+}
+
+/* Whoever is free takes the next case. */
+static void take_cases(void *data, int32_t begin, int32_t end)
+{
+    struct work *work = data;
+    struct stability *stability = work->stability;
+    if (begin == end)
+        return;
+    struct bench bench = {.stability = stability, .context = library_open(1)};
+    for (;;) {
+        const int index = atomic_fetch_add(&work->next, 1);
+        if (index >= stability->case_count)
+            break;
+        bench.one = &stability->cases[index];
+        if (begin == 0)
+            report(stability, index);
+        for (bench.round = 0; bench.round < stability->settings.repetitions; bench.round++)
+            measure_case(&bench);
+    }
+    sphg_context_destroy(bench.context);
+}
+
+void stability_measure(struct stability *stability)
+{
+    struct work work = {.stability = stability};
+    atomic_init(&work.next, 0);
+    team_run(stability->settings.threads, take_cases, &work, stability->settings.threads, 1);
+    progress_clear();
+}
