@@ -33,7 +33,7 @@ static const struct command commands[] = {
      "what is left out is time saved; the same bits: what is still computed does not notice",
      command_skip},
     {"frontier",
-     "run time against error of every way to a gradient: tables, CSV, picture (a minute)",
+     "run time against error of every way to a gradient: tables, CSV, picture (half a minute)",
      "who wants a smaller error than a way on the frontier gives has to pay for the next one",
      command_frontier},
     {"scaling",
@@ -41,8 +41,7 @@ static const struct command commands[] = {
      "where a column stays level, the time of a particle does not depend on what its group changes",
      command_scaling},
     {"stability",
-     "sweeps into degenerate, distant and uneven particles: tables, CSV, pictures (a minute or "
-     "two)",
+     "sweeps into degenerate, distant and uneven particles: tables, CSV, pictures (a minute)",
      "every promise holds where ratios stay below their limits and the last three columns are 0",
      command_stability},
     {"solver", "time a matrix of the batches: moment inversion, eigenvalues, SVD (a minute or two)",
