@@ -6,6 +6,7 @@
 int command_table1(int argc, char **argv);
 int command_fields(int argc, char **argv);
 int command_limit(int argc, char **argv);
+int command_forces(int argc, char **argv);
 int command_lists(int argc, char **argv);
 int command_skip(int argc, char **argv);
 int command_frontier(int argc, char **argv);

@@ -25,6 +25,10 @@ static const struct command commands[] = {
     {"limit", "how near the library comes to the arithmetic limit of this machine (15 s)",
      "at 100 % the library would do nothing but the arithmetic that its formulas ask for",
      command_limit},
+    {"forces", "time the operators that a solver iterates: forces and divergences (15 s)",
+     "an iteration costs what its operators take; forces add up to nothing where their error is one "
+     "of rounding",
+     command_forces},
     {"lists", "time a pair of sums over a host's own lists, and of pairs written out (5 s)",
      "a host with lists of its own saves the build and pays what its rows take more than kept "
      "lists",

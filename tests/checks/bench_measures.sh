@@ -32,6 +32,16 @@ case $command in
         "$checker" "$work/report.json" probe/matrices error_max 0 1e-5 \
             probe/matrices matrix_deviation 0 1e-5
         ;;
+    forces)
+        # conservation to rounding; a library that returns zeros gives 0/0
+        measure --particles 4096 --repetitions 1
+        "$checker" "$work/report.json" forces/stress error 0 1e-5 forces/pressure error 0 1e-5 \
+            'forces/divergence, adjoint' error 0 1e-5 forces/ real_time 0 1e6 \
+            'forces/divergence, difference/KGC' error 0 1e-5 \
+            'forces/divergence, difference/SPH' error 0.1 1
+        measure --particles 1000 --repetitions 1 --precision f64
+        "$checker" "$work/report.json" forces/stress error 0 1e-13
+        ;;
     lists)
         measure --particles 4096 --repetitions 2 --threads 1
         "$checker" "$work/report.json" lists/ ns_per_pair 0.01 1e6 lists/sums/ error_max 0 1e-5 \
