@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double shares[SKIP_PATTERNS / 2] = {0.5, 0.1, 0.01};
+static const double shares[SKIP_PATTERNS / 2] = {0.75, 0.5, 0.1, 0.01};
 
 /* Largest distance from the middle on any axis, over half the side. */
 static double off_centre(const struct numbers *positions, int32_t i, double middle)
@@ -77,13 +77,14 @@ static void move(struct cloud *cloud, double skin)
 }
 
 static sphg_neighbors *find(const struct skip_stage *stage, const struct cloud *cloud,
-                            int32_t list_free, double skin)
+                            int32_t list_free, double skin, int32_t keep_weights)
 {
     sphg_neighbors *neighbors = NULL;
     const sphg_geometry geometry = {.sources = numbers_view(&cloud->positions),
                                     .source_count = cloud->positions.count,
                                     .target_count = cloud->positions.count,
                                     .list_free = list_free,
+                                    .keep_weights = keep_weights,
                                     .skin = skin};
     library_check(stage->context, sphg_neighbors_create(stage->context, &neighbors));
     library_check(stage->context,
@@ -108,7 +109,7 @@ static struct cloud create_cloud(const struct skip_stage *stage, const struct se
     fill_fields(&cloud, dimension);
     cloud.full = create_outputs(&cloud, dimension);
     cloud.part = create_outputs(&cloud, dimension);
-    cloud.kept = find(stage, &cloud, 0, 0);
+    cloud.kept = find(stage, &cloud, 0, 0, 0);
     library_check(stage->context, sphg_neighbors_get_info(stage->context, cloud.kept, &cloud.info));
     return cloud;
 }
@@ -118,6 +119,7 @@ static void destroy_cloud(struct cloud *cloud)
     sphg_neighbors_destroy(cloud->kept);
     sphg_neighbors_destroy(cloud->list_free);
     sphg_neighbors_destroy(cloud->skinned);
+    sphg_neighbors_destroy(cloud->weighted);
     sphg_neighbors_destroy(cloud->rebuilt);
     numbers_destroy(&cloud->positions);
     numbers_destroy(&cloud->moved);
@@ -141,9 +143,10 @@ struct skip_stage skip_stage_create(const struct settings *settings)
     const int32_t side = settings_side(settings->particles, 3);
     stage.solid = create_cloud(&stage, settings, 3, settings->support);
     stage.plane = create_cloud(&stage, settings, 2, support_in_plane(&stage.solid));
-    stage.solid.list_free = find(&stage, &stage.solid, 1, 0);
-    stage.solid.skinned = find(&stage, &stage.solid, 0, stage.skin);
-    stage.solid.rebuilt = find(&stage, &stage.solid, 0, 0);
+    stage.solid.list_free = find(&stage, &stage.solid, 1, 0, 0);
+    stage.solid.skinned = find(&stage, &stage.solid, 0, stage.skin, 0);
+    stage.solid.weighted = find(&stage, &stage.solid, 0, 0, 1);
+    stage.solid.rebuilt = find(&stage, &stage.solid, 0, 0, 0);
     const int32_t solid_count = stage.solid.positions.count,
                   plane_count = stage.plane.positions.count;
     stage.volumes =

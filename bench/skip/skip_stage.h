@@ -4,7 +4,7 @@
 #include "library.h"
 #include "settings.h"
 
-enum { SKIP_FIELDS = 4, SKIP_PATTERNS = 6 };
+enum { SKIP_FIELDS = 4, SKIP_PATTERNS = 8 };
 
 /* A choice of targets, as mask and as list. */
 struct pattern {
@@ -23,8 +23,8 @@ struct cloud {
     struct numbers positions, moved; /* moved: each particle by less than half the skin */
     struct numbers fields[SKIP_FIELDS];
     struct outputs full, part; /* of the full evaluation, and of the part that is measured */
-    sphg_neighbors *kept, *list_free, *skinned, *rebuilt;
-    sphg_neighbors_info info; /* of kept */
+    sphg_neighbors *kept, *list_free, *skinned, *weighted, *rebuilt; /* weighted: keeps weights */
+    sphg_neighbors_info info;                                        /* of kept */
 };
 
 struct skip_stage {
