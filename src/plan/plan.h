@@ -60,10 +60,12 @@ struct sphgi_plan {
     struct sphgi_columns correction, rank, lambda_min;
     sphg_stats *stats;
 
-    bool computes;                /* corrections, in this call */
-    bool corrects;                /* results are multiplied with a correction, computed or given */
-    bool classic, weighted;       /* weighted: V_j stands in the classic weight */
-    bool quadratic;               /* order 2 */
+    bool computes;          /* corrections, in this call */
+    bool corrects;          /* results are multiplied with a correction, computed or given */
+    bool classic, weighted; /* weighted: V_j stands in the classic weight */
+    bool quadratic;         /* order 2 */
+    bool graded;  /* targets have radii of their own; that of the scheme is the largest there is */
+    double least; /* ... and the smallest */
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;

@@ -53,6 +53,10 @@ static sphg_result check_field(struct sphgi_making *making, int32_t k)
     if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
+    if (making->plan->graded && field->form >= SPHG_SYMMETRIC)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].form is %s, which needs neighbours with one radius for all", f,
+                     (int)k, field->form == SPHG_ADJOINT ? "adjoint" : "symmetric");
     return check_second_order(making, k);
 }
 

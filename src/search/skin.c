@@ -7,8 +7,9 @@ enum { GRAIN = 4096 }; /* particles */
 bool sphgi_skin_asks_the_same(const sphg_neighbors *n, const struct sphgi_geometry *g,
                               const sphg_geometry *given, double radius)
 {
-    return n->kind == SPHGI_SEARCHED && n->skin > 0 && n->skin == given->skin &&
-           n->radius == radius && n->dimension == g->dimension && n->part_of == g->part_of &&
+    return !g->graded && !n->graded && n->radii == g->radii && n->kind == SPHGI_SEARCHED &&
+           n->skin > 0 && n->skin == given->skin && n->radius == radius &&
+           n->dimension == g->dimension && n->part_of == g->part_of &&
            n->position_type == g->position_type && n->source_count == g->source_count &&
            n->target_count == g->target_count && n->period[0] == given->period[0] &&
            n->period[1] == given->period[1] && n->period[2] == given->period[2];

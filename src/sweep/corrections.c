@@ -1,11 +1,16 @@
 #include "corrections.h"
 #include "core/kernel.h"
+#include "lane_radii.h"
 #include "quadratic.h"
 
 /* Rounds the coefficients as a table would, so that both give the same bits; raw: what a table
  * holds, if one is wanted. */
 static void round_as_table(struct sphgi_worker *w, bool wanted)
 {
+    if (w->sweep->plan->graded) {
+        sphgi_round_by_radius(w, wanted);
+        return;
+    }
     for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         const bool exact = share->mantissa == 1;
@@ -40,6 +45,8 @@ void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *colum
     w->passes->load_lanes(w->width, columns, sphgi_targets(w), to);
     w->tally->bad_volume |= !w->passes->valid_volumes(w->width, to);
     w->passes->scale(w->width, 1, to, sphgi_volume_unit(w->sweep), NULL, to);
+    if (w->sweep->plan->graded)
+        w->passes->scale(w->width, 1, to, 1, sphgi_lane(w, w->ratio, 0), to);
 }
 
 static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verdict)
@@ -55,6 +62,12 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
         scale = w->extra;
     }
     const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
+    if (plan->graded) {
+        const int32_t numbers = plan->dimension * (plan->dimension + 1) / 2;
+        w->passes->scale(w->width, numbers, moments, 1, sphgi_lane(w, w->inverse, 0),
+                         sphgi_lane(w, w->raw, 0));
+        moments = sphgi_lane(w, w->raw, 0);
+    }
     void *correction = sphgi_lane(w, w->coefficients, 0);
     void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;
     if (plan->quadratic)
@@ -127,15 +140,19 @@ void sphgi_load_corrections(struct sphgi_worker *w)
     else
         w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
                               sphgi_lane(w, w->raw, 0));
-    sphgi_take_from_table(w->passes, w->share, w->width, plan->type, sphgi_lane(w, w->raw, 0),
-                          sphgi_lane(w, w->coefficients, 0));
+    if (plan->graded)
+        sphgi_take_by_radius(w);
+    else
+        sphgi_take_from_table(w->passes, w->share, w->width, plan->type, sphgi_lane(w, w->raw, 0),
+                              sphgi_lane(w, w->coefficients, 0));
 }
 
 void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
 {
     const int32_t d = w->sweep->plan->dimension;
     sphgi_self_weight(w, w->self);
+    sphgi_scale_by_radius(w, 1, w->self);
     for (int32_t k = 0; k < d; ++k)
         w->passes->scale(w->width, 1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)),
-                         w->inverse_h, w->self, sphgi_lane(w, gradient, k));
+                         sphgi_common(w, w->inverse_h), w->self, sphgi_lane(w, gradient, k));
 }

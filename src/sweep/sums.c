@@ -1,6 +1,7 @@
 #include "sums.h"
 #include "corrections.h"
 #include "fold.h"
+#include "lane_radii.h"
 #include "pair_rows.h"
 #include "quadratic.h"
 #include "core/view.h"
@@ -191,7 +192,9 @@ static void write_pairs(struct sphgi_worker *w)
         w->passes->pair_gradients(
             &w->tile, plan->dimension, vectors_of(w),
             plan->classic || !plan->corrects ? NULL : sphgi_lane(w, w->coefficients, 0),
-            w->inverse_h);
+            sphgi_common(w, w->inverse_h));
+    if (w->sweep->pairs->gradient.count && plan->graded)
+        w->passes->scale_pairs(&w->tile, SPHGI_GX, plan->dimension, sphgi_lane(w, w->inverse, 0));
     const int32_t lanes = w->tile.spread ? w->passes->lanes : w->targets;
     for (int32_t l = 0; l < lanes; ++l)
         sphgi_write_lane(w, l, w->first + (w->tile.spread ? 0 : l));
@@ -207,8 +210,10 @@ static void weigh(struct sphgi_worker *w, int32_t count)
         p->shape_weights(&w->shape, w->arrays, count);
     if (plan->classic)
         return;
-    if (plan->wants_value || plan->mean_volume)
+    if (plan->wants_value || plan->mean_volume) {
         p->shape_values(w->arrays, count);
+        sphgi_scale_values(w);
+    }
     if (plan->mean_volume && (w->summing & SPHGI_SUM_MOMENTS))
         p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */

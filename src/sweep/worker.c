@@ -55,6 +55,11 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(jacobian, 27 * SPHGI_WIDTH, size);
     CARVE(contracted, 6 * SPHGI_WIDTH, size);
     CARVE(extra, 8 * SPHGI_WIDTH, size);
+    CARVE(ratio, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(inverse, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(factor, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
     CARVE(share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
     CARVE(hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
     CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
@@ -104,6 +109,8 @@ static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
 static bool is_superset(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
+    if (sweep->plan->graded)
+        return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || (n->mutual && !sweep->pairs);
     return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
 }
 
@@ -132,6 +139,10 @@ static void open_scheme(struct sphgi_worker *w)
                                       .volume = w->sweep->volume,
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
+    w->gather.radii = plan->graded;
+    w->gather.all = n->mutual && w->sweep->pairs;
+    if (plan->graded && scaled)
+        w->gather.unit = 0;
     w->gather.superset = is_superset(w->sweep);
     w->gather.guarded = is_guarded(w->sweep);
     w->shape = (struct sphgi_shape){
@@ -141,9 +152,10 @@ static void open_scheme(struct sphgi_worker *w)
         .inverse_h = scaled ? 1 : 1 / h,
         .w_scale = (by_value ? sigma / mu2 : sigma) / (plan->quadratic ? 1 : h),
         .value_scale = sigma};
+    w->factor_of_h = by_value ? sigma / mu2 : sigma;
     w->gather.target_rows = sphgi_target_row(n, 0);
-    w->threshold =
-        (struct sphgi_threshold){scheme->policy, scheme->threshold, d, plan->quadratic ? 1 : 1 / h};
+    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d,
+                                            plan->quadratic || plan->graded ? 1 : 1 / h};
     if (plan->quadratic)
         w->second = sphgi_second_of(scheme);
 }
