@@ -122,6 +122,45 @@ static void operators_match_the_oracle(const test_case *test)
     }
 }
 
+/* Pairs that only the source's radius reaches count, too. */
+static void both_sides_match_the_oracle(const test_case *test)
+{
+    static const double ratios[] = {1.5, 8, 64};
+    for (int k = 0; k < 3; k++) {
+        graded block = graded_block(test->dimension, ratios[k], 2.5);
+        stage on = stage_of_radii(test, "graded block", block.points, block.radii, 1);
+        fixture_array table = stage_table(&on);
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++)
+            for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
+                if (shape - 1 == k || k == 1)
+                    compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
+    }
+}
+
+static void two_sided_forms_conserve_momentum(const test_case *test)
+{
+    graded block = graded_block(test->dimension, 8, 2.5);
+    stage on = stage_of_radii(test, "graded block", block.points, block.radii, 1);
+    const int d = test->dimension;
+    fixture_array table = stage_table(&on);
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+        stage_field field = {SPHG_SYM_TENSOR, (sphg_form)form,
+                             stage_random_field(&on, SPHG_SYM_TENSOR, 5)};
+        stage_result found = stage_apply(&on, &field, &table);
+        double sum[3] = {0}, size = 0;
+        for (int i = 0; i < on.points.count; i++)
+            for (int a = 0; a < d; a++) {
+                const double f = fixture_get(&found.divergence, i, a) *
+                                 (form == SPHG_SYMMETRIC ? on.scene.volume[i] : 1);
+                sum[a] += f;
+                size += fabs(f);
+            }
+        for (int a = 0; a < d; a++)
+            TEST_WITHIN(linear_momentum, fabs(sum[a]) / size / test_unit_roundoff(test),
+                        test_text("form %d", form));
+    }
+}
+
 /* ---- The same bits --------------------------------------------------------------------------- */
 
 static void require_same_bits(const stage *a, const stage *b, const char *where)
@@ -373,7 +412,7 @@ static void require_refused(const stage *on, sphg_result found, sphg_result expe
 
 static void what_has_one_radius_says_so(const test_case *test)
 {
-    const stage on = graded_stage(test, 1);
+    const stage on = graded_stage(test, 0);
     const int n = on.points.count;
     const fixture_array a =
         fixture_numbers(test_field_type(test), n, 1, stage_random_field(&on, SPHG_SCALAR, 7));
@@ -384,7 +423,7 @@ static void what_has_one_radius_says_so(const test_case *test)
     require_refused(&on,
                     sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR,
                                fixture_view(&a), fixture_view(&out)),
-                    SPHG_ERROR_UNSUPPORTED, "one radius");
+                    SPHG_ERROR_UNSUPPORTED, "not mutual");
     require_refused(
         &on,
         sphg_gradient(on.context, &second, &sources, NULL, fixture_view(&a), fixture_view(&out)),
@@ -432,6 +471,10 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(operators_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(both_sides_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(two_sided_forms_conserve_momentum, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(same_radii_give_the_bits_of_one, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(results_scale_with_the_unit_of_length, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

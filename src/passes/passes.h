@@ -313,6 +313,9 @@ struct sphgi_passes {
 
     /* Weights. */
     void (*shape_factors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
+    /* The factors with the radius of j, whose rows hold H over it. */
+    void (*shape_other)(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
+                        const void *rows);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
     void (*classic_vectors)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,

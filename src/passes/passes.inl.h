@@ -32,6 +32,7 @@
 #include "gather_factors.inl.h"
 #include "kept_factors.inl.h"
 #include "sums.inl.h"
+#include "other_side.inl.h"
 #include "contracted.inl.h"
 #include "folded.inl.h"
 #include "classic.inl.h"
@@ -71,6 +72,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .interleave_hosts = interleave_hosts,
     .scale_pairs = scale_pairs,
     .shape_factors = shape_factors,
+    .shape_other = shape_other,
     .shape_weights = shape_weights,
     .shape_values = shape_values,
     .classic_vectors = classic_vectors,

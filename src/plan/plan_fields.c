@@ -28,6 +28,31 @@ static sphg_result check_second_order(struct sphgi_making *making, int32_t k)
     return SPHG_OK;
 }
 
+/* Forms that are summed over G_ji, too, where G_ij and G_ji have radii of their own. */
+static sphg_result check_both_sides(struct sphgi_making *making, int32_t k)
+{
+    const char *f = making->checker.function;
+    const struct sphgi_plan *plan = making->plan;
+    const char *form = making->request->fields[k].form == SPHG_ADJOINT ? "adjoint" : "symmetric";
+    if (plan->classic)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].form is %s, which classic methods have for one radius", f,
+                     (int)k, form);
+    for (int32_t s = 0; s < plan->set_count; ++s) {
+        const sphg_neighbors *n = plan->sets[s].neighbors;
+        if (n->graded && !n->mutual)
+            SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                         "%s: fields[%d].form is %s, but sources[%d].neighbors are not mutual", f,
+                         (int)k, form, (int)s);
+        if (n->graded && n->skin > 0)
+            SPHGI_REFUSE(
+                SPHG_ERROR_UNSUPPORTED,
+                "%s: fields[%d].form is %s, but sources[%d].neighbors have radii and a skin", f,
+                (int)k, form, (int)s);
+    }
+    return SPHG_OK;
+}
+
 static sphg_result check_field(struct sphgi_making *making, int32_t k)
 {
     const char *f = making->checker.function;
@@ -53,10 +78,11 @@ static sphg_result check_field(struct sphgi_making *making, int32_t k)
     if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
-    if (making->plan->graded && field->form >= SPHG_SYMMETRIC)
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
-                     "%s: fields[%d].form is %s, which needs neighbours with one radius for all", f,
-                     (int)k, field->form == SPHG_ADJOINT ? "adjoint" : "symmetric");
+    if (making->plan->graded && field->form >= SPHG_SYMMETRIC) {
+        const sphg_result result = check_both_sides(making, k);
+        if (result)
+            return result;
+    }
     return check_second_order(making, k);
 }
 

@@ -118,6 +118,15 @@ static inline const char *sphgi_target_row(const sphg_neighbors *neighbors, int3
     return (const char *)sphgi_target_grid(neighbors)->rows.data + (size_t)place * size;
 }
 
+/* The radius in a row. */
+static inline double sphgi_row_radius(const sphg_neighbors *neighbors, const void *rows,
+                                      int32_t number)
+{
+    const size_t at = SPHGI_ROW * (size_t)number + SPHGI_ROW - 1;
+    return neighbors->position_type == SPHG_F64 ? ((const double *)rows)[at]
+                                                : (double)((const float *)rows)[at];
+}
+
 /* Of the host's lists: the target's, and how long it says it is. */
 static inline int64_t sphgi_host_row(const sphg_lists *lists, int32_t target, int32_t worker,
                                      const int32_t **ids)

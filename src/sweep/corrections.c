@@ -45,6 +45,11 @@ void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *colum
     w->passes->load_lanes(w->width, columns, sphgi_targets(w), to);
     w->tally->bad_volume |= !w->passes->valid_volumes(w->width, to);
     w->passes->scale(w->width, 1, to, sphgi_volume_unit(w->sweep), NULL, to);
+}
+
+void sphgi_load_own_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
+{
+    sphgi_load_volume(w, columns, to);
     if (w->sweep->plan->graded)
         w->passes->scale(w->width, 1, to, 1, sphgi_lane(w, w->ratio, 0), to);
 }
@@ -58,7 +63,7 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
             w->passes->quotient(w->width, sphgi_lane(w, w->reduced, plan->volume_sum),
                                 sphgi_lane(w, w->reduced, plan->volume_sum + 1), w->extra);
         else
-            sphgi_load_volume(w, &plan->target_volume, w->extra);
+            sphgi_load_own_volume(w, &plan->target_volume, w->extra);
         scale = w->extra;
     }
     const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
@@ -86,7 +91,7 @@ void sphgi_self_weight(struct sphgi_worker *w, char *to)
     const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
     w->passes->fill(w->width, plan->own_set < 0 ? 0 : at_zero, to);
     if (plan->own_set >= 0 && plan->weighted) {
-        sphgi_load_volume(w, &plan->own_volume, to);
+        sphgi_load_own_volume(w, &plan->own_volume, to);
         w->passes->scale(w->width, 1, to, at_zero, NULL, to);
     }
 }

@@ -14,6 +14,9 @@ void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi
 
 /* V / H^d of the group's targets; notes volumes that are not valid. */
 void sphgi_load_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns, char *to);
+/* The same in units of the target\'s own H^d. */
+void sphgi_load_own_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns,
+                           char *to);
 
 /* Classic: w_0 of targets that are sources, else 0; and G_ii = w_0 z_k[0], d lanes. */
 void sphgi_self_weight(struct sphgi_worker *worker, char *to);

@@ -51,6 +51,7 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
     const bool multiply = plan->corrects && !plan->classic;
     w->passes->apply(w->width, plan->dimension, 1, multiply ? w->coefficients : NULL,
                      sphgi_lane(w, w->reduced, sum), 1, to);
+    sphgi_take_side_by_radius(w, to);
 }
 
 /* What the terms of both sides are multiplied with; NULL: 1. */
@@ -149,7 +150,7 @@ static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *
             w->passes->scale(w->width, 1, w->coefficients, 1, w->self, w->extra);
         } else {
             const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-            sphgi_load_volume(w, &plan->own_volume, w->extra);
+            sphgi_load_own_volume(w, &plan->own_volume, w->extra);
             w->passes->scale(w->width, 1, w->extra, at_zero, NULL, w->extra);
         }
         w->passes->add_outer(w->width, 1, field->components,

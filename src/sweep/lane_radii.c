@@ -1,14 +1,6 @@
 #include "lane_radii.h"
 #include "core/kernel.h"
 
-static double radius_of(const struct sphgi_worker *w, int32_t place)
-{
-    const sphg_neighbors *n = w->sweep->set->neighbors;
-    const char *row = sphgi_target_row(n, place);
-    return n->position_type == SPHG_F64 ? ((const double *)(const void *)row)[SPHGI_ROW - 1]
-                                        : (double)((const float *)(const void *)row)[SPHGI_ROW - 1];
-}
-
 static void put(const struct sphgi_worker *w, char *base, int32_t number, int32_t lane, double x)
 {
     char *at = sphgi_lane(w, base, number);
@@ -47,9 +39,10 @@ static void put_shares(struct sphgi_worker *w, int32_t lane, double radius)
 
 static void read_radii(struct sphgi_worker *w, const int32_t *places)
 {
+    const sphg_neighbors *n = w->sweep->set->neighbors;
     const bool units = sphgi_has_units(&w->sweep->plan->scheme);
     for (int32_t l = 0; l < w->width; ++l) {
-        const double radius = radius_of(w, places[l]);
+        const double radius = sphgi_row_radius(n, sphgi_target_row(n, 0), places[l]);
         put_radius(w, l, radius);
         if (units)
             put_shares(w, l, radius);
@@ -101,6 +94,21 @@ void sphgi_scale_by_radius(struct sphgi_worker *w, int32_t count, char *numbers)
 {
     if (w->sweep->plan->graded)
         w->passes->scale(w->width, count, numbers, 1, sphgi_lane(w, w->inverse, 0), numbers);
+}
+
+void sphgi_take_side_by_radius(struct sphgi_worker *w, char *vectors)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (plan->graded)
+        w->passes->scale(w->width, plan->dimension, vectors, plan->scheme.radius,
+                         sphgi_lane(w, w->inverse, 0), vectors);
+}
+
+void sphgi_weigh_other_side(struct sphgi_worker *w)
+{
+    struct sphgi_shape shape = w->shape;
+    shape.inverse_lanes = shape.factor_lanes = NULL;
+    w->passes->shape_other(&shape, &w->tile, w->rows[w->sweep->plan->radius_row]);
 }
 
 /* ---- Tables --------------------------------------------------------------------------------- */

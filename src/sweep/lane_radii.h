@@ -20,6 +20,11 @@ static inline double sphgi_common(const struct sphgi_worker *worker, double fact
     return worker->sweep->plan->graded ? 1 : factor;
 }
 
+/* The other side of pairs stands in units of the plan's H: so does ours, if it comes in. */
+void sphgi_take_side_by_radius(struct sphgi_worker *worker, char *vectors);
+/* s_ij of the tile become those with H_j. */
+void sphgi_weigh_other_side(struct sphgi_worker *worker);
+
 /* As for one radius: coefficients rounded like those of a table, in `raw` if one is wanted; and
  * back. */
 void sphgi_round_by_radius(struct sphgi_worker *worker, bool wanted);

@@ -92,6 +92,15 @@ static void sum_folded(struct sphgi_worker *w, int32_t number)
                           carrier ? sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]) : NULL);
 }
 
+/* sum s_ij x_ij, or of rho_j times that: what A_i is multiplied with. */
+static void sum_own_vectors(struct sphgi_worker *w, bool symmetric)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w),
+                           symmetric ? w->rows[plan->density_row] : NULL,
+                           sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]));
+}
+
 /* Adjoint ([0]) or symmetric ([1]): all fields of that form, and what they share. */
 static void sum_transposed(struct sphgi_worker *w, bool symmetric)
 {
@@ -108,10 +117,17 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         if (field->rows)
             sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
-    if (plan->carrier[symmetric] < 0)
-        w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w),
-                               symmetric ? w->rows[plan->density_row] : NULL,
-                               sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]));
+    if (plan->carrier[symmetric] < 0 && !plan->graded)
+        sum_own_vectors(w, symmetric);
+}
+
+/* Where G_ji has a radius of its own, all that has ours comes first. */
+static void turn_to_other_side(struct sphgi_worker *w)
+{
+    for (int symmetric = 0; symmetric < 2; ++symmetric)
+        if (w->sweep->plan->transposes[symmetric])
+            sum_own_vectors(w, symmetric);
+    sphgi_weigh_other_side(w);
 }
 
 static void load_target(struct sphgi_worker *w, int32_t number, char *to)
@@ -176,6 +192,8 @@ static void sum_fields(struct sphgi_worker *w)
                                  subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
                                  sphgi_lane(w, w->reduced, field->value_sum + s * SPHGI_ROW));
     }
+    if (plan->radius_row >= 0)
+        turn_to_other_side(w);
     for (int symmetric = 0; symmetric < 2; ++symmetric)
         if (plan->transposes[symmetric])
             sum_transposed(w, symmetric);

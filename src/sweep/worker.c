@@ -110,7 +110,8 @@ static bool is_superset(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
     if (sweep->plan->graded)
-        return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || (n->mutual && !sweep->pairs);
+        return n->kind == SPHGI_HOST_LISTS || n->skin > 0 ||
+               (n->mutual && !sweep->pairs && sweep->plan->radius_row < 0);
     return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
 }
 
@@ -140,7 +141,7 @@ static void open_scheme(struct sphgi_worker *w)
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
     w->gather.radii = plan->graded;
-    w->gather.all = n->mutual && w->sweep->pairs;
+    w->gather.all = n->mutual && (w->sweep->pairs || plan->radius_row >= 0);
     if (plan->graded && scaled)
         w->gather.unit = 0;
     w->gather.superset = is_superset(w->sweep);
@@ -163,8 +164,9 @@ static void open_scheme(struct sphgi_worker *w)
 bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
-    return sweep->packed && !is_guarded(sweep) && !plan->classic && !plan->quadratic &&
-           !plan->wants_value && !plan->mean_volume && (plan->differentiates || plan->computes) &&
+    return sweep->packed && plan->radius_row < 0 && !is_guarded(sweep) && !plan->classic &&
+           !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
+           (plan->differentiates || plan->computes) &&
            sweep->set->neighbors->position_type == plan->type;
 }
 

@@ -19,6 +19,7 @@ typedef struct oracle_scene {
     const double *volume, *density;               /* at sources; NULL: absent */
     const double *target_volume, *target_density; /* NULL: those of the sources if part of them */
     const double *support; /* H_i of the targets; NULL: the scheme's for all */
+    int mutual;            /* pairs are those with r < max(H_i, H_j), of particles that are both */
 } oracle_scene;
 
 typedef struct oracle_pair {

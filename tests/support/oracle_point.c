@@ -62,6 +62,12 @@ static int measure(const oracle_scene *scene, const double *x, double support, i
     return 1;
 }
 
+/* Beyond H_i a pair has no weight for the target, but it may for the source. */
+static double reach_of(const oracle_scene *scene, const oracle_point *point, int j)
+{
+    return scene->mutual ? fmax(point->support, scene->support[j]) : point->support;
+}
+
 /* A listed pair whose exact distance rounds up to H carries W = W' = 0 either way. */
 static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
 {
@@ -69,7 +75,7 @@ static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
     point->pairs = oracle_memory((size_t)scene->source_count * sizeof *point->pairs);
     for (int j = 0; j < scene->source_count; j++) {
         oracle_pair pair = {0};
-        if (!(point->has_self && j == i) && measure(scene, x, point->support, j, &pair))
+        if (!(point->has_self && j == i) && measure(scene, x, reach_of(scene, point, j), j, &pair))
             point->pairs[point->pair_count++] = pair;
     }
 }

@@ -52,6 +52,7 @@ stage stage_of_radii(const test_case *test, const char *name, cloud points, doub
     geometry.mutual = mutual;
     made.neighbors = fixture_search(made.context, &made.scheme, &geometry);
     made.scene.support = radii;
+    made.scene.mutual = mutual;
     return stage_with_volumes(&made, volume);
 }
 
