@@ -276,6 +276,59 @@ static void nothing_comes_from_beyond_the_targets_radius(const test_case *test)
     assert_true(touched > 1);
 }
 
+/* ---- Skin ------------------------------------------------------------------------------------ */
+
+enum { SKIN_COUNT = 400 };
+
+/* Moves and growth of up to `share` of half the margin of each. */
+static void move_all(scene *particles, const double *radii, double share, random_state *random)
+{
+    const int d = particles->dimension;
+    for (int i = 0; i < SKIN_COUNT; i++) {
+        const double most = share * .15 * radii[i], growth = random_between(random, 0, .5);
+        double way[3] = {0}, size = 0;
+        for (int a = 0; a < d; a++)
+            size += pow(way[a] = random_between(random, -1, 1), 2);
+        for (int a = 0; a < d; a++)
+            particles->sources[i * d + a] =
+                scene_rounded(particles, particles->sources[i * d + a] +
+                                             way[a] / sqrt(size) * most * (1 - growth));
+        particles->support[i] = scene_rounded(particles, radii[i] + most * growth);
+    }
+}
+
+/* What is evaluated is what brute force finds now, whether lists were kept or not. */
+static void skins_in_proportion_miss_no_pair(const test_case *test)
+{
+    sphg_context *context = fixture_context_of(2);
+    random_state random = random_seeded(41);
+    int kept = 0, rebuilt = 0;
+    for (int k = 0; k < 12; k++) {
+        scene particles = scene_empty(test, SKIN_COUNT);
+        const double side = test->dimension == 2 ? 6 : 3;
+        scatter(&particles, SKIN_COUNT, particles.sources, 0, side, &random);
+        double *radii =
+            radii_for(&particles, SKIN_COUNT, particles.sources, side, 10, k & 1, &random);
+        particles.support = test_memory(SKIN_COUNT * sizeof *radii);
+        memcpy(particles.support, radii, SKIN_COUNT * sizeof *radii);
+        radii[0] = particles.support[0] = 1;
+        particles.period[0] = k & 2 ? side : 0;
+        particles.skin = .3;
+        sphg_neighbors *neighbors = pairs_neighbors(context);
+        rows_require_search_exact(context, neighbors, &particles, 1, "at first");
+        move_all(&particles, radii, k & 4 ? 1.2 : .98, &random);
+        particles.support[0] = 1;
+        rows_require_search_exact(context, neighbors, &particles, 1.2, test_text("moved %d", k));
+        sphg_neighbors_info info;
+        FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+        kept += !info.rebuilt;
+        rebuilt += info.rebuilt;
+        assert_true(info.skin_left >= 0 && info.skin_left <= .2);
+    }
+    assert_int_equal(kept, 8);
+    assert_int_equal(rebuilt, 4);
+}
+
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
 static void pair_gradients_are_those_of_one_pair(const test_case *test)
@@ -483,6 +536,7 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(nothing_comes_from_beyond_the_targets_radius, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(skins_in_proportion_miss_no_pair, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(pair_gradients_are_those_of_one_pair, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(wrong_lists_are_found, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),

@@ -253,7 +253,7 @@ sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *
     if (result)
         return result;
     if (sphgi_skin_asks_the_same(n, &g, given, scheme->radius) && n->type == g.type &&
-        sphgi_skin_holds(checker.context, n, &g))
+        sphgi_skin_holds(checker.context, n, &g, scheme->radius))
         return SPHG_OK;
     n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
