@@ -253,6 +253,32 @@ static void tables_subsets_and_lists_give_the_same_bits(const test_case *test)
     }
 }
 
+/* Targets left out here and there: what is left of each group has its own radii. */
+static void masks_give_the_same_bits(const test_case *test)
+{
+    const stage on = graded_stage(test, 1);
+    const int n = on.points.count;
+    const fixture_array table = stage_table(&on);
+    uint8_t *mask = test_memory((size_t)n);
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
+        if (form >= SPHG_SYMMETRIC && test_is_classic(test))
+            continue;
+        stage_field field = {SPHG_VECTOR, (sphg_form)form, stage_random_field(&on, SPHG_VECTOR, 4)};
+        const stage_result all = stage_apply(&on, &field, &table);
+        for (int every = 2; every < 9; every += 3) {
+            for (int i = 0; i < n; i++)
+                mask[i] = i * 7 % every != 0;
+            const sphg_subset some = sphg_masked(mask, n);
+            const stage_result found = stage_apply_to(&on, &field, &table, &some);
+            for (int i = 0; i < n; i++)
+                for (int k = 0; k < found.gradient.width && mask[i]; k++)
+                    TEST_REQUIRE(fixture_get(&found.gradient, i, k) ==
+                                     fixture_get(&all.gradient, i, k),
+                                 "form %d, particle %d", form, i);
+        }
+    }
+}
+
 /* What is farther than H_i does not count, whatever it is. */
 static void nothing_comes_from_beyond_the_targets_radius(const test_case *test)
 {
@@ -534,6 +560,8 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(tables_subsets_and_lists_give_the_same_bits, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(masks_give_the_same_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(nothing_comes_from_beyond_the_targets_radius, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(skins_in_proportion_miss_no_pair, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),

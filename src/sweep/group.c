@@ -258,6 +258,7 @@ void sphgi_group_keep(struct sphgi_worker *w, uint32_t kept)
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
     struct sphgi_group *group = &w->group;
+    sphgi_keep_lane_radii(w, kept);
     p->pack_lanes(kept, plan->sums, sphgi_lane(w, w->reduced, 0));
     p->pack_lanes(kept, plan->target_lanes, sphgi_lane(w, w->at_target, 0));
     if (plan->adjoint || plan->transposes[1]) {

@@ -59,6 +59,17 @@ void sphgi_read_lane_radii(struct sphgi_worker *w)
         read_radii(w, sphgi_places(w));
 }
 
+void sphgi_keep_lane_radii(struct sphgi_worker *w, uint32_t kept)
+{
+    char *const each[] = {w->ratio, w->inverse, w->inverse_square, w->factor};
+    if (!w->sweep->plan->graded)
+        return;
+    for (int32_t k = 0; k < 4; ++k)
+        w->passes->pack_lanes(kept, 1, sphgi_lane(w, each[k], 0));
+    if (sphgi_has_units(&w->sweep->plan->scheme))
+        w->passes->pack_lanes(kept, 3 * SPHGI_SHARES, sphgi_lane(w, w->shares, 0));
+}
+
 void sphgi_find_lane_radii(struct sphgi_worker *w)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;

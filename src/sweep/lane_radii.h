@@ -6,6 +6,8 @@
 /* Of the lanes at work, whose places are known; or whose targets are. */
 void sphgi_read_lane_radii(struct sphgi_worker *worker);
 void sphgi_find_lane_radii(struct sphgi_worker *worker);
+/* Those of lanes with a bit in `kept` stay, one after the other. */
+void sphgi_keep_lane_radii(struct sphgi_worker *worker, uint32_t kept);
 
 /* Of classic methods the volumes of the tile, of others V_j W, become those in units of H_i^d. */
 void sphgi_scale_volumes(struct sphgi_worker *worker);
