@@ -12,17 +12,36 @@ static void put(const struct sphgi_worker *w, char *base, int32_t number, int32_
 
 /* ---- Units ---------------------------------------------------------------------------------- */
 
+static void put_all(const struct sphgi_worker *w, char *base, const double *x)
+{
+    char *at = sphgi_lane(w, base, 0);
+    if (w->sweep->plan->type == SPHG_F64)
+        for (int32_t l = 0; l < w->width; ++l)
+            ((double *)(void *)at)[l] = x[l];
+    else
+        for (int32_t l = 0; l < w->width; ++l)
+            ((float *)(void *)at)[l] = (float)x[l];
+}
+
 /* Volumes stand in units of the largest radius. The factor of s_ij takes them to units of the
  * target's, at the same place whether s_ij is formed at once or later. */
-static void put_radius(struct sphgi_worker *w, int32_t lane, double radius)
+static void put_units(struct sphgi_worker *w, const double *radius)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const double ratio = sphgi_power(plan->scheme.radius / radius, plan->dimension);
-    const bool with_volume = plan->scheme.method != SPHG_MLS;
-    put(w, w->ratio, 0, lane, ratio);
-    put(w, w->inverse, 0, lane, 1 / radius);
-    put(w, w->inverse_square, 0, lane, 1 / radius * (1 / radius));
-    put(w, w->factor, 0, lane, w->factor_of_h / radius * (with_volume ? ratio : 1));
+    const bool with_volume = plan->scheme.method != SPHG_MLS, three = plan->dimension == 3;
+    const double largest = plan->scheme.radius, factor_of_h = w->factor_of_h;
+    double ratio[SPHGI_WIDTH], inverse[SPHGI_WIDTH], square[SPHGI_WIDTH], factor[SPHGI_WIDTH];
+    for (int32_t l = 0; l < w->width; ++l) {
+        const double one = largest / radius[l], two = one * one;
+        ratio[l] = three ? two * one : two;
+        inverse[l] = 1 / radius[l];
+        square[l] = inverse[l] * inverse[l];
+        factor[l] = factor_of_h / radius[l] * (with_volume ? ratio[l] : 1);
+    }
+    put_all(w, w->ratio, ratio);
+    put_all(w, w->inverse, inverse);
+    put_all(w, w->inverse_square, square);
+    put_all(w, w->factor, factor);
 }
 
 /* A table's units, as sphgi_shares_of has them, lane by lane: mantissa and two powers of each. */
@@ -40,13 +59,13 @@ static void put_shares(struct sphgi_worker *w, int32_t lane, double radius)
 static void read_radii(struct sphgi_worker *w, const int32_t *places)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    const bool units = sphgi_has_units(&w->sweep->plan->scheme);
-    for (int32_t l = 0; l < w->width; ++l) {
-        const double radius = sphgi_row_radius(n, sphgi_target_row(n, 0), places[l]);
-        put_radius(w, l, radius);
-        if (units)
-            put_shares(w, l, radius);
-    }
+    const char *rows = sphgi_target_row(n, 0);
+    double radius[SPHGI_WIDTH];
+    for (int32_t l = 0; l < w->width; ++l)
+        radius[l] = sphgi_row_radius(n, rows, places[l]);
+    put_units(w, radius);
+    for (int32_t l = 0; sphgi_has_units(&w->sweep->plan->scheme) && l < w->width; ++l)
+        put_shares(w, l, radius[l]);
     if (!w->sweep->plan->classic) {
         w->shape.inverse_lanes = sphgi_lane(w, w->inverse, 0);
         w->shape.factor_lanes = sphgi_lane(w, w->factor, 0);
