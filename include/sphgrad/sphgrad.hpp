@@ -332,12 +332,13 @@ inline sphg_scheme scheme(double support_radius, sphg_method method = SPHG_KGC, 
     return {dimension, method, kernel, policy, support_radius, threshold, order};
 }
 
-/* Positions and counts. Precision, skin, period and list_free are set in `options`, whose views and
- * counts are not read. */
+/* Positions, radii of their own, and counts. Precision, skin, period, list_free and mutual are set in
+ * `options`, whose views and counts are not read. */
 struct geometry {
     input sources, targets;
     std::int64_t own = -1; /* targets that are part of the sources; -1: all, or `targets` */
     sphg_geometry options = {};
+    input source_support, target_support;
 };
 inline geometry all(input positions)
 {
@@ -993,6 +994,10 @@ template <class Errors> class basic_neighbors
         sphg_geometry made = where.options;
         made.sources = check.take(where.sources, count, SPHG_VECTOR, d, "positions");
         made.targets = check.take(where.targets, targets, SPHG_VECTOR, d, "targets");
+        made.source_support =
+            check.take(where.source_support, count, SPHG_SCALAR, d, "source_support");
+        made.target_support =
+            check.take(where.target_support, targets, SPHG_SCALAR, d, "target_support");
         made.source_count = check.count(count, "positions");
         made.target_count = check.count(apart           ? targets
                                         : where.own < 0 ? count

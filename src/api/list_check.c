@@ -42,7 +42,7 @@ static sphg_result check_tested(struct sphgi_checker checker, const sphg_neighbo
         return sphgi_fail(checker.context, SPHG_ERROR_SIZE,
                           "%s: neighbors were built in %dD, the scheme is %dD", f,
                           (int)n->dimension, (int)scheme->dimension);
-    if (scheme->radius > n->radius)
+    if (!n->radii && scheme->radius > n->radius)
         return sphgi_fail(checker.context, SPHG_ERROR_SIZE,
                           "%s: scheme.support_radius is %s, neighbors were built for %s", f,
                           sphgi_digits(scheme->radius).text, sphgi_digits(n->radius).text);
@@ -82,6 +82,19 @@ static bool place_positions(struct list_check *check)
     return true;
 }
 
+/* They stand in the rows. */
+static void take_radii(const struct list_check *check, sphg_geometry *geometry)
+{
+    const size_t fourth = (SPHGI_ROW - 1) * check->row_size / SPHGI_ROW;
+    geometry->source_support = geometry->sources;
+    geometry->source_support.x = check->sources + fourth;
+    if (!check->tested->part_of) {
+        geometry->target_support = geometry->targets;
+        geometry->target_support.x = check->targets + fourth;
+    }
+    geometry->mutual = check->tested->mutual;
+}
+
 static sphg_result search_again(struct list_check *check, const struct sphgi_scheme *scheme)
 {
     const sphg_neighbors *n = check->tested;
@@ -94,6 +107,8 @@ static sphg_result search_again(struct list_check *check, const struct sphgi_sch
     if (!n->part_of)
         geometry.targets = (sphg_view){check->targets, NULL, NULL, stride, n->position_type};
     memcpy(geometry.period, n->period, sizeof n->period);
+    if (n->radii)
+        take_radii(check, &geometry);
     sphg_neighbors *again = sphgi_neighbors_make(check->checker.context);
     if (!again)
         return sphgi_fail_memory(check->checker.context, check->checker.function);
@@ -330,7 +345,10 @@ sphg_result sphg_neighbors_check(sphg_context *context, const sphg_scheme *schem
     sphg_result result = sphgi_enter(context);
     if (result)
         return result;
-    result = sphgi_check_scheme(check.checker, scheme, &checked);
+    if (neighbors && neighbors->radii)
+        result = sphgi_check_scheme_beside_radii(check.checker, scheme, &checked);
+    else
+        result = sphgi_check_scheme(check.checker, scheme, &checked);
     if (!result)
         result = check_tested(check.checker, neighbors, &checked);
     if (!result)

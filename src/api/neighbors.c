@@ -1,6 +1,7 @@
 #include "core/check.h"
 #include "entries.h"
 #include "search/build.h"
+#include "search/radii.h"
 #include <string.h>
 
 sphg_neighbors *sphgi_neighbors_make(sphg_context *context)
@@ -32,13 +33,13 @@ sphg_result sphg_neighbors_create(sphg_context *context, sphg_neighbors **neighb
 }
 
 struct buffers {
-    struct sphgi_buffer *list[7];
+    struct sphgi_buffer *list[8];
 };
 
 static struct buffers own_buffers(sphg_neighbors *n)
 {
     return (struct buffers){{&n->target_place, &n->found.lengths, &n->shared, &n->sources_then,
-                             &n->targets_then, &n->weights, &n->weight_book}};
+                             &n->targets_then, &n->weights, &n->weight_book, &n->source_place}};
 }
 
 void sphg_neighbors_destroy(sphg_neighbors *neighbors)
@@ -58,10 +59,14 @@ static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbor
                                const sphg_scheme *scheme, const sphg_geometry *geometry,
                                bool searched, struct sphgi_scheme *checked)
 {
+    const bool radii = geometry && sphgi_has_radii(geometry);
     sphg_result result = sphgi_check_pointer(checker, neighbors, "neighbors");
     if (!result)
-        result = sphgi_check_scheme(checker, scheme, checked);
-    return result ? result : sphgi_check_geometry(checker, geometry, checked, searched);
+        result = radii ? sphgi_check_scheme_beside_radii(checker, scheme, checked)
+                       : sphgi_check_scheme(checker, scheme, checked);
+    if (!result)
+        result = sphgi_check_geometry(checker, geometry, checked, searched);
+    return result || radii ? result : sphgi_check_extent(checker, geometry, checked);
 }
 
 sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
@@ -138,7 +143,7 @@ static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n
         *own[k] = context->order_grid[k];
     struct sphgi_buffer *tables = &context->order_grid[3];
     sphg_result result = SPHG_ERROR_MEMORY;
-    if (sphgi_reserve(&context->allocator, tables, sphgi_grid_tables(n->source_count), 1))
+    if (sphgi_reserve(&context->allocator, tables, sphgi_grid_tables(n->source_count, false), 1))
         result = sphgi_grid_build(context, &grid, &context->allocator, &lattice, n->position_type,
                                   n->sources.rows.data, n->source_count, tables->data);
     if (!result)

@@ -39,8 +39,8 @@ sphg_result sphgi_check_pointer(struct sphgi_checker checker, const void *pointe
 
 /* ---- Scheme --------------------------------------------------------------------------------- */
 
-sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *scheme,
-                               struct sphgi_scheme *checked)
+sphg_result sphgi_check_scheme_beside_radii(struct sphgi_checker checker, const sphg_scheme *scheme,
+                                            struct sphgi_scheme *checked)
 {
     const char *f = checker.function;
     const sphg_result missing = sphgi_check_pointer(checker, scheme, "scheme");
@@ -58,9 +58,6 @@ sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *
     if (scheme->policy < SPHG_BLEND || scheme->policy > SPHG_IDENTITY)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.policy is %d, not a policy", f,
                (int)scheme->policy);
-    if (!(scheme->support_radius > 0) || !isfinite(scheme->support_radius))
-        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.support_radius is %s, must be positive and finite",
-               f, sphgi_digits(scheme->support_radius).text);
     if (!(scheme->threshold >= 0 && scheme->threshold < 1))
         REFUSE(SPHG_ERROR_ARGUMENT,
                "%s: scheme.threshold is %s, must be at least 0 (the default) and below 1", f,
@@ -75,10 +72,24 @@ sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *
         .method = scheme->method,
         .kernel = scheme->kernel,
         .policy = scheme->policy,
-        .radius = scheme->support_radius,
         .threshold = scheme->threshold > 0 ? scheme->threshold : 1e-2,
         .order = scheme->order == 2 ? 2 : 1,
+        .radii = true,
     };
+    return SPHG_OK;
+}
+
+sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *scheme,
+                               struct sphgi_scheme *checked)
+{
+    const sphg_result result = sphgi_check_scheme_beside_radii(checker, scheme, checked);
+    if (result)
+        return result;
+    checked->radius = scheme->support_radius;
+    checked->radii = false;
+    if (!(scheme->support_radius > 0) || !isfinite(scheme->support_radius))
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: scheme.support_radius is %s, must be positive and finite",
+               checker.function, sphgi_digits(scheme->support_radius).text);
     return SPHG_OK;
 }
 
@@ -92,9 +103,11 @@ sphg_result sphgi_check_range(struct sphgi_checker checker, const struct sphgi_s
 {
     const double h = scheme->radius;
     if (!is_normal_in(h * h, type) || !is_normal_in(sphgi_power(1 / h, scheme->dimension), type))
-        REFUSE(SPHG_ERROR_ARGUMENT,
-               "%s: scheme.support_radius is %s, its powers leave the range of the precision",
-               checker.function, sphgi_digits(h).text);
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s %s, its powers leave the range of the precision",
+               checker.function,
+               scheme->radii ? "a radius in geometry.source_support or geometry.target_support is"
+                             : "scheme.support_radius is",
+               sphgi_digits(h).text);
     return SPHG_OK;
 }
 
@@ -257,16 +270,9 @@ static sphg_result check_counts(struct sphgi_checker checker, const sphg_geometr
     return SPHG_OK;
 }
 
-static sphg_result check_skin_and_period(struct sphgi_checker checker,
-                                         const sphg_geometry *geometry,
-                                         const struct sphgi_scheme *scheme)
+static sphg_result check_skin(struct sphgi_checker checker, const sphg_geometry *geometry)
 {
     const char *f = checker.function;
-    /* A period of twice the reach that was rounded on its way is what it was meant to be. Such an
-     * axis has one cell, so that every pair is tested. */
-    const bool f64 = sphgi_type_of_positions(geometry) == SPHG_F64;
-    const double rounding = f64 ? 0x1p-51 : 0x1p-22;
-    const double most = f64 ? DBL_MAX / 4 : (double)FLT_MAX / 4; /* differences do not overflow */
     if (!(geometry->skin >= 0) || !isfinite(geometry->skin))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, must be >= 0 and finite", f,
                sphgi_digits(geometry->skin).text);
@@ -276,6 +282,18 @@ static sphg_result check_skin_and_period(struct sphgi_checker checker,
     if (geometry->skin > 0 && geometry->list_free)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.skin is %s, but list_free keeps no pairs", f,
                sphgi_digits(geometry->skin).text);
+    return SPHG_OK;
+}
+
+static sphg_result check_period(struct sphgi_checker checker, const sphg_geometry *geometry,
+                                const struct sphgi_scheme *scheme)
+{
+    const char *f = checker.function;
+    /* A period of twice the reach that was rounded on its way is what it was meant to be. Such an
+     * axis has one cell, so that every pair is tested. */
+    const bool f64 = sphgi_type_of_positions(geometry) == SPHG_F64;
+    const double rounding = f64 ? 0x1p-51 : 0x1p-22;
+    const double most = f64 ? DBL_MAX / 4 : (double)FLT_MAX / 4; /* differences do not overflow */
     for (int32_t a = 0; a < scheme->dimension; ++a) {
         const double period = geometry->period[a], least = 2 * (scheme->radius + geometry->skin);
         if (!(period >= 0 && period <= most))
@@ -308,6 +326,43 @@ static sphg_result check_positions(struct sphgi_checker checker, const sphg_view
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.stride is 0, but there are %d positions",
                checker.function, expected->name, (int)expected->count);
     return result;
+}
+
+static sphg_result check_support(struct sphgi_checker checker, const sphg_view *view,
+                                 const char *name, sphg_type type, int32_t count)
+{
+    const struct sphgi_expected expected = {
+        .name = name, .type = type, .shape = SPHG_SCALAR, .count = count};
+    return sphgi_check_view(checker, view, &expected);
+}
+
+/* Radii of their own: of everybody or of nobody. */
+static sphg_result check_supports(struct sphgi_checker checker, const sphg_geometry *geometry,
+                                  sphg_type type, bool searched)
+{
+    const char *f = checker.function;
+    const bool apart = geometry->targets.x || !geometry->target_count;
+    const bool sources = geometry->source_support.x, targets = geometry->target_support.x;
+    sphg_result result = check_support(checker, &geometry->source_support,
+                                       "geometry.source_support", type, geometry->source_count);
+    if (!result)
+        result = check_support(checker, &geometry->target_support, "geometry.target_support", type,
+                               geometry->target_count);
+    if (result)
+        return result;
+    if ((sources || targets) && !searched)
+        REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: geometry.%s is set, but radii are for searches only", f,
+               sources ? "source_support" : "target_support");
+    if (targets && !apart)
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: geometry.target_support is set, but the targets are part of the sources", f);
+    if (targets && !sources && geometry->source_count > 0)
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: geometry.target_support is set, but source_support is absent", f);
+    if (sources && !targets && geometry->targets.x && geometry->target_count > 0)
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: geometry.source_support is set, but target_support is absent", f);
+    return SPHG_OK;
 }
 
 sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
@@ -351,9 +406,16 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
     if (!searched && geometry->list_free)
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.list_free is %d, it is for searches only", f,
                (int)geometry->list_free);
-    result = check_skin_and_period(checker, geometry, scheme);
+    result = check_skin(checker, geometry);
+    return result ? result : check_supports(checker, geometry, type, searched);
+}
+
+sphg_result sphgi_check_extent(struct sphgi_checker checker, const sphg_geometry *geometry,
+                               const struct sphgi_scheme *scheme)
+{
+    sphg_result result = check_period(checker, geometry, scheme);
     if (!result)
-        result = sphgi_check_range(checker, scheme, type);
+        result = sphgi_check_range(checker, scheme, sphgi_type_of_positions(geometry));
     if (!result && geometry->precision == SPHG_F32)
         result = sphgi_check_range(checker, scheme, SPHG_F32);
     return result;

@@ -17,6 +17,7 @@ struct sphgi_scheme {
     sphg_policy policy;
     double radius, threshold;
     int32_t order; /* 1 or 2 */
+    bool radii;    /* of their own: `radius` is one of these, not the scheme's */
 };
 
 bool sphgi_is_classic(sphg_method method);
@@ -28,6 +29,9 @@ sphg_result sphgi_check_pointer(struct sphgi_checker checker, const void *pointe
                                 const char *name);
 sphg_result sphgi_check_scheme(struct sphgi_checker checker, const sphg_scheme *scheme,
                                struct sphgi_scheme *checked);
+/* The same where particles have radii of their own: that of the scheme is not read, and left 0. */
+sphg_result sphgi_check_scheme_beside_radii(struct sphgi_checker checker, const sphg_scheme *scheme,
+                                            struct sphgi_scheme *checked);
 
 /* 1/H^d and H^2 must be normal numbers of the type. */
 sphg_result sphgi_check_range(struct sphgi_checker checker, const struct sphgi_scheme *scheme,
@@ -48,8 +52,11 @@ sphg_result sphgi_check_view(struct sphgi_checker checker, const sphg_view *view
                              const struct sphgi_expected *expected);
 /* Of what is there; where nothing is, as a view or the geometry names it. */
 sphg_type sphgi_type_of_positions(const sphg_geometry *geometry);
+/* What reads no radius; then what does, with the scheme's, or the largest. */
 sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geometry *geometry,
                                  const struct sphgi_scheme *scheme, bool searched);
+sphg_result sphgi_check_extent(struct sphgi_checker checker, const sphg_geometry *geometry,
+                               const struct sphgi_scheme *scheme);
 sphg_result sphgi_check_lists(struct sphgi_checker checker, const sphg_lists *lists,
                               int32_t target_count);
 /* A list turned out to be wrong: it holds `index`, which is no source, or has no valid length. */

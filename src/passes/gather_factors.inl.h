@@ -6,7 +6,7 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
                                      bool volumes)
 {
     const struct four own = target_rows(g, targets);
-    const vec scale = factor_scale(shape, method), inverse_h = splat(R(shape->inverse_h));
+    const vec scale = factor_scale(shape, method), inverse_h = inverse_radius(shape);
     const vec volume = splat(R(g->volume));
     const real *rows = g->rows;
     const uint32_t *ids = tile->ids;

@@ -22,8 +22,13 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
                                            struct OUT_NAME(how) how)
 {
     const struct four own = target_rows(g, targets + first);
-    const vec unit = splat(R(g->unit)), cutoff = square_of(g->cutoff);
-    const vec far = splat(R(2 * g->cutoff));
+    vec unit = splat(R(g->unit)), radius = splat(R(g->cutoff));
+    if (g->radii) {
+        radius = own.w;
+        unit = R(1) / radius;
+    }
+    const vec far = radius + radius;
+    const vec cutoff = g->all ? splat((real)__builtin_inf()) : rounded(radius * radius);
     const struct wraps w = wraps_of(g->period);
     const uint32_t *ids = tile->ids + first;
     const ptrdiff_t stride = tile->id_stride;

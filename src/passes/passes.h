@@ -100,6 +100,8 @@ struct sphgi_gather {
     bool periodic, superset;
     bool guarded;  /* periodic, superset, or no dummy is far enough */
     bool volumes;  /* V_j differ: gather the 4th number of the rows */
+    bool radii;    /* cutoff and unit are those of the targets: the 4th number of theirs */
+    bool all;      /* ... but everybody in the list counts */
     double volume; /* V_j otherwise */
     int32_t dimension;
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
@@ -118,6 +120,9 @@ struct sphgi_shape {
     double inverse_h;   /* from the unit of the offsets to q = r / H */
     double w_scale;     /* sigma / H; RKPM and MLS sigma / (mu2 H) */
     double value_scale; /* sigma */
+    const void *inverse_lanes,
+        *factor_lanes; /* instead of inverse_h and w_scale, a number per lane,
+                          where targets have radii of their own; or NULL */
 };
 
 struct sphgi_threshold {
@@ -213,17 +218,21 @@ struct sphgi_periods {
 
 /* Runs of rows that hold the candidates of a cell; the first one holds the cell itself, from row
  * `own` on. */
-enum { SPHGI_RUNS_MOST = 27 };
+enum { SPHGI_RUNS_MOST = 128 };
 struct sphgi_runs {
     int32_t count, candidates, own;
     int32_t begin[SPHGI_RUNS_MOST], length[SPHGI_RUNS_MOST];
+    double reach[SPHGI_RUNS_MOST]; /* of targets with radii: how far these may be, at most */
 };
 
 /* A search among sources. */
 struct sphgi_find {
     const void *rows; /* x y z of the sources; SPHGI_LANES_MOST - 1 rows past each run are read */
     double reach;
-    double slack; /* rounding of differences between images far apart [L] */
+    double stretch;        /* what radii are multiplied with, where particles have their own */
+    bool mutual;           /* the larger one of a pair counts */
+    const int32_t *selves; /* row of each target, if they are sources in another order; or NULL */
+    double slack;          /* rounding of differences between images far apart [L] */
     double period[3];
     bool periodic;
     uint32_t dummy;                  /* id that lists are padded with */
@@ -265,6 +274,12 @@ struct sphgi_passes {
                     const void *targets, int32_t count, int32_t self, uint32_t *ids,
                     int32_t *lengths);
 
+    /* The same for targets, and sources, with radii of their own, the 4th numbers of rows. Runs
+     * stand in any order; self may be in any of them. */
+    int64_t (*find_by_radii)(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                             const void *targets, int32_t count, int32_t self, uint32_t *ids,
+                             int32_t *lengths);
+
     /* Of `count` ids of a list, those within reach of the target's row stay: they move together, or
      * if `pack` is not set, the dummy takes the place of the others. Padded to SPHGI_LANES_MOST
      * with the dummy, for which there is room. Returns how many there are now. */
@@ -302,8 +317,15 @@ struct sphgi_passes {
     bool (*interleave_hosts)(const struct sphgi_lane_lists *lists, const struct sphgi_cleaning *how,
                              const uint32_t *self, struct sphgi_tile *tile);
 
+    /* Arrays from `first` on, times a number per lane. */
+    void (*scale_pairs)(const struct sphgi_tile *tile, enum sphgi_array first, int32_t count,
+                        const void *each);
+
     /* Weights. */
     void (*shape_factors)(const struct sphgi_shape *shape, void *arrays, int32_t count);
+    /* The factors with the radius of j, whose rows hold H over it. */
+    void (*shape_other)(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
+                        const void *rows);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
     void (*classic_vectors)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,

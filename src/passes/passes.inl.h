@@ -26,11 +26,13 @@
 #endif
 #include "cells.inl.h"
 #include "search.inl.h"
+#include "search_by_radii.inl.h"
 #include "near.inl.h"
 #include "shape.inl.h"
 #include "gather_factors.inl.h"
 #include "kept_factors.inl.h"
 #include "sums.inl.h"
+#include "other_side.inl.h"
 #include "contracted.inl.h"
 #include "folded.inl.h"
 #include "classic.inl.h"
@@ -64,12 +66,15 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .gather_offsets = gather_offsets,
     .keep_factors = keep_factors,
     .find = find,
+    .find_by_radii = find_by_radii,
     .keep_near = keep_near,
     .weave = weave,
     .interleave = interleave,
     .clean_ids = clean_ids,
     .interleave_hosts = interleave_hosts,
+    .scale_pairs = scale_pairs,
     .shape_factors = shape_factors,
+    .shape_other = shape_other,
     .shape_weights = shape_weights,
     .shape_values = shape_values,
     .classic_vectors = classic_vectors,

@@ -19,13 +19,19 @@ SPHGI_TEMPLATE vec factor_of(vec scale, vec inverse_h, vec r, vec volume, sphg_k
 
 SPHGI_TEMPLATE vec factor_scale(const struct sphgi_shape *shape, sphg_method method)
 {
-    return splat(R(method == SPHG_KGC ? shape->w_scale : -shape->w_scale));
+    const vec scale = shape->factor_lanes ? load(shape->factor_lanes) : splat(R(shape->w_scale));
+    return method == SPHG_KGC ? scale : -scale;
+}
+
+SPHGI_TEMPLATE vec inverse_radius(const struct sphgi_shape *shape)
+{
+    return shape->inverse_lanes ? load(shape->inverse_lanes) : splat(R(shape->inverse_h));
 }
 
 SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t count,
                                sphg_kernel kernel, sphg_method method)
 {
-    const vec scale = factor_scale(shape, method), inverse_h = splat(R(shape->inverse_h));
+    const vec scale = factor_scale(shape, method), inverse_h = inverse_radius(shape);
     for (int32_t k = 0; k < count; k += LANES, a += LANES)
         store(a + SPHGI_S * SPHGI_TILE, factor_of(scale, inverse_h, load(a + SPHGI_R * SPHGI_TILE),
                                                   load(a + SPHGI_V * SPHGI_TILE), kernel, method));
@@ -35,7 +41,7 @@ SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t
 SPHGI_TEMPLATE void weights_as(const struct sphgi_shape *shape, real *a, int32_t count,
                                sphg_kernel kernel)
 {
-    const vec scale = splat(R(shape->value_scale)), inverse_h = splat(R(shape->inverse_h));
+    const vec scale = splat(R(shape->value_scale)), inverse_h = inverse_radius(shape);
     for (int32_t k = 0; k < count; k += LANES, a += LANES) {
         const vec q = inverse_h * load(a + SPHGI_R * SPHGI_TILE);
         store(a + SPHGI_S * SPHGI_TILE, scale * kernel_w(kernel, q));

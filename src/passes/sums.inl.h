@@ -318,3 +318,14 @@ static void transposed(const struct sphgi_tile *tile, int32_t dimension, const v
     else
         transposed_as(tile, rows, density, kind, false, true);
 }
+
+static void scale_pairs(const struct sphgi_tile *tile, enum sphgi_array first, int32_t count,
+                        const void *each)
+{
+    const vec by = load(each);
+    for (int32_t c = 0; c < count; ++c) {
+        real *at = array_of(tile->arrays, (enum sphgi_array)((int32_t)first + c));
+        for (int32_t k = 0; k < places_of(tile); k += LANES)
+            store(at + k, by * load(at + k));
+    }
+}

@@ -6,6 +6,15 @@
 
 /* ---- Sets ----------------------------------------------------------------------------------- */
 
+/* Units are those of the largest radius, and of each target's in turn. */
+static void take_radii_of_set(struct sphgi_plan *plan, const sphg_neighbors *n)
+{
+    const bool first = !(plan->scheme.radius > 0);
+    plan->graded |= n->graded || (!first && plan->scheme.radius != n->radius);
+    plan->scheme.radius = n->radius > plan->scheme.radius ? n->radius : plan->scheme.radius;
+    plan->least = first || n->least < plan->least ? n->least : plan->least;
+}
+
 static sphg_result check_set(struct sphgi_making *making, int32_t s)
 {
     const char *f = making->checker.function;
@@ -30,7 +39,12 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
         SPHGI_REFUSE(SPHG_ERROR_SIZE,
                      "%s: sources[%d].neighbors have %d targets, sources[0] has %d", f, (int)s,
                      (int)n->target_count, (int)plan->target_count);
-    if (plan->scheme.radius > n->radius)
+    if (n->radii != making->request->sources[0].neighbors->radii)
+        SPHGI_REFUSE(SPHG_ERROR_SIZE, "%s: sources[%d].neighbors have %s, unlike sources[0]", f,
+                     (int)s, n->radii ? "a radius per particle" : "one radius for all");
+    if (n->radii)
+        take_radii_of_set(plan, n);
+    else if (plan->scheme.radius > n->radius)
         SPHGI_REFUSE(SPHG_ERROR_SIZE,
                      "%s: scheme.support_radius is %s, sources[%d].neighbors were built for %s", f,
                      sphgi_digits(plan->scheme.radius).text, (int)s, sphgi_digits(n->radius).text);
@@ -207,6 +221,26 @@ static sphg_result check_counts(struct sphgi_making *making)
     return sphgi_check_pointer(making->checker, request->fields, "fields");
 }
 
+static sphg_result check_radii(struct sphgi_making *making)
+{
+    const struct sphgi_plan *plan = making->plan;
+    const sphg_neighbors *first = plan->sets[0].neighbors;
+    struct sphgi_scheme smallest = plan->scheme;
+    smallest.radius = plan->least;
+    const sphg_result result = sphgi_check_range(making->checker, &plan->scheme, plan->type);
+    if (result || !plan->graded)
+        return result;
+    if (plan->quadratic)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: scheme.order is 2, but the neighbours have a radius per particle",
+                     making->checker.function);
+    if (making->purpose != SPHGI_FOR_RESULTS && first->mutual && first->skin > 0)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: pairs of neighbours that are mutual and have a skin",
+                     making->checker.function);
+    return sphgi_check_range(making->checker, &smallest, plan->type);
+}
+
 static sphg_result take_everything(struct sphgi_making *making)
 {
     struct sphgi_plan *plan = making->plan;
@@ -217,7 +251,7 @@ static sphg_result take_everything(struct sphgi_making *making)
          ++s)
         result = check_same_targets(making, s);
     if (!result)
-        result = sphgi_check_range(making->checker, &plan->scheme, plan->type);
+        result = check_radii(making);
     for (int32_t s = 0; s < plan->set_count && !result; ++s)
         result = take_volume(making, s);
     if (!result)
@@ -239,6 +273,12 @@ static sphg_result take_everything(struct sphgi_making *making)
     return result;
 }
 
+static bool are_radii_given(const sphg_request *request)
+{
+    const sphg_sources *first = request && request->set_count > 0 ? request->sources : NULL;
+    return first && first->neighbors && first->neighbors->radii;
+}
+
 sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *scheme,
                             const sphg_request *request, enum sphgi_purpose purpose,
                             struct sphgi_plan *plan)
@@ -246,7 +286,9 @@ sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *sch
     struct sphgi_making making = {
         .checker = checker, .request = request, .purpose = purpose, .plan = plan};
     *plan = (struct sphgi_plan){.own_set = -1};
-    sphg_result result = sphgi_check_scheme(checker, scheme, &plan->scheme);
+    sphg_result result = are_radii_given(request)
+                             ? sphgi_check_scheme_beside_radii(checker, scheme, &plan->scheme)
+                             : sphgi_check_scheme(checker, scheme, &plan->scheme);
     if (!result)
         result = sphgi_check_pointer(checker, request, "request");
     if (!result)

@@ -69,6 +69,8 @@ struct sphgi_plan {
     bool classic, weighted; /* weighted: V_j stands in the classic weight */
     bool quadratic;         /* order 2 */
     bool lends;             /* ... and any field lends or borrows, or who would is asked for */
+    bool graded;  /* targets have radii of their own; that of the scheme is the largest there is */
+    double least; /* ... and the smallest */
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
@@ -77,7 +79,8 @@ struct sphgi_plan {
     int32_t correction_stream, density_stream; /* -1: not needed */
     int32_t correction_row, density_row;       /* -1: no pair needs them */
     bool sums_transposed[2]; /* adjoint, symmetric: A_j of any field is read with T */
-    int32_t carrier[2];      /* the folded field that sums vector_sum on its way, -1: none */
+    int32_t radius_row; /* of each source's radius, where both sides of a pair have their own; -1 */
+    int32_t carrier[2]; /* the folded field that sums vector_sum on its way, -1: none */
     int32_t sums;
     int32_t moment_sums; /* all that corrections need: they stand first */
     int32_t moment_sum, volume_sum;

@@ -26,6 +26,31 @@ static sphg_result check_second_order(struct sphgi_making *making, int32_t k)
     return SPHG_OK;
 }
 
+/* Forms that are summed over G_ji, too, where G_ij and G_ji have radii of their own. */
+static sphg_result check_both_sides(struct sphgi_making *making, int32_t k)
+{
+    const char *f = making->checker.function;
+    const struct sphgi_plan *plan = making->plan;
+    const char *form = making->request->fields[k].form == SPHG_ADJOINT ? "adjoint" : "symmetric";
+    if (plan->classic)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].form is %s, which classic methods have for one radius", f,
+                     (int)k, form);
+    for (int32_t s = 0; s < plan->set_count; ++s) {
+        const sphg_neighbors *n = plan->sets[s].neighbors;
+        if (n->graded && !n->mutual)
+            SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                         "%s: fields[%d].form is %s, but sources[%d].neighbors are not mutual", f,
+                         (int)k, form, (int)s);
+        if (n->graded && n->skin > 0)
+            SPHGI_REFUSE(
+                SPHG_ERROR_UNSUPPORTED,
+                "%s: fields[%d].form is %s, but sources[%d].neighbors have radii and a skin", f,
+                (int)k, form, (int)s);
+    }
+    return SPHG_OK;
+}
+
 static sphg_result check_field(struct sphgi_making *making, int32_t k)
 {
     const char *f = making->checker.function;
@@ -51,8 +76,12 @@ static sphg_result check_field(struct sphgi_making *making, int32_t k)
     if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
-    const sphg_result result = check_second_order(making, k);
-    return result ? result : sphgi_check_lending(making, k);
+    sphg_result result = check_second_order(making, k);
+    if (!result)
+        result = sphgi_check_lending(making, k);
+    if (!result && making->plan->graded && field->form >= SPHG_SYMMETRIC)
+        result = check_both_sides(making, k);
+    return result;
 }
 
 /* The Hessian of each component, as if it had a view of its own. */

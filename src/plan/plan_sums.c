@@ -41,10 +41,10 @@ static void decide_sums(struct sphgi_plan *plan)
 
 /* PLAIN: G_ji = -V_i G_ij / V_j, so that the adjoint form needs no other side. A divergence is
  * summed as such wherever nothing stands between the sum and the trace: C_i would. */
-static void decide_field(struct sphgi_field_plan *field, sphg_method method)
+static void decide_field(struct sphgi_field_plan *field, sphg_method method, bool graded)
 {
     const bool plain = method == SPHG_PLAIN;
-    field->antisymmetric = plain && field->form == SPHG_ADJOINT;
+    field->antisymmetric = plain && field->form == SPHG_ADJOINT && !graded;
     field->forward = field->form <= SPHG_DIRECT || field->antisymmetric;
     field->contracts = field->divergence.count && (plain || !field->forward);
     field->sums_gradient = field->gradient.count || field->curl.count || field->hessian[0].count ||
@@ -75,9 +75,10 @@ static void fold_field(struct sphgi_plan *plan, int32_t k)
     const bool symmetric = field->form == SPHG_SYMMETRIC;
     if (!field->fold)
         return;
-    const bool dense = symmetric && plan->carrier[1] < 0;
+    const bool carries = plan->carrier[symmetric] < 0 && !plan->graded; /* else s_ij is another */
+    const bool dense = symmetric && carries;
     const int32_t numbers = sphgi_folded_numbers(field->fold, plan->dimension) + (dense ? 1 : 0);
-    if (plan->carrier[symmetric] < 0)
+    if (carries)
         plan->carrier[symmetric] = k;
     field->folded_row = plan->row_count;
     field->folded_rows = (numbers + SPHGI_ROW - 1) / SPHGI_ROW;
@@ -119,9 +120,10 @@ static void decide_rows(struct sphgi_plan *plan)
     }
     if (plan->transposes[1]) {
         plan->density_stream = plan->stream_count++;
-        if (plan->sums_transposed[1])
+        if (plan->sums_transposed[1] || plan->graded)
             plan->density_row = plan->row_count++;
     }
+    plan->radius_row = transposes && plan->graded ? plan->row_count++ : -1;
 }
 
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
@@ -131,7 +133,7 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
     plan->differentiates = needs_correction;
     for (int32_t k = 0; k < plan->field_count; ++k) {
         struct sphgi_field_plan *field = &plan->fields[k];
-        decide_field(field, method);
+        decide_field(field, method, plan->graded);
         plan->differentiates |= field->differentiates;
         plan->wants_value |= field->value.count > 0;
         plan->adjoint |= field->differentiates && field->form == SPHG_ADJOINT;

@@ -4,6 +4,11 @@
 
 /* Linearised (theory.md, section 3): KGC C; RKPM C / (mu2 H^2); MLS C H^(d - 2) / mu2, where ours
  * contains V_i / H^d. Classic: w is W H^d (CMLS) or V W (CRKPM). */
+bool sphgi_has_units(const struct sphgi_scheme *scheme)
+{
+    return scheme->method != SPHG_KGC && scheme->method != SPHG_PLAIN;
+}
+
 struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
 {
     const double h = scheme->radius, mu2 = sphgi_kernel_mu2(scheme->kernel, scheme->dimension);
@@ -38,10 +43,18 @@ static struct sphgi_share share_of(double factor, int32_t first, int32_t count)
 
 void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES])
 {
-    const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
+    sphgi_shares_at(plan, plan->scheme.radius, shares);
+}
+
+void sphgi_shares_at(const struct sphgi_plan *plan, double radius,
+                     struct sphgi_share shares[SPHGI_SHARES])
+{
+    struct sphgi_scheme scheme = plan->scheme;
+    scheme.radius = radius;
+    const struct sphgi_scales scales = sphgi_table_scales(&scheme);
     const int32_t width = sphgi_plan_width(plan), d = plan->dimension, pairs = d * (d + 1) / 2;
     const int32_t values = plan->classic ? d + 1 : plan->quadratic ? pairs : width;
-    const double h = plan->scheme.radius;
+    const double h = radius;
     shares[0] = share_of(scales.value, 0, values);
     shares[1] = shares[2] = (struct sphgi_share){.count = 0};
     if (plan->classic)

@@ -18,5 +18,10 @@ enum { SPHGI_SHARES = 3 };
 
 /* [0] of y, or of all numbers of a linearised method, [1] of z_k. Order 2: of its three blocks. */
 void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES]);
+/* The same for a target of that radius. */
+void sphgi_shares_at(const struct sphgi_plan *plan, double radius,
+                     struct sphgi_share shares[SPHGI_SHARES]);
+/* Tables are in units of H; else the factor is 1. */
+bool sphgi_has_units(const struct sphgi_scheme *scheme);
 
 #endif

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "core/view.h"
 #include "lists.h"
+#include "radii.h"
 #include "skin.h"
 #include "weights.h"
 #include <math.h>
@@ -62,7 +63,7 @@ static sphg_result read_positions(struct sphgi_checker checker, const sphg_view 
                               .columns = sphgi_columns_of(view, SPHG_VECTOR, g->dimension),
                               .rows = rows,
                               .row_size = SPHGI_ROW * sphgi_size_of_type(view->type),
-                              .periods = g->periodic ? &g->periods : NULL,
+                              .periods = g->periodic || g->graded ? &g->periods : NULL,
                               .trusted = checker.context->config.trusted != 0};
     atomic_store(&reading.bad, INT64_MAX);
     for (int32_t a = 0; a < 3; ++a)
@@ -97,6 +98,29 @@ static struct sphgi_geometry geometry_of(const sphg_geometry *given,
     return g;
 }
 
+/* The largest radius takes the place of the scheme's. */
+static sphg_result read_radii(struct sphgi_checker checker, const sphg_geometry *given,
+                              struct sphgi_scheme *scheme, struct sphgi_radii *radii)
+{
+    if (!sphgi_has_radii(given))
+        return SPHG_OK;
+    sphg_result result = sphgi_look_at_radii(checker, given, radii);
+    if (result)
+        return result;
+    scheme->radius = radii->least;
+    result = sphgi_check_extent(checker, given, scheme);
+    scheme->radius = radii->largest;
+    return result ? result : sphgi_check_extent(checker, given, scheme);
+}
+
+static void take_radii(sphg_context *context, const sphg_geometry *given, struct sphgi_geometry *g)
+{
+    if (!sphgi_is_absent(&given->source_support))
+        sphgi_put_radii(context, &given->source_support, g->source_count, g->source_rows);
+    if (!g->part_of && !sphgi_is_absent(&given->target_support))
+        sphgi_put_radii(context, &given->target_support, g->target_count, g->target_rows);
+}
+
 static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
                                  struct sphgi_geometry *g)
 {
@@ -114,6 +138,8 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
                                 g->target_rows, g);
     if (g->part_of)
         g->target_rows = g->source_rows;
+    if (!result)
+        take_radii(context, given, g);
     return result;
 }
 
@@ -160,6 +186,12 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     n->source_count = g->source_count;
     n->target_count = g->target_count;
     n->found.pairs = 0;
+    n->radii = g->radii;
+    n->graded = g->graded;
+    n->mutual = g->graded && given->mutual;
+    n->least = g->radii ? g->least : radius;
+    n->stretch = 1 + given->skin / radius;
+    n->far = fmax(g->largest[0], fmax(g->largest[1], g->largest[2]));
     atomic_store(&n->places, 0);
     memset(&n->lists, 0, sizeof n->lists);
 }
@@ -170,9 +202,9 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
  * group of targets. */
 static size_t tables_most(const sphg_neighbors *n)
 {
-    size_t bytes = sphgi_grid_tables(n->source_count) + SPHGI_ALIGNMENT;
+    size_t bytes = sphgi_grid_tables(n->source_count, n->graded) + SPHGI_ALIGNMENT;
     if (!n->same)
-        bytes += sphgi_grid_tables(n->target_count) + SPHGI_ALIGNMENT;
+        bytes += sphgi_grid_tables(n->target_count, n->graded) + SPHGI_ALIGNMENT;
     if (!n->list_free)
         bytes += (size_t)sphgi_group_count(n->target_count) * sizeof(int64_t) + SPHGI_ALIGNMENT;
     return bytes;
@@ -181,8 +213,10 @@ static size_t tables_most(const sphg_neighbors *n)
 static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
                                const struct sphgi_geometry *g)
 {
-    const struct sphgi_lattice lattice = sphgi_lattice_of(
-        n->dimension, n->radius + n->skin, &g->periods, g->largest, n->position_type);
+    struct sphgi_lattice lattice = sphgi_lattice_of(n->dimension, n->radius + n->skin, &g->periods,
+                                                    g->largest, n->position_type);
+    lattice.top = n->radius;
+    lattice.octaves = n->graded ? sphgi_octaves_for(&lattice, n->least, g->largest) : 0;
     if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
         return SPHG_ERROR_MEMORY;
     char *tables = n->shared.data;
@@ -190,24 +224,36 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
         sphgi_grid_build(context, &n->sources, &n->allocator, &lattice, n->position_type,
                          g->source_rows, n->source_count, tables);
     if (!result && !n->same) {
-        tables += sphgi_round_up(sphgi_grid_tables(n->sources.block_count), SPHGI_ALIGNMENT);
+        tables +=
+            sphgi_round_up(sphgi_grid_tables(n->sources.block_count, n->graded), SPHGI_ALIGNMENT);
         result = sphgi_grid_build(context, &n->targets, &n->allocator, &lattice, n->position_type,
                                   g->target_rows, n->target_count, tables);
     }
     if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
         result = SPHG_ERROR_MEMORY;
+    if (!result && n->graded && n->part_of && !n->same &&
+        !invert_order(context, n, &n->sources, &n->source_place))
+        result = SPHG_ERROR_MEMORY;
     return result;
 }
 
 sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *n,
-                                  const struct sphgi_scheme *scheme, const sphg_geometry *given)
+                                  const struct sphgi_scheme *checked, const sphg_geometry *given)
 {
+    struct sphgi_scheme own = *checked;
+    const struct sphgi_scheme *scheme = &own;
+    struct sphgi_radii radii = {0, 0};
+    sphg_result result = read_radii(checker, given, &own, &radii);
     struct sphgi_geometry g = geometry_of(given, scheme);
-    sphg_result result = read_geometry(checker, given, &g);
+    g.radii = sphgi_has_radii(given);
+    g.least = radii.least;
+    g.graded = radii.least < radii.largest;
+    if (!result)
+        result = read_geometry(checker, given, &g);
     if (result)
         return result;
     if (sphgi_skin_asks_the_same(n, &g, given, scheme->radius) && n->type == g.type &&
-        sphgi_skin_holds(checker.context, n, &g))
+        sphgi_skin_holds(checker.context, n, &g, scheme->radius))
         return SPHG_OK;
     n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);

@@ -9,8 +9,10 @@ struct sphgi_geometry {
     int32_t source_count, target_count, dimension;
     sphg_type position_type, type;
     bool part_of, periodic;
+    bool radii, graded; /* of their own; and not all the same */
+    double least;       /* radius, if they have */
     struct sphgi_periods periods;
-    double largest[3]; /* |coordinate|, of a periodic geometry */
+    double largest[3]; /* |coordinate|, of a periodic or graded geometry */
     size_t row_size;
     char *source_rows, *target_rows; /* in the order of the host, in context->input */
 };
@@ -19,7 +21,7 @@ struct sphgi_geometry {
  * up leaves it as it was (any refusal); after a failed allocation the object is to be built again.
  */
 sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *neighbors,
-                                  const struct sphgi_scheme *scheme, const sphg_geometry *given);
+                                  const struct sphgi_scheme *checked, const sphg_geometry *given);
 sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *neighbors,
                                  const struct sphgi_scheme *scheme, const sphg_geometry *given,
                                  const sphg_lists *lists);

@@ -54,12 +54,22 @@ static void widen_by(struct extent *extent, const sphg_neighbors *n, const struc
         widen_by_rows(extent, n, grid);
 }
 
+/* The same where cells have many widths. */
+static double far_from_octaves(const sphg_neighbors *n, double most)
+{
+    const double width = 1 / n->sources.lattice.axis[0].inverse;
+    const bool near = n->far * n->sources.lattice.axis[0].inverse < SPHGI_CUT_MOST;
+    return near && 0x1p32 * width < most ? -2 * n->far - 64 * width : (double)NAN;
+}
+
 /* Below the lowest x by 64 cells, and by as much as that x has digits for; NaN if cells do not tell
  * places, or if squares of differences could leave the range of the type. */
 static double far_x(const sphg_neighbors *n)
 {
     const struct sphgi_lattice *lattice = &n->sources.lattice;
     const double most = n->type == SPHG_F64 ? 0x1p500 : 0x1p60;
+    if (n->graded)
+        return far_from_octaves(n, most);
     struct extent extent = {{0}, {0}};
     widen_by(&extent, n, &n->sources);
     if (!n->same)

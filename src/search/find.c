@@ -3,6 +3,7 @@
 
 enum {
     CROWDED = -1,
+    TOGETHER = 8, /* targets of an octave: more of them stand too far apart to share candidates */
     SLACK = 2 * SPHGI_LANES_MOST /* candidates, and ids, that passes write beyond the last */
 };
 
@@ -11,14 +12,21 @@ enum {
 /* Memory that is not needed is not touched. */
 static int32_t room_of(const sphg_neighbors *neighbors)
 {
-    return sphgi_min32(neighbors->source_count, SPHGI_CANDIDATES_MOST);
+    const int32_t wide = neighbors->graded ? 2 : 1; /* cells of an octave are up to twice H */
+    return sphgi_min32(neighbors->source_count, wide * SPHGI_CANDIDATES_MOST);
 }
 
 static size_t candidate_bytes(const sphg_neighbors *neighbors)
 {
     const size_t size = sphgi_size_of_type(neighbors->position_type);
     const size_t candidates = (size_t)room_of(neighbors) + SLACK + 2 * SPHGI_ALIGNMENT;
-    return sphgi_round_up(candidates * (3 * size + sizeof(uint32_t) + 1), SPHGI_ALIGNMENT);
+    const size_t numbers = neighbors->graded ? 4 : 3;
+    return sphgi_round_up(candidates * (numbers * size + sizeof(uint32_t) + 1), SPHGI_ALIGNMENT);
+}
+
+static size_t nearby_bytes(const sphg_neighbors *neighbors)
+{
+    return neighbors->graded ? sphgi_round_up(sizeof(struct sphgi_nearby), SPHGI_ALIGNMENT) : 0;
 }
 
 /* Of all lists that can wait. */
@@ -30,7 +38,7 @@ static size_t id_bytes(const sphg_neighbors *neighbors)
 
 size_t sphgi_finder_size(const sphg_neighbors *neighbors)
 {
-    return candidate_bytes(neighbors) + id_bytes(neighbors);
+    return candidate_bytes(neighbors) + nearby_bytes(neighbors) + id_bytes(neighbors);
 }
 
 void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
@@ -40,6 +48,8 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
     finder->passes = sphgi_passes_of(context, neighbors->position_type);
     finder->find = (struct sphgi_find){.rows = neighbors->sources.rows.data,
                                        .reach = neighbors->radius + neighbors->skin,
+                                       .stretch = neighbors->stretch,
+                                       .mutual = sphgi_lists_are_mutual(neighbors),
                                        .slack = neighbors->sources.lattice.slack,
                                        .periodic = neighbors->periodic,
                                        .dummy = (uint32_t)neighbors->source_count * SPHGI_ID_STEP,
@@ -47,7 +57,8 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
                                        .pack_order = context->pack_order,
                                        .pack_bytes = context->pack_bytes};
     memcpy(finder->find.period, neighbors->period, sizeof finder->find.period);
-    finder->ids = (uint32_t *)(void *)((char *)memory + candidate_bytes(neighbors));
+    finder->nearby = (void *)((char *)memory + candidate_bytes(neighbors));
+    finder->ids = (uint32_t *)(void *)((char *)finder->nearby + nearby_bytes(neighbors));
     finder->block = -1;
 }
 
@@ -59,7 +70,8 @@ static void enter_block(struct sphgi_finder *f, int32_t block)
     f->block = block;
     f->cell = 0;
     sphgi_cell_starts(targets, block, f->start);
-    sphgi_surroundings_of(&f->neighbors->sources, targets->blocks[block].key, &f->around);
+    if (!f->neighbors->graded)
+        sphgi_surroundings_of(&f->neighbors->sources, targets->blocks[block].key, &f->around);
 }
 
 /* To the cell of the next target. */
@@ -90,12 +102,103 @@ static int32_t row_of_self(const struct sphgi_finder *f, const struct sphgi_runs
     return f->neighbors->part_of ? runs->own + target - f->start[f->cell] : -1;
 }
 
+/* ---- Octaves -------------------------------------------------------------------------------- */
+
+static void open_walk(const struct sphgi_finder *f, struct sphgi_walk *walk, int32_t target,
+                      int32_t count)
+{
+    const sphg_neighbors *n = f->neighbors;
+    sphgi_walk_open(walk, &n->sources, n->position_type, sphgi_target_row(n, target), count,
+                    n->stretch, sphgi_lists_are_mutual(n));
+}
+
+/* Where targets are some of the sources, a cell's stand in another order there. */
+static int32_t row_of_source(const sphg_neighbors *n, int32_t target)
+{
+    const int32_t *order = sphgi_target_grid(n)->order.data, *place = n->source_place.data;
+    return n->same ? target : place[order[target]];
+}
+
+static bool look_around(struct sphgi_finder *f, int32_t first, int32_t last)
+{
+    struct sphgi_walk walk;
+    open_walk(f, &walk, first, last - first);
+    f->looked[0] = first;
+    f->looked[1] = last;
+    return sphgi_look_nearby(&walk, f->nearby);
+}
+
+/* The blocks near that of the next target, unless they are known; if they are too many, those near
+ * its cell. False: these are too many, too. */
+static bool look_nearby(struct sphgi_finder *f)
+{
+    const bool known = f->next >= f->looked[0] && f->next < f->looked[1];
+    return known ? f->nearby->count >= 0
+                 : look_around(f, f->start[0], f->start[SPHGI_BLOCK_CELLS]) ||
+                       look_around(f, f->start[f->cell], f->start[f->cell + 1]);
+}
+
+static void find_in_octaves(struct sphgi_finder *f)
+{
+    const sphg_neighbors *n = f->neighbors;
+    struct sphgi_walk walk;
+    struct sphgi_runs runs;
+    int32_t selves[SPHGI_FIND_MOST];
+    const int32_t left = f->start[f->cell + 1] - f->next;
+    const int32_t count = left > TOGETHER + TOGETHER / 2 ? TOGETHER : left;
+    const bool looked = look_nearby(f);
+    open_walk(f, &walk, f->next, count);
+    const bool more =
+        looked ? sphgi_walk_nearby(&walk, f->nearby, &runs) : sphgi_walk_on(&walk, &runs);
+    for (int32_t k = 0; k < count; ++k) {
+        f->length[f->lists + k] = CROWDED;
+        selves[k] = n->part_of ? row_of_source(n, f->next + k) : -1;
+    }
+    f->find.selves = n->part_of && !n->same ? selves : NULL;
+    if (!more && runs.candidates <= f->room)
+        f->used += f->passes->find_by_radii(&f->find, &runs, sphgi_target_row(n, f->next), count,
+                                            n->same ? f->next : -1, f->ids + f->used,
+                                            f->length + f->lists);
+    f->lists += count;
+    f->next += count;
+}
+
+/* One target, slice by slice of its runs. */
+static void find_target_in_octaves(struct sphgi_finder *f, int32_t target, sphgi_take *take,
+                                   void *data)
+{
+    const sphg_neighbors *n = f->neighbors;
+    const int32_t self = n->part_of ? row_of_source(n, target) : -1;
+    struct sphgi_walk walk;
+    struct sphgi_runs runs, slice = {.count = 1};
+    f->find.selves = NULL;
+    open_walk(f, &walk, target, 1);
+    for (bool more = true; more;) {
+        more = sphgi_walk_on(&walk, &runs);
+        for (int32_t run = 0; run < runs.count; ++run)
+            for (int32_t at = 0; at < runs.length[run]; at += f->room) {
+                int32_t found;
+                slice.candidates = sphgi_min32(runs.length[run] - at, f->room);
+                slice.begin[0] = runs.begin[run] + at;
+                slice.length[0] = slice.candidates;
+                slice.reach[0] = runs.reach[run];
+                f->passes->find_by_radii(&f->find, &slice, sphgi_target_row(n, target), 1, self,
+                                         f->ids, &found);
+                take(data, f->ids, found);
+            }
+    }
+}
+
 /* Lists for what is left of the cell of the next target, as many as are found at once. */
 static void find_some(struct sphgi_finder *f)
 {
     const sphg_neighbors *n = f->neighbors;
     struct sphgi_runs runs;
     enter_cell(f);
+    if (n->graded) {
+        find_in_octaves(f);
+        return;
+    }
     sphgi_candidate_runs(&n->sources.lattice, &f->around, f->cell, &runs);
     const int32_t count = sphgi_min32(f->start[f->cell + 1] - f->next, SPHGI_FIND_MOST);
     if (runs.candidates > f->room)
@@ -157,6 +260,10 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
     const sphg_neighbors *n = f->neighbors;
     struct sphgi_runs runs;
     go_to(f, target);
+    if (n->graded) {
+        find_target_in_octaves(f, target, take, data);
+        return;
+    }
     enter_cell(f);
     sphgi_candidate_runs(&n->sources.lattice, &f->around, f->cell, &runs);
     const int32_t self = row_of_self(f, &runs, target);

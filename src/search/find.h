@@ -21,6 +21,9 @@ struct sphgi_finder {
     int32_t block, cell; /* where it is; block -1: nowhere yet */
     int32_t start[SPHGI_BLOCK_CELLS + 1];
     struct sphgi_surroundings around;
+    struct sphgi_nearby
+        *nearby; /* of octaves: blocks near the targets looked[0] .. looked[1] - 1 */
+    int32_t looked[2];
 
     uint32_t *ids; /* of the lists that wait, one after the other */
     int64_t used;

@@ -31,17 +31,25 @@ void sphgi_key_open(struct sphgi_key key, int64_t *at)
 
 /* ---- Tables --------------------------------------------------------------------------------- */
 
-size_t sphgi_grid_tables(int32_t blocks)
+static size_t hash_bytes(size_t blocks)
+{
+    return sphgi_round_up(sphgi_slots_for(blocks) * sizeof(int32_t), SPHGI_ALIGNMENT);
+}
+
+size_t sphgi_grid_tables(int32_t blocks, bool octaves)
 {
     const size_t count = (size_t)blocks;
-    return (count + 1) * sizeof(struct sphgi_block) +
-           sphgi_round_up(sphgi_slots_for(count) * sizeof(int32_t), SPHGI_ALIGNMENT);
+    return (count + 1) * sizeof(struct sphgi_block) + hash_bytes(count) +
+           (octaves ? sphgi_tree_size(blocks) : 0);
 }
 
 void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables)
 {
     grid->blocks = tables;
     grid->hash = (int32_t *)(void *)(grid->blocks + grid->block_count + 1);
+    if (grid->lattice.octaves)
+        sphgi_tree_use(&grid->tree, grid->block_count,
+                       (char *)grid->hash + hash_bytes((size_t)grid->block_count));
 }
 
 int32_t sphgi_find_block(const struct sphgi_grid *grid, const int64_t *at)

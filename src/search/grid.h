@@ -5,6 +5,7 @@
 #ifndef SPHGI_GRID_H
 #define SPHGI_GRID_H
 #include "core/context.h"
+#include "octaves.h"
 
 enum {
     SPHGI_BLOCK_SHIFT = 5,
@@ -28,7 +29,9 @@ struct sphgi_lattice {
     struct sphgi_axis axis[3];
     int32_t dimension;
     bool periodic;
-    double slack; /* rounding of differences between periodic images [L] */
+    double slack;    /* rounding of differences between periodic images [L] */
+    int32_t octaves; /* of radii (octaves.h); 0: all particles have the same */
+    double top;      /* the largest radius, if there are octaves */
 };
 
 /* The periodic axes of a search for that radius. */
@@ -41,6 +44,8 @@ struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
                                       const struct sphgi_periods *periods, const double *largest,
                                       sphg_type type);
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice);
+/* Cells of octave k are 2^-k as wide. */
+double sphgi_place_on_axis(const struct sphgi_axis *axis, int32_t octave, double x, int64_t *cell);
 void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell);
 /* Its number in its block. */
 int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell);
@@ -73,6 +78,7 @@ struct sphgi_grid {
     struct sphgi_buffer rows;       /* positions in grid order, and SPHGI_LANES_MOST more: the dummy
                                        of dummy.h, then 0 */
     struct sphgi_buffer order;      /* int32_t: the particle behind each row */
+    struct sphgi_tree tree;         /* over the blocks, if there are octaves */
 };
 
 /* Of the hash: two thirds are taken. */
@@ -81,8 +87,9 @@ static inline size_t sphgi_slots_for(size_t blocks)
     return blocks + blocks / 2 + 2;
 }
 
-/* Bytes of `blocks` and `hash` of that many blocks; a grid has at most as many as particles. */
-size_t sphgi_grid_tables(int32_t blocks);
+/* Bytes of `blocks`, `hash` and, with octaves, `tree` of that many blocks; a grid has at most as
+ * many as particles. */
+size_t sphgi_grid_tables(int32_t blocks, bool octaves);
 
 /* The tables stand there. */
 void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);
@@ -122,6 +129,23 @@ int32_t sphgi_find_block(const struct sphgi_grid *grid, const int64_t *at);
 
 /* The block of the particle that has this place in storage. */
 int32_t sphgi_block_of_place(const struct sphgi_grid *grid, int32_t place);
+
+static inline int32_t sphgi_bits_in(uint32_t bits)
+{
+    bits -= bits >> 1 & 0x55555555u;
+    bits = (bits & 0x33333333u) + (bits >> 2 & 0x33333333u);
+    return (int32_t)(((bits + (bits >> 4)) & 0x0F0F0F0Fu) * 0x01010101u >> 24);
+}
+
+/* The first particle of a block in that cell or one behind it; else the one behind the block. */
+static inline int32_t sphgi_first_of_cell(const struct sphgi_grid *grid, int32_t block,
+                                          int32_t cell)
+{
+    const struct sphgi_block *own = &grid->blocks[block];
+    const uint32_t before = (uint32_t)(((uint64_t)1 << cell) - 1);
+    return (
+        (const int32_t *)grid->cell_start.data)[own->first + sphgi_bits_in(own->occupied & before)];
+}
 
 /* Numbers of the first particles of all cells of a block, and the number behind the last. */
 void sphgi_cell_starts(const struct sphgi_grid *grid, int32_t block, int32_t *start);

@@ -82,22 +82,29 @@ double sphgi_slack_of(const struct sphgi_periods *periods, const double *largest
 
 /* ---- Cells ---------------------------------------------------------------------------------- */
 
-static int64_t periodic_cell(const struct sphgi_axis *axis, double x)
+/* Gives the coordinate in cells, too. */
+double sphgi_place_on_axis(const struct sphgi_axis *axis, int32_t octave, double x, int64_t *cell)
 {
+    if (!axis->cells) {
+        const double place = x * axis->inverse * (double)((int64_t)1 << octave);
+        *cell = open_cell(place);
+        return place;
+    }
+    const int64_t cells = axis->cells << octave;
     double turns = x / axis->length;
     turns -= __builtin_floor(turns);
-    const int64_t cell = (int64_t)(turns * (double)axis->cells);
-    return cell < axis->cells ? cell : axis->cells - 1;
+    const double place = turns * (double)cells;
+    *cell = (int64_t)place < cells ? (int64_t)place : cells - 1;
+    return place;
 }
 
 void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell)
 {
-    for (int32_t a = 0; a < 3; ++a) {
-        const struct sphgi_axis *axis = &lattice->axis[a];
-        cell[a] = a >= lattice->dimension ? 0
-                  : axis->cells           ? periodic_cell(axis, x[a])
-                                          : open_cell(x[a] * axis->inverse);
-    }
+    for (int32_t a = 0; a < 3; ++a)
+        if (a < lattice->dimension)
+            sphgi_place_on_axis(&lattice->axis[a], 0, x[a], &cell[a]);
+        else
+            cell[a] = 0;
 }
 
 struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,

@@ -275,7 +275,8 @@ static void find_groups(struct build *build, int32_t step)
 
 static size_t tables_of(const struct sphgi_grid *grid)
 {
-    return sphgi_round_up(sphgi_grid_tables(grid->block_count), SPHGI_ALIGNMENT);
+    return sphgi_round_up(sphgi_grid_tables(grid->block_count, grid->lattice.octaves > 0),
+                          SPHGI_ALIGNMENT);
 }
 
 /* Puts places and ids behind the tables, with room for that many ids: first what the memory holds

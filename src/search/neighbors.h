@@ -44,6 +44,12 @@ struct sphg_neighbors {
     double radius;                 /* H that the pairs were found for */
     double skin;
     double period[3];
+    bool radii;     /* particles have their own, the 4th numbers of rows; `radius` is the largest */
+    bool graded;    /* ... and not all the same */
+    bool mutual;    /* the larger one of a pair counts */
+    double least;   /* radius */
+    double stretch; /* 1 + skin / radius at the last search: lists hold so many times each radius */
+    double far;     /* largest |coordinate|, if graded */
     bool periodic, list_free, keeps_weights;
     bool part_of; /* targets are the first sources */
     bool same;    /* ... and all of them: one grid serves both */
@@ -52,6 +58,7 @@ struct sphg_neighbors {
     struct sphgi_grid sources, targets; /* targets: unused if same */
     bool dummy_is_far;                  /* farther from all targets than pairs reach, else NaN */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
+    struct sphgi_buffer source_place;   /* the same of sources: radii, for targets among them */
     atomic_uint_least64_t places;       /* one number for where the targets stand, 0: not known */
     struct sphgi_buffer shared;         /* tables of the grids, then lists */
     struct sphgi_found found;
@@ -67,6 +74,12 @@ struct sphg_neighbors {
 static inline const struct sphgi_grid *sphgi_target_grid(const sphg_neighbors *neighbors)
 {
     return neighbors->same ? &neighbors->sources : &neighbors->targets;
+}
+
+/* With a skin a source may come farther than the margin of a small target. */
+static inline bool sphgi_lists_are_mutual(const sphg_neighbors *neighbors)
+{
+    return neighbors->mutual || neighbors->skin > 0;
 }
 
 /* ---- Groups --------------------------------------------------------------------------------- */
@@ -103,6 +116,15 @@ static inline const char *sphgi_target_row(const sphg_neighbors *neighbors, int3
 {
     const size_t size = SPHGI_ROW * sphgi_size_of_type(neighbors->position_type);
     return (const char *)sphgi_target_grid(neighbors)->rows.data + (size_t)place * size;
+}
+
+/* The radius in a row. */
+static inline double sphgi_row_radius(const sphg_neighbors *neighbors, const void *rows,
+                                      int32_t number)
+{
+    const size_t at = SPHGI_ROW * (size_t)number + SPHGI_ROW - 1;
+    return neighbors->position_type == SPHG_F64 ? ((const double *)rows)[at]
+                                                : (double)((const float *)rows)[at];
 }
 
 /* Of the host's lists: the target's, and how long it says it is. */

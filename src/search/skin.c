@@ -1,17 +1,28 @@
 #include "skin.h"
 #include "core/parallel.h"
+#include <math.h>
 #include <string.h>
 
 enum { GRAIN = 4096 }; /* particles */
+
+/* Radii of their own may change from one time to the next. */
+static bool has_the_same_radii(const sphg_neighbors *n, const struct sphgi_geometry *g,
+                               const sphg_geometry *given, double radius)
+{
+    if (n->graded || g->graded)
+        return n->graded && g->graded && n->mutual == (given->mutual != 0);
+    return n->radius == radius && n->radii == g->radii;
+}
 
 bool sphgi_skin_asks_the_same(const sphg_neighbors *n, const struct sphgi_geometry *g,
                               const sphg_geometry *given, double radius)
 {
     return n->kind == SPHGI_SEARCHED && n->skin > 0 && n->skin == given->skin &&
-           n->radius == radius && n->dimension == g->dimension && n->part_of == g->part_of &&
-           n->position_type == g->position_type && n->source_count == g->source_count &&
-           n->target_count == g->target_count && n->period[0] == given->period[0] &&
-           n->period[1] == given->period[1] && n->period[2] == given->period[2];
+           has_the_same_radii(n, g, given, radius) && n->dimension == g->dimension &&
+           n->part_of == g->part_of && n->position_type == g->position_type &&
+           n->source_count == g->source_count && n->target_count == g->target_count &&
+           n->period[0] == given->period[0] && n->period[1] == given->period[1] &&
+           n->period[2] == given->period[2];
 }
 
 struct moves {
@@ -89,7 +100,97 @@ static double skin_reserve(const sphg_neighbors *n, const struct sphgi_geometry 
     return (n->skin / 2 + n->radius) * unit + 2 * (then > now ? then : now);
 }
 
-bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sphgi_geometry *g)
+/* ---- Radii of their own ---------------------------------------------------------------------- */
+
+/* Lists hold r < (1 + s) max(H_i, H_j). A pair that is closer than H_i' <= H_i + g_i now was closer
+ * than H_i + g_i + m_i + m_j then, which is at most that where g + m <= s H / 2 for everybody:
+ * growth counts like a move. */
+struct shares {
+    const struct sphgi_periods *periods;
+    const void *then, *now;
+    sphg_type type;
+    atomic_int_least64_t largest; /* bits: those of numbers >= 0 rise as these do */
+};
+
+static double number_of(const struct shares *shares, const void *rows, int32_t k, int32_t number)
+{
+    const size_t at = SPHGI_ROW * (size_t)k + (size_t)number;
+    return shares->type == SPHG_F64 ? ((const double *)rows)[at]
+                                    : (double)((const float *)rows)[at];
+}
+
+/* (m + g) / H of one particle; infinite where that is no number. */
+static double share_of(const struct shares *shares, int32_t k)
+{
+    const double then = number_of(shares, shares->then, k, SPHGI_ROW - 1);
+    const double growth = number_of(shares, shares->now, k, SPHGI_ROW - 1) - then;
+    double square = 0;
+    for (int32_t a = 0; a < 3; ++a) {
+        const double period = shares->periods->length[a];
+        double move = number_of(shares, shares->now, k, a) - number_of(shares, shares->then, k, a);
+        if (period > 0 && fabs(move) > period / 2)
+            move = remainder(move, period);
+        square += move * move;
+    }
+    const double share = (sqrt(square) + (growth > 0 ? growth : 0)) / then;
+    return share < (double)INFINITY ? share : (double)INFINITY;
+}
+
+static void share_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    struct shares *shares = data;
+    double largest = 0;
+    int64_t bits;
+    (void)worker;
+    for (int32_t k = begin; k < end; ++k) {
+        const double share = share_of(shares, k);
+        largest = share > largest ? share : largest;
+    }
+    memcpy(&bits, &largest, sizeof bits);
+    int_least64_t seen = atomic_load(&shares->largest);
+    while (seen < bits && !atomic_compare_exchange_weak(&shares->largest, &seen, bits))
+        ;
+}
+
+static double largest_share(sphg_context *context, const struct sphgi_geometry *g, const void *then,
+                            const void *now, int32_t count)
+{
+    struct shares shares = {
+        .periods = &g->periods, .then = then, .now = now, .type = g->position_type};
+    atomic_store(&shares.largest, 0);
+    sphgi_parallel_for(context, share_task, &shares, count, GRAIN);
+    const int64_t bits = atomic_load(&shares.largest);
+    double largest;
+    memcpy(&largest, &bits, sizeof largest);
+    return largest;
+}
+
+/* As skin_reserve, of the smallest radius. */
+static double share_reserve(const sphg_neighbors *n, const struct sphgi_geometry *g)
+{
+    const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
+    const double then = n->sources.lattice.slack;
+    const double now = sphgi_slack_of(&g->periods, g->largest, g->position_type);
+    const double least = n->least < g->least ? n->least : g->least;
+    return n->stretch * unit + 2 * (then > now ? then : now) / least;
+}
+
+static double left_of_shares(sphg_context *context, const sphg_neighbors *n,
+                             const struct sphgi_geometry *g)
+{
+    double share = largest_share(context, g, n->sources_then.data, g->source_rows, g->source_count);
+    if (!g->part_of) {
+        const double targets =
+            largest_share(context, g, n->targets_then.data, g->target_rows, g->target_count);
+        share = targets > share ? targets : share;
+    }
+    return n->sources.lattice.top * ((n->stretch - 1) / 2 - share - share_reserve(n, g));
+}
+
+/* ---- Both ------------------------------------------------------------------------------------ */
+
+static double left_of_moves(sphg_context *context, const sphg_neighbors *n,
+                            const struct sphgi_geometry *g)
 {
     double moved = largest_move(context, g, n->sources_then.data, g->source_rows, g->source_count);
     if (!g->part_of) {
@@ -97,9 +198,17 @@ bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sph
             largest_move(context, g, n->targets_then.data, g->target_rows, g->target_count);
         moved = targets > moved ? targets : moved;
     }
-    const double left = n->skin / 2 - moved - skin_reserve(n, g);
+    return n->skin / 2 - moved - skin_reserve(n, g);
+}
+
+bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sphgi_geometry *g,
+                      double radius)
+{
+    const double left = n->graded ? left_of_shares(context, n, g) : left_of_moves(context, n, g);
     if (!(left >= 0))
         return false;
+    n->radius = radius;
+    n->least = n->graded ? g->least : radius;
     refresh_rows(context, &n->sources, g->source_rows, g->row_size);
     if (!n->same)
         refresh_rows(context, &n->targets, g->target_rows, g->row_size);
@@ -119,7 +228,8 @@ bool sphgi_skin_remember(sphg_neighbors *n, const struct sphgi_geometry *g)
         memcpy(n->sources_then.data, g->source_rows, sources * g->row_size);
     if (!g->part_of && targets)
         memcpy(n->targets_then.data, g->target_rows, targets * g->row_size);
-    const double left = n->skin / 2 - skin_reserve(n, g);
+    const double reserve = n->graded ? n->radius * share_reserve(n, g) : skin_reserve(n, g);
+    const double left = n->skin / 2 - reserve;
     n->skin_left = left > 0 ? left : 0;
     return true;
 }

@@ -8,9 +8,10 @@ bool sphgi_skin_asks_the_same(const sphg_neighbors *neighbors,
                               const struct sphgi_geometry *geometry, const sphg_geometry *given,
                               double radius);
 
-/* True: the pairs still cover everything, and the rows hold the new positions. */
+/* True: the pairs still cover everything, and the rows hold the new positions. radius: the largest
+ * there is now. */
 bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *neighbors,
-                      const struct sphgi_geometry *geometry);
+                      const struct sphgi_geometry *geometry, double radius);
 
 /* Keeps the positions that the pairs were found at, and says how far particles may move. False: out
  * of memory. */

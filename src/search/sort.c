@@ -7,7 +7,8 @@ enum {
     CHUNK_LEAST = 4096, /* particles */
     SLOTS_LEAST = 1024,
     BATCH = 256,
-    BLOCK_GRAIN = 16
+    BLOCK_GRAIN = 16,
+    PARTS = 8 /* of a cell of octaves, in which its particles follow one another */
 };
 
 /* Each chunk of particles collects the blocks it meets on its own; the results are merged in order,
@@ -89,6 +90,13 @@ static void collect_cut(const struct sort *sort, struct chunk *chunk, int32_t be
     }
 }
 
+static double number_of(const struct sort *sort, int32_t i, int32_t number)
+{
+    const size_t k = SPHGI_ROW * (size_t)i + (size_t)number;
+    return sort->type == SPHG_F64 ? ((const double *)sort->rows)[k]
+                                  : (double)((const float *)sort->rows)[k];
+}
+
 /* The same for particles of any coordinates. */
 static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t begin, int32_t count)
 {
@@ -96,15 +104,36 @@ static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t be
     for (int32_t i = begin; i < begin + count; ++i) {
         double x[3];
         int64_t cell[3];
-        for (int32_t a = 0; a < 3; ++a) {
-            const size_t k = SPHGI_ROW * (size_t)i + (size_t)a;
-            x[a] = sort->type == SPHG_F64 ? ((const double *)sort->rows)[k]
-                                          : (double)((const float *)sort->rows)[k];
-        }
+        for (int32_t a = 0; a < 3; ++a)
+            x[a] = number_of(sort, i, a);
         sphgi_cell_of(sort->lattice, x, cell);
         sort->cell[i] = (uint8_t)sphgi_local_cell(sort->lattice, cell);
         for (int32_t a = 0; a < 3; ++a)
             cell[a] >>= axis[a].shift;
+        sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
+        ++chunk->counts[sort->block[i]];
+    }
+}
+
+/* The same for particles of octaves. Those of a cell are sorted by its eighths, so that those that
+ * are searched for together are close together. */
+static void collect_octaves(const struct sort *sort, struct chunk *chunk, int32_t begin,
+                            int32_t count)
+{
+    const struct sphgi_lattice *lattice = sort->lattice;
+    for (int32_t i = begin; i < begin + count; ++i) {
+        const int32_t octave = sphgi_octave_of(lattice, number_of(sort, i, 3));
+        int64_t cell[3] = {0};
+        int32_t part = 0;
+        for (int32_t a = 0; a < lattice->dimension; ++a) {
+            const double place =
+                sphgi_place_on_axis(&lattice->axis[a], octave, number_of(sort, i, a), &cell[a]);
+            part |= (place - (double)cell[a] >= 0.5) << a;
+        }
+        sort->cell[i] = (uint8_t)(sphgi_local_cell(lattice, cell) * PARTS + part);
+        for (int32_t a = 0; a < 3; ++a)
+            cell[a] >>= lattice->axis[a].shift;
+        sphgi_raise_octave(octave, cell);
         sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
         ++chunk->counts[sort->block[i]];
     }
@@ -122,8 +151,10 @@ static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
         for (int32_t i = chunk->begin; i < chunk->end; i += BATCH) {
             const int32_t count = sphgi_min32(BATCH, chunk->end - i);
             const char *rows = (const char *)sort->rows + (size_t)i * row_size;
-            if (!sort->lattice->periodic &&
-                sort->passes->cut(&sort->cutting, rows, count, block, sort->cell + i))
+            if (sort->lattice->octaves)
+                collect_octaves(sort, chunk, i, count);
+            else if (!sort->lattice->periodic &&
+                     sort->passes->cut(&sort->cutting, rows, count, block, sort->cell + i))
                 collect_cut(sort, chunk, i, count, block);
             else
                 collect_any(sort, chunk, i, count);
@@ -262,14 +293,19 @@ static void scatter_task(void *data, int32_t begin, int32_t end, int32_t worker)
 
 /* Starts of the block's cells, of which place[] holds the sizes; these become places. Returns the
  * size of the fullest. */
-static int32_t place_cells(struct sphgi_block *block, int32_t *place, int32_t *cell_start)
+SPHGI_TEMPLATE int32_t place_cells(struct sphgi_block *block, int32_t *place, int32_t *cell_start,
+                                   int32_t parts)
 {
     int32_t next = block->first, fullest = 0;
     int32_t *start = cell_start + next;
     block->occupied = 0;
     for (int32_t c = 0; c < SPHGI_BLOCK_CELLS; ++c) {
-        const int32_t size = place[c];
-        place[c] = next;
+        int32_t size = 0;
+        for (int32_t k = c * parts; k < (c + 1) * parts; ++k) {
+            const int32_t here = place[k];
+            place[k] = next + size;
+            size += here;
+        }
         if (!size)
             continue;
         *start++ = next;
@@ -282,16 +318,18 @@ static int32_t place_cells(struct sphgi_block *block, int32_t *place, int32_t *c
     return fullest;
 }
 
-/* A counting sort by cell, and the rows follow. */
-SPHGI_TEMPLATE int32_t sort_block(const struct sort *sort, int32_t b, size_t row_size)
+/* A counting sort by cell, or by the parts of cells, and the rows follow. */
+SPHGI_TEMPLATE int32_t sort_block(const struct sort *sort, int32_t b, size_t row_size,
+                                  int32_t parts)
 {
     struct sphgi_grid *grid = sort->grid;
-    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS] = {0};
+    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS * PARTS];
+    memset(place, 0, (size_t)(SPHGI_BLOCK_CELLS * parts) * sizeof *place);
     char *rows = grid->rows.data;
     const int32_t first = grid->blocks[b].first, last = grid->blocks[b + 1].first;
     for (int32_t k = first; k < last; ++k)
         ++place[sort->sorted_cell[k]];
-    const int32_t fullest = place_cells(&grid->blocks[b], place, grid->cell_start.data);
+    const int32_t fullest = place_cells(&grid->blocks[b], place, grid->cell_start.data, parts);
     for (int32_t k = first; k < last; ++k) {
         const int32_t to = place[sort->sorted_cell[k]]++, i = sort->order[k];
         order[to] = i;
@@ -306,10 +344,15 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
     struct sort *sort = data;
     int32_t fullest = 0;
     (void)worker;
-    for (int32_t b = begin; b < end; ++b)
-        fullest = sphgi_max32(fullest, sort->type == SPHG_F64
-                                           ? sort_block(sort, b, SPHGI_ROW * sizeof(double))
-                                           : sort_block(sort, b, SPHGI_ROW * sizeof(float)));
+    for (int32_t b = begin; b < end; ++b) {
+        int32_t most;
+        if (sort->lattice->octaves)
+            most = sort_block(sort, b, SPHGI_ROW * sphgi_size_of_type(sort->type), PARTS);
+        else
+            most = sort->type == SPHG_F64 ? sort_block(sort, b, SPHGI_ROW * sizeof(double), 1)
+                                          : sort_block(sort, b, SPHGI_ROW * sizeof(float), 1);
+        fullest = sphgi_max32(fullest, most);
+    }
     int_least32_t seen = atomic_load(&sort->fullest);
     while (seen < fullest && !atomic_compare_exchange_weak(&sort->fullest, &seen, fullest))
         ;
@@ -401,5 +444,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     sphgi_parallel_for(context, cells_task, &sort, grid->block_count, BLOCK_GRAIN);
     memset((char *)grid->rows.data + n * row_size, 0, SPHGI_LANES_MOST * row_size);
     grid->fullest = (int32_t)atomic_load(&sort.fullest);
+    if (lattice->octaves)
+        sphgi_tree_build(grid);
     return SPHG_OK;
 }

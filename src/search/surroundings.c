@@ -3,13 +3,6 @@
 
 /* ---- Bars ----------------------------------------------------------------------------------- */
 
-static int32_t bits_in(uint32_t bits)
-{
-    bits -= bits >> 1 & 0x55555555u;
-    bits = (bits & 0x33333333u) + (bits >> 2 & 0x33333333u);
-    return (int32_t)(((bits + (bits >> 4)) & 0x0F0F0F0Fu) * 0x01010101u >> 24);
-}
-
 /* The particles of cell `cell` of block `block`, which may be -1: none. */
 static void range_of_cell(const struct sphgi_grid *grid, int32_t block, int32_t cell,
                           int32_t *range)
@@ -19,7 +12,7 @@ static void range_of_cell(const struct sphgi_grid *grid, int32_t block, int32_t 
         return;
     const struct sphgi_block *own = &grid->blocks[block];
     const int32_t *start = (const int32_t *)grid->cell_start.data + own->first +
-                           bits_in(own->occupied & (((uint32_t)1 << cell) - 1));
+                           sphgi_bits_in(own->occupied & (((uint32_t)1 << cell) - 1));
     range[0] = start[0];
     range[1] = start[1];
 }

@@ -1,10 +1,15 @@
 #include "corrections.h"
 #include "borrow.h"
 #include "core/kernel.h"
+#include "lane_radii.h"
 #include "quadratic.h"
 
 void sphgi_round_as_table(struct sphgi_worker *w, char *coefficients, bool wanted)
 {
+    if (w->sweep->plan->graded) {
+        sphgi_round_by_radius(w, wanted);
+        return;
+    }
     for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         const bool exact = share->mantissa == 1;
@@ -41,6 +46,13 @@ void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *colum
     w->passes->scale(w->width, 1, to, sphgi_volume_unit(w->sweep), NULL, to);
 }
 
+void sphgi_load_own_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)
+{
+    sphgi_load_volume(w, columns, to);
+    if (w->sweep->plan->graded)
+        w->passes->scale(w->width, 1, to, 1, sphgi_lane(w, w->ratio, 0), to);
+}
+
 static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verdict)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
@@ -50,10 +62,16 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
             w->passes->quotient(w->width, sphgi_lane(w, w->reduced, plan->volume_sum),
                                 sphgi_lane(w, w->reduced, plan->volume_sum + 1), w->extra);
         else
-            sphgi_load_volume(w, &plan->target_volume, w->extra);
+            sphgi_load_own_volume(w, &plan->target_volume, w->extra);
         scale = w->extra;
     }
     const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
+    if (plan->graded) {
+        const int32_t numbers = plan->dimension * (plan->dimension + 1) / 2;
+        w->passes->scale(w->width, numbers, moments, 1, sphgi_lane(w, w->inverse, 0),
+                         sphgi_lane(w, w->raw, 0));
+        moments = sphgi_lane(w, w->raw, 0);
+    }
     void *correction = sphgi_lane(w, w->coefficients, 0);
     void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;
     if (plan->quadratic)
@@ -72,7 +90,7 @@ void sphgi_self_weight(struct sphgi_worker *w, char *to)
     const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
     w->passes->fill(w->width, plan->own_set < 0 ? 0 : at_zero, to);
     if (plan->own_set >= 0 && plan->weighted) {
-        sphgi_load_volume(w, &plan->own_volume, to);
+        sphgi_load_own_volume(w, &plan->own_volume, to);
         w->passes->scale(w->width, 1, to, at_zero, NULL, to);
     }
 }
@@ -127,15 +145,19 @@ void sphgi_load_corrections(struct sphgi_worker *w)
     else
         w->passes->load_lanes(w->width, &plan->target_correction, sphgi_targets(w),
                               sphgi_lane(w, w->raw, 0));
-    sphgi_take_from_table(w->passes, w->share, w->width, plan->type, sphgi_lane(w, w->raw, 0),
-                          sphgi_lane(w, w->coefficients, 0));
+    if (plan->graded)
+        sphgi_take_by_radius(w);
+    else
+        sphgi_take_from_table(w->passes, w->share, w->width, plan->type, sphgi_lane(w, w->raw, 0),
+                              sphgi_lane(w, w->coefficients, 0));
 }
 
 void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
 {
     const int32_t d = w->sweep->plan->dimension;
     sphgi_self_weight(w, w->self);
+    sphgi_scale_by_radius(w, 1, w->self);
     for (int32_t k = 0; k < d; ++k)
         w->passes->scale(w->width, 1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)),
-                         w->inverse_h, w->self, sphgi_lane(w, gradient, k));
+                         sphgi_common(w, w->inverse_h), w->self, sphgi_lane(w, gradient, k));
 }

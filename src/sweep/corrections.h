@@ -18,6 +18,9 @@ void sphgi_round_as_table(struct sphgi_worker *worker, char *coefficients, bool 
 
 /* V / H^d of the group's targets; notes volumes that are not valid. */
 void sphgi_load_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns, char *to);
+/* The same in units of the target\'s own H^d. */
+void sphgi_load_own_volume(struct sphgi_worker *worker, const struct sphgi_columns *columns,
+                           char *to);
 
 /* Classic: w_0 of targets that are sources, else 0; and G_ii = w_0 z_k[0], d lanes. */
 void sphgi_self_weight(struct sphgi_worker *worker, char *to);

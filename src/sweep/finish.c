@@ -1,6 +1,7 @@
 #include "finish.h"
 #include "corrections.h"
 #include "core/kernel.h"
+#include "lane_radii.h"
 #include "quadratic.h"
 
 /* The target's own term of the direct form. */
@@ -20,7 +21,8 @@ static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan
         return;
     w->passes->apply(w->width, plan->dimension, field->components,
                      multiply ? w->coefficients : NULL, sphgi_lane(w, w->reduced, field->sum),
-                     w->inverse_h, w->jacobian);
+                     sphgi_common(w, w->inverse_h), w->jacobian);
+    sphgi_scale_by_radius(w, field->components * plan->dimension, w->jacobian);
     if (field->form == SPHG_DIRECT && plan->classic && plan->own_set >= 0)
         add_self_gradient(w, field);
 }
@@ -31,14 +33,15 @@ static void finish_plain(struct sphgi_worker *w, const struct sphgi_field_plan *
     const struct sphgi_plan *plan = w->sweep->plan;
     const int32_t d = plan->dimension;
     const double volume = field->antisymmetric ? sphgi_power(plan->scheme.radius, d) : 1;
-    const char *each = field->antisymmetric ? w->volume : NULL;
+    const char *each = field->antisymmetric ? w->volume : plan->graded ? w->inverse : NULL;
+    const double factor = sphgi_common(w, w->inverse_h * volume);
     if (field->sums_gradient)
         w->passes->scale(w->width, field->components * d, sphgi_lane(w, w->reduced, field->sum),
-                         w->inverse_h * volume, each, w->jacobian);
+                         factor, each, w->jacobian);
     if (field->contracts)
         w->passes->scale(w->width, field->divergence.count,
-                         sphgi_lane(w, w->reduced, field->divergence_sum), w->inverse_h * volume,
-                         each, w->contracted);
+                         sphgi_lane(w, w->reduced, field->divergence_sum), factor, each,
+                         w->contracted);
 }
 
 /* C_i sum a_j s_ij x_ij; classic: the sum is made of gradients already. */
@@ -52,6 +55,7 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
     }
     w->passes->apply(w->width, plan->dimension, 1, multiply ? w->coefficients : NULL,
                      sphgi_lane(w, w->reduced, sum), 1, to);
+    sphgi_take_side_by_radius(w, to);
 }
 
 /* What the terms of both sides are multiplied with; NULL: 1. */
@@ -129,7 +133,8 @@ static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan 
         w->passes->trace_between(w->width, plan->dimension, w->coefficients, sums, w->self);
         sums = w->self;
     }
-    w->passes->scale(w->width, 1, sums, w->inverse_h * w->inverse_h, NULL, w->contracted);
+    w->passes->scale(w->width, 1, sums, sphgi_common(w, w->inverse_h * w->inverse_h),
+                     plan->graded ? w->inverse_square : NULL, w->contracted);
     if (plan->classic && plan->own_set >= 0) {
         sphgi_self_gradient(w, w->extra);
         w->passes->add_product(w->width, plan->dimension, SPHG_VECTOR, w->extra, w->extra,
@@ -149,7 +154,7 @@ static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *
             w->passes->scale(w->width, 1, w->coefficients, 1, w->self, w->extra);
         } else {
             const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-            sphgi_load_volume(w, &plan->own_volume, w->extra);
+            sphgi_load_own_volume(w, &plan->own_volume, w->extra);
             w->passes->scale(w->width, 1, w->extra, at_zero, NULL, w->extra);
         }
         w->passes->add_outer(w->width, 1, field->components,

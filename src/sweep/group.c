@@ -3,6 +3,7 @@
 #include "clean.h"
 #include "corrections.h"
 #include "finish.h"
+#include "lane_radii.h"
 #include "sums.h"
 #include "core/view.h"
 #include <string.h>
@@ -26,6 +27,7 @@ static void put_to_work(struct sphgi_worker *w, int32_t first)
 static void begin(struct sphgi_worker *w)
 {
     put_to_work(w, w->summed);
+    sphgi_read_lane_radii(w);
     w->targets_loaded = false;
     w->tiles = 0;
     if (w->sweep->pairs)
@@ -121,6 +123,7 @@ static void run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *list
     else
         w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
+    sphgi_scale_volumes(w);
     sphgi_evaluate_tile(w);
 }
 
@@ -255,6 +258,7 @@ void sphgi_group_keep(struct sphgi_worker *w, uint32_t kept)
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
     struct sphgi_group *group = &w->group;
+    sphgi_keep_lane_radii(w, kept);
     p->pack_lanes(kept, plan->sums, sphgi_lane(w, w->reduced, 0));
     p->pack_lanes(kept, plan->target_lanes, sphgi_lane(w, w->at_target, 0));
     if (plan->adjoint || plan->transposes[1]) {
@@ -393,6 +397,7 @@ void sphgi_group_finish_from_arena(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     put_to_work(w, 0);
+    sphgi_find_lane_radii(w);
     w->targets_loaded = false;
     sphgi_load_targets(w);
     each_arena_part(w, true);

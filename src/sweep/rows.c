@@ -89,6 +89,20 @@ void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int6
                     to + (size_t)plan->density_row * array);
 }
 
+/* H of the plan over that of each source; the dummy's is 0. */
+static void fill_radii(const struct sphgi_sweep *sweep, int32_t begin, int32_t end, char *to)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const double largest = sweep->plan->scheme.radius;
+    for (int32_t k = begin; k < end; ++k, to += row_size(sweep->plan->type)) {
+        const double ratio = largest / sphgi_row_radius(n, n->sources.rows.data, k);
+        if (sweep->plan->type == SPHG_F64)
+            *(double *)(void *)to = ratio;
+        else
+            *(float *)(void *)to = (float)ratio;
+    }
+}
+
 /* ---- Packing -------------------------------------------------------------------------------- */
 
 struct packing {
@@ -108,6 +122,9 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
     (void)worker;
     sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
                     rows * size);
+    if (sweep->plan->radius_row >= 0)
+        fill_radii(sweep, begin, end,
+                   packing->rows + ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);
     if (packing->positions &&
         !sweep->position_passes->stage[type == SPHG_F64](
             n->sources.rows.data, &sweep->set->volume, sphgi_volume_unit(sweep), packing->order,

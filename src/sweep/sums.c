@@ -2,6 +2,7 @@
 #include "borrow.h"
 #include "corrections.h"
 #include "fold.h"
+#include "lane_radii.h"
 #include "pair_rows.h"
 #include "quadratic.h"
 #include "core/view.h"
@@ -97,6 +98,18 @@ static void sum_folded(struct sphgi_worker *w, int32_t number)
                           carrier ? sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]) : NULL);
 }
 
+/* sum s_ij x_ij, or of rho_j times that: what A_i is multiplied with. */
+static void sum_own_vectors(struct sphgi_worker *w, bool symmetric)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const void *density = symmetric ? w->rows[plan->density_row] : NULL;
+    char *vectors = sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]);
+    if (plan->quadratic)
+        w->passes->sum_quadratic_vectors(&w->tile, plan->dimension, density, vectors);
+    else
+        w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w), density, vectors);
+}
+
 /* Adjoint ([0]) or symmetric ([1]): all fields of that form, and what they share. */
 static void sum_transposed(struct sphgi_worker *w, bool symmetric)
 {
@@ -113,14 +126,17 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         if (field->rows)
             sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
-    if (plan->carrier[symmetric] >= 0)
-        return;
-    const void *density = symmetric ? w->rows[plan->density_row] : NULL;
-    char *vectors = sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]);
-    if (plan->quadratic)
-        w->passes->sum_quadratic_vectors(&w->tile, plan->dimension, density, vectors);
-    else
-        w->passes->sum_vectors(&w->tile, plan->dimension, vectors_of(w), density, vectors);
+    if (plan->carrier[symmetric] < 0 && !plan->graded)
+        sum_own_vectors(w, symmetric);
+}
+
+/* Where G_ji has a radius of its own, all that has ours comes first. */
+static void turn_to_other_side(struct sphgi_worker *w)
+{
+    for (int symmetric = 0; symmetric < 2; ++symmetric)
+        if (w->sweep->plan->transposes[symmetric])
+            sum_own_vectors(w, symmetric);
+    sphgi_weigh_other_side(w);
 }
 
 static void load_target(struct sphgi_worker *w, int32_t number, char *to)
@@ -185,6 +201,8 @@ static void sum_fields(struct sphgi_worker *w)
                                  subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
                                  sphgi_lane(w, w->reduced, field->value_sum + s * SPHGI_ROW));
     }
+    if (plan->radius_row >= 0)
+        turn_to_other_side(w);
     for (int symmetric = 0; symmetric < 2; ++symmetric)
         if (plan->transposes[symmetric])
             sum_transposed(w, symmetric);
@@ -201,7 +219,9 @@ static void write_pairs(struct sphgi_worker *w)
         w->passes->pair_gradients(
             &w->tile, plan->dimension, vectors_of(w),
             plan->classic || !plan->corrects ? NULL : sphgi_lane(w, w->coefficients, 0),
-            w->inverse_h);
+            sphgi_common(w, w->inverse_h));
+    if (w->sweep->pairs->gradient.count && plan->graded)
+        w->passes->scale_pairs(&w->tile, SPHGI_GX, plan->dimension, sphgi_lane(w, w->inverse, 0));
     const int32_t lanes = w->tile.spread ? w->passes->lanes : w->targets;
     for (int32_t l = 0; l < lanes; ++l)
         sphgi_write_lane(w, l, w->first + (w->tile.spread ? 0 : l));
@@ -217,8 +237,10 @@ static void weigh(struct sphgi_worker *w, int32_t count)
         p->shape_weights(&w->shape, w->arrays, count);
     if (plan->classic)
         return;
-    if (plan->wants_value || plan->mean_volume)
+    if (plan->wants_value || plan->mean_volume) {
         p->shape_values(w->arrays, count);
+        sphgi_scale_values(w);
+    }
     if (plan->mean_volume && (w->summing & SPHGI_SUM_MOMENTS))
         p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */

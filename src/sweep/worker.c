@@ -56,6 +56,11 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(jacobian, 27 * SPHGI_WIDTH, size);
     CARVE(contracted, 6 * SPHGI_WIDTH, size);
     CARVE(extra, 8 * SPHGI_WIDTH, size);
+    CARVE(ratio, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(inverse, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(factor, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
     CARVE(share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
     CARVE(hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
     CARVE(linear, 6 * lending, size);
@@ -113,6 +118,9 @@ static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
 static bool is_superset(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
+    if (sweep->plan->graded)
+        return n->kind == SPHGI_HOST_LISTS || n->skin > 0 ||
+               (n->mutual && !sweep->pairs && sweep->plan->radius_row < 0);
     return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
 }
 
@@ -141,6 +149,10 @@ static void open_scheme(struct sphgi_worker *w)
                                       .volume = w->sweep->volume,
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
+    w->gather.radii = plan->graded;
+    w->gather.all = n->mutual && (w->sweep->pairs || plan->radius_row >= 0);
+    if (plan->graded && scaled)
+        w->gather.unit = 0;
     w->gather.superset = is_superset(w->sweep);
     w->gather.guarded = is_guarded(w->sweep);
     w->shape = (struct sphgi_shape){
@@ -150,9 +162,10 @@ static void open_scheme(struct sphgi_worker *w)
         .inverse_h = scaled ? 1 : 1 / h,
         .w_scale = (by_value ? sigma / mu2 : sigma) / (plan->quadratic ? 1 : h),
         .value_scale = sigma};
+    w->factor_of_h = by_value ? sigma / mu2 : sigma;
     w->gather.target_rows = sphgi_target_row(n, 0);
-    w->threshold =
-        (struct sphgi_threshold){scheme->policy, scheme->threshold, d, plan->quadratic ? 1 : 1 / h};
+    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d,
+                                            plan->quadratic || plan->graded ? 1 : 1 / h};
     if (plan->quadratic)
         w->second = sphgi_second_of(scheme);
 }
@@ -160,8 +173,9 @@ static void open_scheme(struct sphgi_worker *w)
 bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
-    return sweep->packed && !is_guarded(sweep) && !plan->classic && !plan->quadratic &&
-           !plan->wants_value && !plan->mean_volume && (plan->differentiates || plan->computes) &&
+    return sweep->packed && plan->radius_row < 0 && !is_guarded(sweep) && !plan->classic &&
+           !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
+           (plan->differentiates || plan->computes) &&
            sweep->set->neighbors->position_type == plan->type;
 }
 

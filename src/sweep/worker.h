@@ -59,6 +59,7 @@ struct sphgi_worker {
     struct sphgi_threshold threshold;
     struct sphgi_second second;
     double inverse_h;
+    double factor_of_h; /* w_scale, times H */
     struct sphgi_tile tile;
     struct sphgi_lane_lists lists; /* of the lanes at work */
     struct sphgi_group group;
@@ -92,6 +93,8 @@ struct sphgi_worker {
     char *local_positions, *local_rows, *arrays, *ids, *clean_ids, *local_items, *waiting_ids;
     char *reduced, *at_target, *opposite, *raw, *coefficients, *lambda_min, *volume, *density;
     char *self, *zeros, *jacobian, *contracted, *extra;
+    char *ratio, *inverse, *inverse_square, *factor, *shares; /* of each lane's radius: H^d of the
+                                                                 plan over its own, 1 / H_i, ... */
     char *share_kept, *hessian; /* order 2; Laplacians stand behind the Hessians */
     char *linear, *moment_scale, *confidence, *lent_confidence, *lent; /* for lenders and ... */
     char *borrowed, *prior, *transport;                                /* ... borrowers */

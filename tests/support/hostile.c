@@ -295,6 +295,12 @@ static int spoil_numbers(victim *own, const argument *spoilt, int number, trial 
         made->expected = SPHG_ERROR_NOT_FINITE;
     if (spoilt->kind == HOSTILE_VOLUMES && !(value >= 0 && isfinite(value)))
         made->expected = SPHG_ERROR_VOLUME;
+    if (spoilt->kind == HOSTILE_RADII && !(value > smallest && isfinite(value)))
+        made->expected = SPHG_ERROR_ARGUMENT;
+    if (spoilt->kind == HOSTILE_RADII && value == 1e-30 && test_field_type(own->test) == SPHG_F32)
+        made->expected = SPHG_ERROR_ARGUMENT;
+    if (spoilt->kind == HOSTILE_RADII && value > 0 && isfinite(value))
+        made->value[0] = 0; /* so small that its powers are none */
     return 1;
 }
 
@@ -365,7 +371,7 @@ static int spoil_picked(victim *own, int number, trial *made)
 int hostile_is_about_numbers(argument_kind kind)
 {
     return kind == HOSTILE_POSITIONS || kind == HOSTILE_VOLUMES || kind == HOSTILE_OFFSETS ||
-           kind == HOSTILE_INDICES;
+           kind == HOSTILE_RADII || kind == HOSTILE_INDICES;
 }
 
 int hostile_spoil(victim *own, const probe *tested, int a, int number, trial *made)
@@ -396,6 +402,7 @@ int hostile_spoil(victim *own, const probe *tested, int a, int number, trial *ma
         return spoil_view(own, tested, spoilt, number, made);
     case HOSTILE_POSITIONS:
     case HOSTILE_VOLUMES:
+    case HOSTILE_RADII:
     case HOSTILE_NUMBERS:
         return spoil_numbers(own, spoilt, number, made);
     case HOSTILE_OFFSETS:

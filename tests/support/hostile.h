@@ -18,6 +18,7 @@ typedef enum argument_kind {
     HOSTILE_VIEW,
     HOSTILE_POSITIONS, /* the numbers behind a view */
     HOSTILE_VOLUMES,
+    HOSTILE_RADII,
     HOSTILE_NUMBERS, /* any are legal */
     HOSTILE_OFFSETS,
     HOSTILE_INDICES,

@@ -153,7 +153,8 @@ static int spoil_shape(victim *own, int number, trial *made)
         ENUM("geometry.precision", geometry.precision, 0, SPHG_F64),                               \
         ROW("geometry.skin", LENGTH, geometry.skin),                                               \
         ROW("geometry.period", LENGTH, geometry.period[1]), FREE("geometry.list_free"),            \
-        FREE("geometry.keep_weights")
+        FREE("geometry.keep_weights"), FREE("geometry.source_support"),                            \
+        FREE("geometry.target_support"), FREE("geometry.mutual")
 #define SOURCES                                                                                    \
     ROW("sources", POINTER, sources_given), ROW("sources.neighbors", BUILT, sources[0].neighbors), \
         ROW("sources.neighbors", INDICES, sources[0].neighbors),                                   \
@@ -210,8 +211,14 @@ static const probe probes_sphg_neighbors_create[] = {
 
 static const argument of_search[] = {CONTEXT, ROW("neighbors", POINTER, neighbors), SCHEME,
                                      GEOMETRY};
+static const argument of_radii[] = {
+    VIEW("geometry.source_support", geometry.source_support, REQUIRED),
+    ROW("geometry.source_support", RADII, geometry.source_support),
+    VIEW("geometry.target_support", geometry.target_support, REQUIRED),
+    ROW("geometry.target_support", RADII, geometry.target_support)};
 static const probe probes_sphg_neighbors_search[] = {
-    PROBE(NULL, call_search, of_search), PROBE(prepare_with_targets, call_search, of_search)};
+    PROBE(NULL, call_search, of_search), PROBE(prepare_with_targets, call_search, of_search),
+    PROBE(prepare_with_radii, call_search, of_radii)};
 
 static const argument of_use_lists[] = {CONTEXT,
                                         ROW("neighbors", POINTER, neighbors),

@@ -18,6 +18,8 @@ typedef struct oracle_scene {
     const double *sources, *targets;
     const double *volume, *density;               /* at sources; NULL: absent */
     const double *target_volume, *target_density; /* NULL: those of the sources if part of them */
+    const double *support; /* H_i of the targets; NULL: the scheme's for all */
+    int mutual;            /* pairs are those with r < max(H_i, H_j), of particles that are both */
 } oracle_scene;
 
 typedef struct oracle_pair {
@@ -35,11 +37,12 @@ typedef struct oracle_pair {
 typedef struct oracle_point {
     int pair_count;
     oracle_pair *pairs;
-    int has_self;  /* the target is one of the sources */
-    int undecided; /* an eigenvalue so near the threshold that rounding decides */
-    quad volume;   /* V_i, negative where absent */
-    quad scale;    /* m_ref; classic: S0 mu2 */
-    quad spread;   /* T = sum a r^2 */
+    int has_self;   /* the target is one of the sources */
+    int undecided;  /* an eigenvalue so near the threshold that rounding decides */
+    double support; /* H_i */
+    quad volume;    /* V_i, negative where absent */
+    quad scale;     /* m_ref; classic: S0 mu2 */
+    quad spread;    /* T = sum a r^2 */
     oracle_filter filter;
     int rank;
     quad correction_norm;  /* |C_i| */

@@ -174,7 +174,7 @@ static oracle_pair seen_from(const oracle_scene *scene, const oracle_point *othe
     back.j = i;
     for (int k = 0; k < scene->scheme.dimension; k++)
         back.x[k] = -pair->x[k];
-    oracle_weigh(scene, scene->volume[i], &back);
+    oracle_weigh(scene, other->support, scene->volume[i], &back);
     back.bound = oracle_gradient_of(scene, other, &back);
     return back;
 }
@@ -214,14 +214,14 @@ static quad interpolation_weight(const oracle_scene *scene, const oracle_point *
     if (oracle_is_classic(scheme->method)) {
         quad sum = point->y[0], square = 1;
         for (int k = 0; k < d; k++) {
-            quad xi = -pair->x[k] / scheme->support_radius;
+            quad xi = -pair->x[k] / point->support;
             sum += point->y[k + 1] * xi;
             square += xi * xi;
         }
         *bound = pair->spread * quad_sqrt(square) * point->y_bound;
         return pair->s * sum;
     }
-    oracle_weights at = oracle_weights_at(scheme->kernel, d, scheme->support_radius, pair->r);
+    oracle_weights at = oracle_weights_at(scheme->kernel, d, point->support, pair->r);
     *bound = scene->volume[pair->j] * (2 * at.w + pair->r * pair->r * quad_abs(at.slope));
     return scene->volume[pair->j] * at.w;
 }

@@ -43,7 +43,8 @@ static quad exact_difference(double a, double b, double rounded, double period)
     return exact;
 }
 
-static int measure(const oracle_scene *scene, const double *x, int j, oracle_pair *pair)
+static int measure(const oracle_scene *scene, const double *x, double support, int j,
+                   oracle_pair *pair)
 {
     int d = scene->scheme.dimension, single = scene->single_positions;
     const double *other = scene->sources + j * d;
@@ -52,13 +53,19 @@ static int measure(const oracle_scene *scene, const double *x, int j, oracle_pai
         double plain = single ? (double)((float)x[k] - (float)other[k]) : x[k] - other[k];
         difference[k] = shifted(plain, scene->period[k], single);
     }
-    if (!is_inside(difference, d, scene->scheme.support_radius, single))
+    if (!is_inside(difference, d, support, single))
         return 0;
     for (int k = 0; k < d; k++)
         pair->x[k] = exact_difference(x[k], other[k], difference[k], scene->period[k]);
     pair->j = j;
     pair->r = quad_norm(pair->x, d);
     return 1;
+}
+
+/* Beyond H_i a pair has no weight for the target, but it may for the source. */
+static double reach_of(const oracle_scene *scene, const oracle_point *point, int j)
+{
+    return scene->mutual ? fmax(point->support, scene->support[j]) : point->support;
 }
 
 /* A listed pair whose exact distance rounds up to H carries W = W' = 0 either way. */
@@ -68,7 +75,7 @@ static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
     point->pairs = oracle_memory((size_t)scene->source_count * sizeof *point->pairs);
     for (int j = 0; j < scene->source_count; j++) {
         oracle_pair pair = {0};
-        if (!(point->has_self && j == i) && measure(scene, x, j, &pair))
+        if (!(point->has_self && j == i) && measure(scene, x, reach_of(scene, point, j), j, &pair))
             point->pairs[point->pair_count++] = pair;
     }
 }
@@ -77,13 +84,13 @@ static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
 
 /* |f| + r |f'| of W and of W'/r. Within a few roundings of the rim the first order is not enough:
  * there the values a little further in count. */
-static void spread_weights(const oracle_scene *scene, quad r, const oracle_weights *at,
-                           quad *weight, quad *slope)
+static void spread_weights(const oracle_scene *scene, double support, quad r,
+                           const oracle_weights *at, quad *weight, quad *slope)
 {
     const sphg_scheme *scheme = &scene->scheme;
     oracle_weights inner = *at;
-    if (r > .99 * scheme->support_radius)
-        inner = oracle_weights_at(scheme->kernel, scheme->dimension, scheme->support_radius,
+    if (r > .99 * support)
+        inner = oracle_weights_at(scheme->kernel, scheme->dimension, support,
                                   r * (1 - 4 * (quad)scene->unit));
     *weight =
         quad_max(at->w + r * r * quad_abs(at->slope), inner.w + r * r * quad_abs(inner.slope));
@@ -92,14 +99,13 @@ static void spread_weights(const oracle_scene *scene, quad r, const oracle_weigh
 }
 
 /* The weight of a pair under the volume of its source. */
-void oracle_weigh(const oracle_scene *scene, quad volume, oracle_pair *pair)
+void oracle_weigh(const oracle_scene *scene, double support, quad volume, oracle_pair *pair)
 {
     const sphg_scheme *scheme = &scene->scheme;
-    oracle_weights at =
-        oracle_weights_at(scheme->kernel, scheme->dimension, scheme->support_radius, pair->r);
+    oracle_weights at = oracle_weights_at(scheme->kernel, scheme->dimension, support, pair->r);
     int has_volume = scheme->method != SPHG_MLS && scheme->method != SPHG_CMLS;
     quad v = has_volume ? volume : 1, weight_spread, slope_spread;
-    spread_weights(scene, pair->r, &at, &weight_spread, &slope_spread);
+    spread_weights(scene, support, pair->r, &at, &weight_spread, &slope_spread);
     if (oracle_is_classic(scheme->method)) {
         pair->s = v * at.w;
         pair->slope = v * at.slope;
@@ -130,7 +136,7 @@ static quad mean_volume(const oracle_scene *scene, const oracle_point *point)
 static quad reference_moment(const oracle_scene *scene, const oracle_point *point)
 {
     const sphg_scheme *scheme = &scene->scheme;
-    quad h = scheme->support_radius;
+    quad h = point->support;
     quad second = oracle_mu2(scheme->kernel, scheme->dimension) * h * h;
     if (scheme->method == SPHG_RKPM)
         return second;
@@ -236,11 +242,12 @@ typedef struct classic_sums {
     quad first[oracle_rows];
 } classic_sums;
 
-static void basis_of(const oracle_scene *scene, const oracle_pair *pair, quad *p)
+static void basis_of(const oracle_scene *scene, const oracle_point *point, const oracle_pair *pair,
+                     quad *p)
 {
     p[0] = 1;
     for (int k = 0; k < scene->scheme.dimension; k++)
-        p[k + 1] = -pair->x[k] / scene->scheme.support_radius;
+        p[k + 1] = -pair->x[k] / point->support;
 }
 
 static void sum_classic(const oracle_scene *scene, const oracle_point *point, classic_sums *sums)
@@ -250,7 +257,7 @@ static void sum_classic(const oracle_scene *scene, const oracle_point *point, cl
     for (int k = 0; k < point->pair_count; k++) {
         const oracle_pair *pair = &point->pairs[k];
         quad p[oracle_rows];
-        basis_of(scene, pair, p);
+        basis_of(scene, point, pair, p);
         for (int a = 0; a <= d; a++)
             for (int b = 0; b <= d; b++) {
                 sums->a[a][b] += pair->s * p[a] * p[b];
@@ -270,7 +277,7 @@ static void centre_moments(const oracle_scene *scene, oracle_point *point, const
         quad w = k < 0 ? point->self_weight : point->pairs[k].s;
         quad spread = k < 0 ? w : point->pairs[k].spread, square = 0;
         if (k >= 0)
-            basis_of(scene, &point->pairs[k], p);
+            basis_of(scene, point, &point->pairs[k], p);
         for (int a = 0; a < d; a++) {
             square += p[a + 1] * p[a + 1];
             for (int b = 0; b < d; b++)
@@ -303,7 +310,7 @@ static void right_side(const oracle_scene *scene, const classic_sums *sums,
 {
     int n = scene->scheme.dimension + 1;
     for (int a = 0; a < n; a++) {
-        right[a] = a == k + 1 ? 1 / (quad)scene->scheme.support_radius : 0;
+        right[a] = a == k + 1 ? 1 / (quad)point->support : 0;
         for (int b = 0; b < n; b++)
             right[a] -= sums->b[k][a][b] * point->y[b];
     }
@@ -339,7 +346,7 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
     for (int n = 0; n < point->pair_count; n++) {
         const oracle_pair *pair = &point->pairs[n];
         quad p[oracle_rows], size = 0, value = 0;
-        basis_of(scene, pair, p);
+        basis_of(scene, point, pair, p);
         for (int a = 0; a <= d; a++) {
             quad image = 0;
             value += p[a] * point->y[a];
@@ -349,7 +356,7 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
         }
         sum += pair->slope_spread * pair->r * quad_abs(value) * size;
     }
-    return sum + unit_part / scene->scheme.support_radius;
+    return sum + unit_part / point->support;
 }
 
 /* The largest |A^-1| |B_k|: what z_k answers to a change of y, however much of z_k itself cancels.
@@ -412,7 +419,7 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
     oracle_matrix inverse = {{0}};
     if (point->has_self) {
         oracle_pair self = {.j = i};
-        oracle_weigh(scene, scene->volume ? scene->volume[i] : 1, &self);
+        oracle_weigh(scene, point->support, scene->volume ? scene->volume[i] : 1, &self);
         point->self_weight = self.s;
     }
     sum_classic(scene, point, &sums);
@@ -464,7 +471,7 @@ static quad classic_gradient(const oracle_scene *scene, const oracle_point *poin
 {
     int d = scene->scheme.dimension;
     quad p[oracle_rows], value = 0;
-    basis_of(scene, pair, p);
+    basis_of(scene, point, pair, p);
     for (int a = 0; a <= d; a++)
         value += p[a] * point->y[a];
     for (int k = 0; k < d; k++) {
@@ -490,10 +497,11 @@ void oracle_solve(const oracle_scene *scene, int i, oracle_point *point)
     if (!own && point->has_self)
         own = scene->volume;
     point->volume = own ? own[i] : -1;
+    point->support = scene->support ? scene->support[i] : scene->scheme.support_radius;
     find_pairs(scene, i, point);
     for (int k = 0; k < point->pair_count; k++) {
         oracle_pair *pair = &point->pairs[k];
-        oracle_weigh(scene, scene->volume ? scene->volume[pair->j] : 1, pair);
+        oracle_weigh(scene, point->support, scene->volume ? scene->volume[pair->j] : 1, pair);
     }
     if (oracle_is_classic(scene->scheme.method))
         solve_classic(scene, i, point);

@@ -29,7 +29,7 @@ static oracle_pair seen_from_there(const oracle_scene *scene, const oracle_pair 
     back.j = i;
     for (int k = 0; k < scene->scheme.dimension; k++)
         back.x[k] = -pair->x[k];
-    oracle_weigh(scene, scene->volume[i], &back);
+    oracle_weigh(scene, scene->scheme.support_radius, scene->volume[i], &back);
     return back;
 }
 

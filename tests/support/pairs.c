@@ -33,11 +33,16 @@ scene scene_of_cloud(const test_case *test, const cloud *points)
     return particles;
 }
 
-static sphg_view positions_of(const scene *particles, int count, const double *x)
+static sphg_view numbers_of(const scene *particles, int count, int width, const double *x)
 {
     const sphg_type type = particles->is_double ? SPHG_F64 : SPHG_F32;
-    const fixture_array array = fixture_numbers(type, count, particles->dimension, x);
+    const fixture_array array = fixture_numbers(type, count, width, x);
     return fixture_view(&array);
+}
+
+static sphg_view positions_of(const scene *particles, int count, const double *x)
+{
+    return numbers_of(particles, count, particles->dimension, x);
 }
 
 sphg_geometry scene_geometry(const scene *particles)
@@ -52,6 +57,13 @@ sphg_geometry scene_geometry(const scene *particles)
     geometry.list_free = particles->list_free;
     geometry.skin = particles->skin;
     memcpy(geometry.period, particles->period, sizeof geometry.period);
+    if (particles->support)
+        geometry.source_support =
+            numbers_of(particles, particles->source_count, 1, particles->support);
+    if (particles->target_support)
+        geometry.target_support =
+            numbers_of(particles, particles->target_count, 1, particles->target_support);
+    geometry.mutual = particles->mutual;
     return geometry;
 }
 
@@ -108,13 +120,22 @@ static int is_near_double(int d, const double *difference, double support_radius
     return sum < support_radius * support_radius;
 }
 
+/* The radius that decides about a pair. */
+static double radius_of(const scene *particles, int i, int j, double support_radius)
+{
+    const double *targets = particles->targets ? particles->target_support : particles->support;
+    if (!targets || !particles->support)
+        return support_radius;
+    return particles->mutual ? fmax(targets[i], particles->support[j]) : targets[i];
+}
+
 static int is_neighbour(const scene *particles, int i, int j, double support_radius)
 {
     const int d = particles->dimension;
     const double *target = (particles->targets ? particles->targets : particles->sources) + i * d;
     const double *source = particles->sources + j * d;
-    const double far =
-        support_radius < 1e18 ? 1.5 * support_radius : INFINITY; /* whatever rounding does */
+    const double radius = radius_of(particles, i, j, support_radius);
+    const double far = radius < 1e18 ? 1.5 * radius : INFINITY; /* whatever rounding does */
     double difference[3];
     if (!particles->targets && i == j)
         return 0;
@@ -124,8 +145,8 @@ static int is_neighbour(const scene *particles, int i, int j, double support_rad
         if (fabs(difference[k]) > far)
             return 0;
     }
-    return particles->is_double ? is_near_double(d, difference, support_radius)
-                                : is_near_single(d, difference, (float)support_radius);
+    return particles->is_double ? is_near_double(d, difference, radius)
+                                : is_near_single(d, difference, (float)radius);
 }
 
 rows rows_by_brute_force(const scene *particles, double support_radius)

@@ -14,7 +14,9 @@ typedef struct scene {
     double period[3];
     double skin;
     int list_free;
-    sphg_type precision; /* of the fields; 0: as the positions */
+    sphg_type precision;              /* of the fields; 0: as the positions */
+    double *support, *target_support; /* radii of their own; NULL: one for all */
+    int mutual;
 } scene;
 
 /* So many particles at the origin, in the case's precision; and x as its positions hold it. */

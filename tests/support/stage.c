@@ -1,4 +1,5 @@
 #include "stage.h"
+#include <math.h>
 #include <string.h>
 
 /* Until the test case ends. */
@@ -7,23 +8,52 @@ void *oracle_memory(size_t bytes)
     return test_memory(bytes);
 }
 
-stage stage_of(const test_case *test, const char *name, cloud points, double support)
+/* All but the neighbours, volumes and the reference. */
+static stage set_up(const test_case *test, const char *name, cloud points, double support,
+                    random_state *random)
 {
     stage made = {.test = test, .name = name, .points = points};
-    random_state random = random_seeded(77);
-    made.scheme = fixture_scheme(test, cloud_rounded(support));
+    made.scheme = fixture_scheme(test, support);
     made.context = fixture_context();
-    made.neighbors = fixture_neighbors(made.context, test, &made.scheme, &made.points);
     oracle_scene *scene = &made.scene;
     scene->scheme = made.scheme;
     scene->unit = test_unit_roundoff(test);
     scene->single_positions = test_position_type(test) == SPHG_F32;
     scene->source_count = scene->target_count = points.count;
     scene->sources = made.points.x;
-    double *density = cloud_numbers(&points, .5, 1.5, &random);
+    double *density = cloud_numbers(&points, .5, 1.5, random);
     scene->density = density;
     made.density = fixture_numbers(test_field_type(test), points.count, 1, density);
+    return made;
+}
+
+stage stage_of(const test_case *test, const char *name, cloud points, double support)
+{
+    random_state random = random_seeded(77);
+    stage made = set_up(test, name, points, cloud_rounded(support), &random);
+    made.neighbors = fixture_neighbors(made.context, test, &made.scheme, &made.points);
     return stage_with_volumes(&made, cloud_volumes(&points, .2, &random));
+}
+
+stage stage_of_radii(const test_case *test, const char *name, cloud points, double *radii,
+                     int mutual)
+{
+    random_state random = random_seeded(78);
+    stage made = set_up(test, name, points, 0, &random);
+    double *volume = cloud_volumes(&points, .2, &random);
+    for (int i = 0; i < points.count; i++) {
+        radii[i] = cloud_rounded(radii[i]);
+        volume[i] = cloud_rounded(volume[i] * pow(radii[i] / points.spacing, points.dimension));
+    }
+    fixture_array positions = fixture_positions(test, &made.points);
+    fixture_array supports = fixture_numbers(test_position_type(test), points.count, 1, radii);
+    sphg_geometry geometry = fixture_geometry(test, &made.points, &positions);
+    geometry.source_support = fixture_view(&supports);
+    geometry.mutual = mutual;
+    made.neighbors = fixture_search(made.context, &made.scheme, &geometry);
+    made.scene.support = radii;
+    made.scene.mutual = mutual;
+    return stage_with_volumes(&made, volume);
 }
 
 stage stage_with_volumes(const stage *made, const double *volume)

@@ -19,6 +19,10 @@ typedef struct stage {
 /* Targets are all points; volumes and densities vary by a fifth. Rounds the points as the case
  * stores them. The support radius is rounded to f32. */
 stage stage_of(const test_case *test, const char *name, cloud points, double support);
+/* The same for radii of their own, a number per point, rounded to f32; mutual: as the geometry has
+ * it. */
+stage stage_of_radii(const test_case *test, const char *name, cloud points, double *radii,
+                     int mutual);
 /* The same under another policy and threshold (0: default). */
 stage stage_under(const stage *made, sphg_policy policy, double threshold);
 /* The same with other volumes. */

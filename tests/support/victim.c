@@ -53,6 +53,8 @@ static void make_inputs(victim *own)
     const int d = own->test->dimension;
     own->position_view = input(own, d, 0, 2);
     own->volume_view = input(own, 1, 0.1, 0.2);
+    own->radii = input(own, 1, 0.5, 1);
+    own->target_radii = input(own, 1, 0.5, 1);
     own->scalars = input(own, 1, -1, 1);
     own->densities = input(own, 1, 0.5, 1.5);
     own->vectors = input(own, d, -1, 1);

@@ -49,6 +49,7 @@ typedef struct victim {
     sphg_inversion wanted;
     sphg_view scalars, vectors, tensors, symmetric, squares, densities, table; /* inputs */
     sphg_view target_correction;
+    sphg_view radii, target_radii; /* of the type of positions */
     sphg_view scalar_out, vector_out, tensor_out, table_out, rank_out, lambda_out;
     sphg_view u, sigma, v;
     sphg_context *made_context;

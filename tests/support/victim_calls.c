@@ -133,6 +133,13 @@ void prepare_with_targets(victim *own)
     own->geometry.targets = own->vectors;
 }
 
+void prepare_with_radii(victim *own)
+{
+    own->geometry.targets = own->vectors;
+    own->geometry.source_support = own->radii;
+    own->geometry.target_support = own->target_radii;
+}
+
 void prepare_two_sided(victim *own)
 {
     own->field.form = SPHG_SYMMETRIC;

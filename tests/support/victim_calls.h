@@ -28,6 +28,7 @@ sphg_result call_svd(victim *own);
 void prepare_listed(victim *own);
 /* Targets apart from the sources. */
 void prepare_with_targets(victim *own);
+void prepare_with_radii(victim *own);
 /* SYMMETRIC, with tables, volumes and densities on both sides. */
 void prepare_two_sided(victim *own);
 /* DIRECT, of a vector, with all its results. */

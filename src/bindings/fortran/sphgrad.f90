@@ -145,6 +145,8 @@ module sphgrad
     integer(c_int32_t) :: list_free = 0, keep_weights = 0
     real(c_double) :: skin = 0
     real(c_double) :: period(3) = 0
+    type(sphg_view) :: source_support, target_support
+    integer(c_int32_t) :: mutual = 0
   end type sphg_geometry
 
   type, bind(c), public :: sphg_lists

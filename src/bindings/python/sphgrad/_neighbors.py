@@ -58,6 +58,9 @@ class Neighbors:
     targets   other places to sum at, apart from the sources
     period    per axis, 0 for an open one; or one number for all
     skin      find pairs up to H + skin and keep them until a particle has moved skin / 2
+    support   a radius per particle, of the positions' type, or one number; the scheme's is not read
+    target_support   the same of `targets`
+    mutual    neighbours are those with r < max(H_i, H_j), not r < H_i
     precision of fields and results; None: that of the positions. float32 beside float64 positions
     list_free keep no pairs: for one or two uses
     keep_weights   keep what a kernel gives each pair for the next sweeps (see Sources.same_volumes)
@@ -67,12 +70,14 @@ class Neighbors:
     search() takes the next step's positions; what is not given stays as it was."""
 
     def __init__(self, positions, scheme, *, own=None, targets=None, period=None, skin=0.0,
-                 precision=None, list_free=False, keep_weights=False, lists=None, context=None):
+                 precision=None, list_free=False, keep_weights=False, lists=None, support=None,
+                 target_support=None, mutual=False, context=None):
         self._destroy = None
         self.context = context if context is not None else default_context()
         self._scheme = as_scheme(scheme)
         self._options = dict(period=period, skin=skin, precision=precision, list_free=list_free,
-                             keep_weights=keep_weights)
+                             keep_weights=keep_weights, support=support,
+                             target_support=target_support, mutual=mutual)
         pointer = c.c_void_p()
         with self.context._calls() as handle:
             self.context._check(_c.functions.sphg_neighbors_create(handle, c.byref(pointer)))
@@ -101,8 +106,13 @@ class Neighbors:
             raise ValueError("the neighbours are closed")
         return self._pointer_value
 
-    def search(self, positions, *, own=None, targets=None, scheme=None):
+    def search(self, positions, *, own=None, targets=None, scheme=None, support=None,
+               target_support=None):
         """Finds the pairs of these positions, or nothing if the skin still holds. Returns self."""
+        if support is not None:
+            self._options["support"] = support
+        if target_support is not None:
+            self._options["target_support"] = target_support
         self._build(positions, own, targets, None, scheme)
         return self
 
@@ -131,6 +141,10 @@ class Neighbors:
             if not 0 <= count <= len(positions):
                 raise ValueError(f"own is {own}, must be from 0 to {len(positions)}, all positions")
             geometry.target_count = count
+        geometry.mutual = bool(self._options["mutual"])
+        for name, many in (("support", len(positions)), ("target_support", geometry.target_count)):
+            view = borrowed.input(self._options[name], many, (), positions.dtype, name)
+            setattr(geometry, "source_support" if name == "support" else name, view)
         period = self._options["period"]
         if period is not None:
             period = np.broadcast_to(np.asarray(period, np.float64), (dimension,))
@@ -140,8 +154,9 @@ class Neighbors:
     def _lists(self, lists, geometry, borrowed):
         if not isinstance(lists, Lists):
             lists = Lists(lists.indptr, lists.indices)
-        if any(self._options[name] for name in ("skin", "list_free", "keep_weights")):
-            raise ValueError("skin, list_free and keep_weights are for a search, not for lists")
+        if any(self._options[name] for name in ("skin", "list_free", "keep_weights")) or \
+                self._options["support"] is not None:
+            raise ValueError("skin, list_free, keep_weights and support are for a search, not for lists")
         offsets, array = borrowed.numbers(lists.offsets, np.int64, "offsets",
                                           geometry.target_count + 1)
         if array[0] != 0 or (len(array) > 1 and bool((array[1:] < array[:-1]).any())):
