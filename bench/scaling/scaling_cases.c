@@ -77,6 +77,17 @@ static void add_clouds(struct scaling *scaling)
     }
 }
 
+static void add_radii(struct scaling *scaling)
+{
+    static const double ratios[] = {1, 2, 8, 64};
+    for (int k = 0; k < 4; k++) {
+        struct scaling_case *one = add(scaling, "radii");
+        one->cloud.shape = CLOUD_GRADED;
+        one->cloud.ratio = ratios[k];
+        snprintf(one->label, sizeof one->label, "largest / smallest %g", ratios[k]);
+    }
+}
+
 void scaling_create_cases(struct scaling *scaling)
 {
     scaling->cases = allocate_or_exit(CASES_MOST, sizeof *scaling->cases);
@@ -86,6 +97,7 @@ void scaling_create_cases(struct scaling *scaling)
     add_neighbours(scaling, 2, "neighbours");
     add_orders(scaling);
     add_clouds(scaling);
+    add_radii(scaling);
     for (int k = 0; k < scaling->case_count; k++)
         for (int work = 0; work < SCALING_WORKS; work++)
             scaling->cases[k].time[work] = samples_create(scaling->settings.repetitions);

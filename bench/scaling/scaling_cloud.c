@@ -71,3 +71,72 @@ struct numbers cloud_positions(const struct cloud_setting *setting)
         shuffle_rows(&positions);
     return positions;
 }
+
+/* ---- Graded ---------------------------------------------------------------------------------- */
+
+/* The spacing at x, which grows ratio times over the length. */
+static double spacing_at(const struct cloud_setting *setting, double x, double length)
+{
+    return lattice_spacing * pow(setting->ratio, x / length);
+}
+
+static int32_t side_of_layer(double spacing, double length)
+{
+    return (int32_t)fmax(1, round(length / spacing));
+}
+
+/* A cube of that length holds so many. */
+static double graded_count(const struct cloud_setting *setting, double length)
+{
+    double count = 0, spacing;
+    for (double x = 0; x < length; x += spacing) {
+        spacing = spacing_at(setting, x, length);
+        count += pow(side_of_layer(spacing, length), 2);
+    }
+    return count;
+}
+
+/* The length of the cube that holds about as many particles as wanted. */
+static double graded_length(const struct cloud_setting *setting)
+{
+    double low = lattice_spacing, high = setting->ratio * lattice_spacing * setting->particles;
+    for (int k = 0; k < 60; k++) {
+        const double middle = sqrt(low * high);
+        if (graded_count(setting, middle) < setting->particles)
+            low = middle;
+        else
+            high = middle;
+    }
+    return high;
+}
+
+static void add_layer(const struct cloud_setting *setting, double x, double length, int32_t *next,
+                      struct graded_cloud *cloud)
+{
+    const double spacing = spacing_at(setting, x, length);
+    const int32_t side = side_of_layer(spacing, length);
+    const double width = length / side;
+    for (int32_t k = 0; k < side * side; k++) {
+        const int32_t i = (*next)++;
+        const double place[3] = {x, width * (k % side), width * (k / side)};
+        for (int32_t axis = 0; axis < 3; axis++)
+            numbers_set(&cloud->positions, i, axis,
+                        place[axis] + setting->jitter * spacing *
+                                          (2 * lattice_random(3 * (int64_t)i + axis) - 1));
+        numbers_set(&cloud->radii, i, 0, setting->support * spacing);
+        numbers_set(&cloud->volumes, i, 0, spacing * width * width);
+    }
+}
+
+struct graded_cloud cloud_graded(const struct cloud_setting *setting)
+{
+    const double length = graded_length(setting);
+    const int32_t count = (int32_t)graded_count(setting, length);
+    struct graded_cloud cloud = {.positions = numbers_create(SPHG_F32, count, 3),
+                                 .radii = numbers_create(SPHG_F32, count, 1),
+                                 .volumes = numbers_create(SPHG_F32, count, 1)};
+    int32_t next = 0;
+    for (double x = 0; x < length; x += spacing_at(setting, x, length))
+        add_layer(setting, x, length, &next, &cloud);
+    return cloud;
+}

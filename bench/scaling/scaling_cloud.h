@@ -11,7 +11,8 @@ enum cloud_shape {
     CLOUD_ROTATED, /* jittered, then turned against the axes */
     CLOUD_SHEETS,  /* jittered sheets of one layer, out of each other's reach */
     CLOUD_SPRAY,   /* some three neighbours each */
-    CLOUD_FAR      /* jittered, 100 000 H from the origin */
+    CLOUD_FAR,     /* jittered, 100 000 H from the origin */
+    CLOUD_GRADED   /* layers whose spacing grows along x, with a radius for each particle */
 };
 
 struct cloud_setting {
@@ -19,8 +20,16 @@ struct cloud_setting {
     int32_t dimension, particles; /* the nearest cube or square is taken */
     double support, jitter;       /* in spacings */
     bool shuffled;
+    double ratio; /* graded: of the largest spacing to the smallest */
 };
 
 /* Positions in f32, spacing lattice_spacing. */
 struct numbers cloud_positions(const struct cloud_setting *setting);
+
+/* Of a graded cloud, from the smallest spacing at x = 0 on: positions, support radii and volumes.
+ */
+struct graded_cloud {
+    struct numbers positions, radii, volumes;
+};
+struct graded_cloud cloud_graded(const struct cloud_setting *setting);
 #endif

@@ -14,7 +14,9 @@ struct scene {
     sphg_context *context;
     sphg_neighbors *neighbors;
     sphg_scheme scheme;
-    struct numbers positions, field, volume, corrections, jacobians;
+    struct numbers positions, radii, field, corrections,
+        jacobians;          /* radii: count 0, one for all */
+    struct numbers volumes; /* count 1: one for all */
 };
 
 /* v = (-y, x, 2z), in 2D (-y, 2x): numbers that are stored exactly, whatever the positions. */
@@ -32,20 +34,40 @@ static void fill_field(struct scene *scene)
         }
 }
 
+static void take_cloud(struct scene *scene)
+{
+    const struct cloud_setting *setting = &scene->one->cloud;
+    if (setting->shape == CLOUD_GRADED) {
+        const struct graded_cloud cloud = cloud_graded(setting);
+        scene->positions = cloud.positions;
+        scene->radii = cloud.radii;
+        scene->volumes = cloud.volumes;
+        scene->scheme.support_radius *= setting->ratio;
+        return;
+    }
+    scene->positions = cloud_positions(setting);
+    scene->volumes = numbers_create(SPHG_F32, 1, 1);
+    numbers_set(&scene->volumes, 0, 0, pow(lattice_spacing, setting->dimension));
+}
+
+static sphg_view volumes_of(const struct scene *scene)
+{
+    return scene->volumes.count == 1 ? sphg_same_f32(scene->volumes.data)
+                                     : numbers_view(&scene->volumes);
+}
+
 static struct scene open_scene(struct scaling_case *one)
 {
     const int32_t d = one->cloud.dimension;
     struct scene scene = {
         .one = one,
         .context = library_open(one->threads),
-        .scheme = {.dimension = d, .support_radius = one->cloud.support * lattice_spacing},
-        .positions = cloud_positions(&one->cloud)};
+        .scheme = {.dimension = d, .support_radius = one->cloud.support * lattice_spacing}};
+    take_cloud(&scene);
     const int32_t count = one->count = scene.positions.count;
     scene.field = numbers_create(SPHG_F32, count, d);
-    scene.volume = numbers_create(SPHG_F32, 1, 1);
     scene.corrections = numbers_create(SPHG_F32, count, sphg_correction_width(&scene.scheme));
     scene.jacobians = numbers_create(SPHG_F32, count, d * d);
-    numbers_set(&scene.volume, 0, 0, pow(lattice_spacing, d));
     fill_field(&scene);
     library_check(scene.context, sphg_neighbors_create(scene.context, &scene.neighbors));
     return scene;
@@ -57,20 +79,20 @@ static void close_scene(struct scene *scene)
     sphg_context_destroy(scene->context);
     numbers_destroy(&scene->positions);
     numbers_destroy(&scene->field);
-    numbers_destroy(&scene->volume);
+    numbers_destroy(&scene->volumes);
+    numbers_destroy(&scene->radii);
     numbers_destroy(&scene->corrections);
     numbers_destroy(&scene->jacobians);
 }
 
 static void run(struct scene *scene, enum scaling_work work)
 {
-    const sphg_geometry geometry = {.sources = numbers_view(&scene->positions),
-                                    .source_count = scene->positions.count,
-                                    .target_count = scene->positions.count};
-    sphg_sources sources = {.neighbors = scene->neighbors,
-                            .volume = sphg_same_f32(scene->volume.data)};
+    sphg_geometry geometry = sphg_all(numbers_view(&scene->positions), scene->positions.count);
+    sphg_sources sources = {.neighbors = scene->neighbors, .volume = volumes_of(scene)};
     const sphg_view corrections = numbers_view(&scene->corrections);
     sphg_result result = SPHG_OK;
+    if (scene->radii.count)
+        geometry.source_support = numbers_view(&scene->radii);
     if (work == SCALING_GRADIENT)
         sources.correction = corrections;
     if (work == SCALING_SEARCH)
@@ -86,8 +108,7 @@ static void run(struct scene *scene, enum scaling_work work)
 
 static void compute_ranks(struct scene *scene, uint8_t *ranks)
 {
-    const sphg_sources sources = {.neighbors = scene->neighbors,
-                                  .volume = sphg_same_f32(scene->volume.data)};
+    const sphg_sources sources = {.neighbors = scene->neighbors, .volume = volumes_of(scene)};
     library_check(scene->context,
                   sphg_correction(scene->context, &scene->scheme, &sources, NULL,
                                   numbers_view(&scene->corrections), sphg_view_u8(ranks, 1)));
