@@ -214,7 +214,7 @@ static errors errors_after(const stage *on, int passes, sphg_stats *stats)
         fixture_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < on->points.count; i++)
-                for (int c = 0; c < to[k]->width && !fixture_get(&found.borrows, i, 0); c++)
+                for (int c = 0; c < to[k]->width && fixture_get(&found.borrows, i, 0) == 0; c++)
                     fixture_put(to[k], i * to[k]->width + c, fixture_get(from[k], i, c));
         next.borrows = found.borrows;
         found = next;
