@@ -85,7 +85,7 @@ case $command in
             'scaling/cloud/thin sheets' deficient_share 0.5 1 \
             'scaling/radii/' error_max 1e-9 1e-5 'scaling/radii/' pairs_per_particle 10 60 \
             scaling/cloud/spray deficient_share 0.9 1 scaling/cloud/spray pairs_per_particle 1 3
-        [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 23 ]
+        [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 27 ]
         ! grep -q 'scaling.png' "$work/output" || [ -s "$work/scaling/scaling.png" ]
         ;;
     solver)

@@ -1,12 +1,14 @@
 /* Sums over pairs: every form, contracted to every operator, with its bound. */
 #include "oracle.h"
 #include "oracle_internal.h"
+#include "oracle_quadratic.h"
 
 struct oracle {
     oracle_scene scene;
     int point_count;
     oracle_point *points;
-    char *solved;
+    oracle_second *seconds; /* order 2 */
+    char *solved, *solved_second;
 };
 
 oracle *oracle_of(const oracle_scene *scene)
@@ -17,6 +19,8 @@ oracle *oracle_of(const oracle_scene *scene)
     size_t count = (size_t)reference->point_count;
     reference->points = oracle_memory(count * sizeof *reference->points);
     reference->solved = oracle_memory(count);
+    reference->seconds = oracle_memory(count * sizeof *reference->seconds);
+    reference->solved_second = oracle_memory(count);
     return reference;
 }
 
@@ -31,6 +35,14 @@ const oracle_point *oracle_at(oracle *reference, int i)
         oracle_solve(&reference->scene, i, &reference->points[i]);
     reference->solved[i] = 1;
     return &reference->points[i];
+}
+
+const oracle_second *oracle_second_at(oracle *reference, int i)
+{
+    if (!reference->solved_second[i])
+        oracle_solve_second(&reference->scene, oracle_at(reference, i), &reference->seconds[i]);
+    reference->solved_second[i] = 1;
+    return &reference->seconds[i];
 }
 
 /* ---- Items and operators -------------------------------------------------------------------- */

@@ -409,8 +409,7 @@ oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, 
     const oracle_point *point = oracle_at(reference, i);
     const oracle_basis of = oracle_basis_of(scene);
     const int d = of.d, widths[] = {0, 1, d, of.n, d * d}, width = widths[field->shape];
-    oracle_second second;
-    oracle_solve_second(scene, point, &second);
+    const oracle_second second = *oracle_second_at(reference, i);
     const oracle_result linear = oracle_apply(reference, field, i);
     oracle_curved found = {.undecided = second.undecided, .touched = !second.full};
     quad gradient[9][3], hessian[oracle_pairs];

@@ -31,6 +31,8 @@ quad oracle_mu4(sphg_kernel kernel, int dimension);
 /* Target i. */
 void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
                          oracle_second *second);
+/* The same, solved once. */
+const oracle_second *oracle_second_at(oracle *reference, int i);
 /* DIFFERENCE. hessian of vectors: component by component. */
 oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, int i);
 /* ADJOINT and SYMMETRIC: gradient, divergence, curl. */

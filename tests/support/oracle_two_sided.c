@@ -40,13 +40,13 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
     const oracle_basis of = oracle_basis_of(scene);
     const int d = of.d, widths[] = {0, 1, d, of.n, d * d}, width = widths[field->shape];
     const double *own = field->at_sources + i * width;
-    oracle_second second, other;
+    const oracle_second *second = oracle_second_at(reference, i);
     quad gradient[9][3] = {{0}};
-    oracle_solve_second(scene, point, &second);
-    oracle_curved found = {.undecided = second.undecided, .touched = !second.full};
+    oracle_curved found = {.undecided = second->undecided, .touched = !second->full};
     for (int k = 0; k < point->pair_count; k++) {
         oracle_pair pair = point->pairs[k], back = seen_from_there(scene, &pair, i);
         const oracle_point *there = oracle_at(reference, pair.j);
+        const oracle_second *other = oracle_second_at(reference, pair.j);
         const double *away = field->at_sources + pair.j * width;
         quad here[3], back_there[3], weights[2] = {scene->volume[i], scene->volume[pair.j]};
         if (field->form == SPHG_SYMMETRIC) {
@@ -54,9 +54,8 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
             weights[1] = weights[1] / weights[0] / ratio;
             weights[0] = ratio;
         }
-        oracle_solve_second(scene, there, &other);
-        const quad bounds[2] = {gradient_of(scene, &of, point, &second, &pair, here),
-                                gradient_of(scene, &of, there, &other, &back, back_there)};
+        const quad bounds[2] = {gradient_of(scene, &of, point, second, &pair, here),
+                                gradient_of(scene, &of, there, other, &back, back_there)};
         for (int c = 0; c < width; c++) {
             for (int a = 0; a < d; a++)
                 gradient[c][a] +=
@@ -64,8 +63,8 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
             found.gradient_bound += quad_abs(weights[0] * own[c]) * bounds[0] +
                                     quad_abs(weights[1] * away[c]) * bounds[1];
         }
-        found.touched |= !other.full;
-        found.undecided |= other.undecided;
+        found.touched |= !other->full;
+        found.undecided |= other->undecided;
     }
     oracle_contract_second(&of, field, gradient, &found);
     return found;
