@@ -299,9 +299,9 @@ typedef struct sphg_geometry {
                             anywhere: of fl(fl(x_i - x_j) + k period) the smallest counts, where
                             fmod(x, period) stands for x if |x| is beyond a period and 2^16 H
                             (f64: 2^45 H). Skins measure moves to the nearest image */
-    sphg_view source_support; /* H_j [L] > 0, search only, of the positions' type; absent: one radius,
-                                 the scheme's, which is not read else. H above is the largest then; skins
-                                 of others are in proportion, growth of H counts like a move */
+    sphg_view source_support; /* H_j [L] > 0, search only, of the positions' type; absent: all have the
+                                 scheme's radius, which is not read otherwise. H above is then the
+                                 largest; other skins are in proportion, growth of H counts as a move */
     sphg_view target_support; /* H_i of targets apart: there if the other is */
     int32_t mutual;           /* 1: j is a neighbour of i where r < max(H_i, H_j), as SYMMETRIC and ADJOINT
                                  need it; 0: where r < H_i. G_ij and units of i have H_i either way */

@@ -9,6 +9,8 @@ extern sphg_neighbors *neighbors, *in_fluid, *in_wall;
 extern sphg_scheme scheme;
 extern sphg_sources sources;
 extern sphg_geometry block;
+extern sphg_field field;
+extern sphg_request request;
 extern sphg_view positions, fluid, wall, pressure, force, gradient;
 extern sphg_view pressure_of_fluid, pressure_of_wall;
 extern double x[1000][3], v[1000][3], J[1000][3][3], table[1000][6], *px, *py, *pz, volume;
