@@ -1,4 +1,5 @@
 #include "find.h"
+#include "walk.h"
 #include <string.h>
 
 enum {

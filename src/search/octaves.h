@@ -40,6 +40,14 @@ size_t sphgi_tree_size(int32_t blocks);
 void sphgi_tree_use(struct sphgi_tree *tree, int32_t blocks, void *memory);
 void sphgi_tree_build(struct sphgi_grid *grid);
 
+/* A place as the tree has it. Far out, places that are neighbours may become one: the order stays.
+ */
+static inline int32_t sphgi_narrowed(int64_t at)
+{
+    const int64_t most = 1 << 30;
+    return (int32_t)(at < -most ? -most : at > most ? most : at);
+}
+
 /* How many octaves radii of these sizes need: no more than keys of blocks have room for, where
  * coordinates go as far as that. */
 int32_t sphgi_octaves_for(const struct sphgi_lattice *lattice, double least,
@@ -49,40 +57,5 @@ int32_t sphgi_octave_of(const struct sphgi_lattice *lattice, double radius);
 /* Key of a block of that octave from its place there, and back. */
 void sphgi_raise_octave(int32_t octave, int64_t *at);
 int32_t sphgi_lower_octave(int64_t *at);
-
-/* The runs of candidates of a few targets, octave by octave. */
-struct sphgi_span { /* of cells along an axis: two where a period parts them */
-    int32_t count;
-    int64_t low[2], high[2];
-};
-struct sphgi_walk {
-    const struct sphgi_grid *sources;
-    double low[3], high[3]; /* of the targets */
-    double reach, stretch;  /* of the targets; of the radii of others where these count, else 0 */
-    int32_t octave, part, block;
-    double octave_reach;
-    struct sphgi_span span[3];
-};
-
-void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, sphg_type type,
-                     const void *targets, int32_t count, double stretch, bool mutual);
-/* The next runs, as many as there is room for. False: there are no more. */
-bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs);
-
-/* Blocks within reach of many targets: a few of these after the other look there alone. */
-enum { SPHGI_NEAR_MOST = 256 };
-struct sphgi_near {
-    int32_t block, octave;
-    int64_t at[3];
-};
-struct sphgi_nearby {
-    int32_t count; /* -1: there are more */
-    struct sphgi_near near[SPHGI_NEAR_MOST];
-};
-/* False: there are more. */
-bool sphgi_look_nearby(struct sphgi_walk *walk, struct sphgi_nearby *nearby);
-/* The runs of some of these targets. False: there are more. */
-bool sphgi_walk_nearby(struct sphgi_walk *walk, const struct sphgi_nearby *nearby,
-                       struct sphgi_runs *runs);
 
 #endif

@@ -32,6 +32,7 @@
     /* Properties without the oracle, in units of u */                                             \
     X(linear_exactness, 32, 6.7, "times |J| / lambda_min: the condition of the moments")           \
     X(quadratic_exactness, 32, 5.1, "times the size of curvature / lambda_q, or |F|")              \
+    X(lent_by_two_sets, 2048, 369, "sums in another order, over what is left of t with lenders")   \
     X(linear_with_lenders, 4096, 604, "rounding of b2 - K^T b1 over t, slopes around 3")           \
     X(linear_momentum, 8, 1.3, "random signs: a rounding per particle, relative to sum |f|")       \
     X(angular_momentum, 8, 0.7, "relative to sum |x| |f|; C M = 1 to the condition of M")          \
