@@ -54,7 +54,7 @@ int main(void)
                                 sphg_view_f64(gradient[0], sizeof gradient[0]));
     double error = 0;
     for (int i = 0; i < COUNT; i++)
-        error = fmax(error, fabs(gradient[i][1] - 3));
+        error += fabs(gradient[i][1] - 3) / COUNT;
     const int refused = sphg_neighbors_search(context, neighbors, &wrong, &block) != SPHG_OK;
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);

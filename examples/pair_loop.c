@@ -60,7 +60,7 @@ int main(void)
                 }
                 distance += sqrt(squared);
             }
-            error = fmax(error, fabs(divergence - 3));
+            error += fabs(divergence - 3) / COUNT;
         }
         count += pairs.count;
     }

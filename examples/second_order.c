@@ -13,6 +13,12 @@ static double gradient[COUNT][3], laplacian[COUNT];
 static double lent[2][COUNT][7]; /* c and c times the Hessian: before and after a call */
 static uint8_t borrows[COUNT];   /* 1 where lenders change the result */
 
+/* NaN if one is. */
+static double larger(double p, double q)
+{
+    return p > q || isnan(p) ? p : q;
+}
+
 static double gradient_error(void)
 {
     double most = 0;
@@ -20,7 +26,7 @@ static double gradient_error(void)
         const double *p = x[i];
         const double expected[3] = {2 * p[0] + p[1], 4 * p[1] + p[0], 6 * p[2]};
         for (int k = 0; k < 3; k++)
-            most = fmax(most, fabs(gradient[i][k] - expected[k]));
+            most = larger(most, fabs(gradient[i][k] - expected[k]));
     }
     return most;
 }
@@ -61,7 +67,7 @@ int main(void)
         failed = failed || sphg_evaluate(context, &scheme, &request);
         error[call] = gradient_error();
         for (int i = 0; i < COUNT; i++)
-            curvature[call] = fmax(curvature[call], fabs(laplacian[i] - 12));
+            curvature[call] = larger(curvature[call], fabs(laplacian[i] - 12));
     }
     if (failed)
         fprintf(stderr, "%s\n", sphg_last_message(context));
@@ -70,5 +76,5 @@ int main(void)
                curvature[call]);
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
-    return failed || error[1] < .1 || error[3] > 1e-9 || curvature[3] > 1e-9;
+    return failed || error[1] < .1 || !(error[3] < 1e-9 && curvature[3] < 1e-9);
 }

@@ -161,14 +161,14 @@ static void nearest_rotation_is_proper_even_of_reflections(const test_case *test
         vector normal, product = {0};
         double worst = 0;
         cross(r + 3, r + 6, normal);
-        worst = fmax(worst, fabs(dot(r, normal) - 1)); /* det R = 1 */
+        worst = test_larger(worst, fabs(dot(r, normal) - 1)); /* det R = 1 */
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++)
-                worst = fmax(worst, fabs(dot(r + 3 * a, r + 3 * b) - (a == b)));
+                worst = test_larger(worst, fabs(dot(r + 3 * a, r + 3 * b) - (a == b)));
         for (int a = 0; a < 3; a++) /* F R^T is symmetric */
             product[a] = dot(matrices[i] + 3 * a, r + 3 * ((a + 1) % 3)) -
                          dot(matrices[i] + 3 * ((a + 1) % 3), r + 3 * a);
-        worst = fmax(worst, sqrt(dot(product, product)));
+        worst = test_larger(worst, sqrt(dot(product, product)));
         TEST_WITHIN(solver_double, worst / unit_roundoff, "polar factor");
     }
     rotations_free(&rotations);

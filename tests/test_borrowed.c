@@ -179,11 +179,11 @@ static errors errors_of(const stage *on, const curved *found)
         for (int k = 0; k < found->gradient.width; k++)
             square += pow(fixture_get(&found->gradient, i, k) - slope[k], 2);
         double *most = is_boundary(on, i) ? &worst.boundary : &worst.inside;
-        *most = fmax(*most, sqrt(square));
+        *most = test_larger(*most, sqrt(square));
         worst.mean += sqrt(square) / n;
         for (int c = 0; c < found->laplacian.width && is_boundary(on, i); c++)
-            worst.laplacian =
-                fmax(worst.laplacian, fabs(fixture_get(&found->laplacian, i, c) - laplacian[c]));
+            worst.laplacian = test_larger(
+                worst.laplacian, fabs(fixture_get(&found->laplacian, i, c) - laplacian[c]));
     }
     return worst;
 }
@@ -655,7 +655,7 @@ static double largest_step(const test_case *test, int per_axis, int along, int p
             for (int k = 0; k < width; k++) {
                 const double now = k < d ? on.gradient[i][k] : h2 * on.hessian[i][k - d] / 5;
                 if (step)
-                    worst = fmax(worst, fabs(now - before[i][k]));
+                    worst = test_larger(worst, fabs(now - before[i][k]));
                 before[i][k] = now;
             }
     }

@@ -220,7 +220,7 @@ static double steepest(const test_case *test, sphg_policy policy)
     for (int n = 1; n <= steps; n++) {
         closing_step now = step_at(test, policy, .25 * (1 - (double)n / (steps + 1)));
         double moved = distance(now.m, last.m), changed = distance(now.c, last.c);
-        worst = fmax(worst, fmax(changed - blur, 0) / moved);
+        worst = test_larger(worst, fmax(changed - blur, 0) / moved);
         last = now;
     }
     return worst;

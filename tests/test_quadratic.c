@@ -394,7 +394,7 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
             const double exact[] = {-3 * cos(3 * x[0]), -sin(x[1]), -2 * sin(2 * x[2])};
             const double trace = -cos(x[1]) + 9 * sin(3 * x[0]) - 4 * cos(2 * x[2]);
             const int inside = !is_boundary(&on, i, 2);
-            worst[inside] = fmax(worst[inside], distance_to(&found.gradient, i, exact));
+            worst[inside] = test_larger(worst[inside], distance_to(&found.gradient, i, exact));
             l = fmax(l, fabs(fixture_get(&found.laplacian, i, 0) - trace));
         }
         TEST_REQUIRE(relative(worst[0], gates[g].gradient_boundary) < 3e-4 &&
@@ -588,8 +588,8 @@ static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
         for (int a = 0; a < d; a++) {
             const double g = fixture_get(&f64, i, a);
             size = fmax(size, fabs(g));
-            worst = fmax(worst, fmax(fabs(fixture_get(&sums, i, a) - g),
-                                     fabs(fixture_get(&alone, i, a) - g)));
+            worst = test_larger(worst, fmax(fabs(fixture_get(&sums, i, a) - g),
+                                            fabs(fixture_get(&alone, i, a) - g)));
         }
     TEST_WITHIN(order_of_summation, worst / size / on.scene.unit, "gradients of pairs");
 }
@@ -641,7 +641,7 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
             for (int k = 0; k < d + curved_pairs(d); k++) {
                 const double now = k < d ? gradient[i][k] : h * h * hessian[i][k - d] / 5;
                 if (step)
-                    worst = fmax(worst, fabs(now - before[i][k]));
+                    worst = test_larger(worst, fabs(now - before[i][k]));
                 before[i][k] = now;
             }
     }

@@ -129,12 +129,6 @@ static double gradient_error(const struct numbers *jacobians, int32_t i, const d
     return sqrt(sum);
 }
 
-/* A maximum that NaN cannot slip through. */
-static double larger(double most, double value)
-{
-    return value <= most ? most : value;
-}
-
 struct study_errors study_measure(const struct study *study, enum study_field field,
                                   sphg_method method, double *gradient_errors, double *curl_errors)
 {
@@ -151,10 +145,10 @@ struct study_errors study_measure(const struct study *study, enum study_field fi
         const bool boundary = study_on_boundary(study, i);
         double *most = boundary ? &errors.boundary_max : &errors.inside_max;
         double *sum = boundary ? &errors.boundary_mean : &errors.inside_mean;
-        *most = larger(*most, error);
+        *most = numbers_larger(*most, error);
         *sum += error;
         boundary_count += boundary;
-        errors.curl_max = larger(errors.curl_max, curl);
+        errors.curl_max = numbers_larger(errors.curl_max, curl);
         if (gradient_errors)
             gradient_errors[i] = error;
         if (curl_errors)

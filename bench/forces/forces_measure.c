@@ -63,18 +63,12 @@ static void run(struct stage *stage, const struct force_case *one, int supply)
                   sphg_evaluate(stage->context, &stage->scheme[one->method], &request));
 }
 
-/* A maximum that NaN cannot slip through. */
-static double larger(double most, double value)
-{
-    return value <= most ? most : value;
-}
-
 /* div (-y, x, 2z) = 2 */
 static double divergence_error(const struct numbers *results)
 {
     double most = 0;
     for (int32_t i = 0; i < results->count; i++)
-        most = larger(most, fabs(numbers_get(results, i, 0) / 2 - 1));
+        most = numbers_larger(most, fabs(numbers_get(results, i, 0) / 2 - 1));
     return most;
 }
 
@@ -89,7 +83,7 @@ static double momentum_error(const struct numbers *results)
             sum += f;
             size += fabs(f);
         }
-        most = larger(most, fabs(sum) / size);
+        most = numbers_larger(most, fabs(sum) / size);
     }
     return most;
 }
@@ -196,7 +190,8 @@ static void measure_round(struct stage *stage, bool is_first)
             if (!is_first)
                 samples_add_since(&forces->times[k][supply], start);
             else
-                forces->error[k] = larger(forces->error[k], error_of(stage, &force_cases[k]));
+                forces->error[k] =
+                    numbers_larger(forces->error[k], error_of(stage, &force_cases[k]));
         }
 }
 

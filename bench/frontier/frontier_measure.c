@@ -118,7 +118,7 @@ static void measure_error(const struct scene *scene, struct frontier_point *poin
             squares += expected[k] * expected[k];
         }
         sum += sqrt(difference);
-        most = sqrt(difference) <= most ? most : sqrt(difference); /* NaN stays */
+        most = numbers_larger(most, sqrt(difference));
     }
     const double size = sqrt(squares / scene->particles.count);
     point->mean[field] = sum / scene->particles.count / size;

@@ -130,12 +130,6 @@ static double error_of(const double *jacobian)
     return sqrt(difference / size);
 }
 
-/* A maximum that NaN cannot slip through. */
-static double larger(double most, double value)
-{
-    return value <= most ? most : value;
-}
-
 static double supplied_error(const struct stage *stage)
 {
     double most = 0;
@@ -143,7 +137,7 @@ static double supplied_error(const struct stage *stage)
         double jacobian[9];
         for (int k = 0; k < 9; k++)
             jacobian[k] = numbers_get(&stage->jacobians, i, k);
-        most = larger(most, error_of(jacobian));
+        most = numbers_larger(most, error_of(jacobian));
     }
     return most;
 }
@@ -161,7 +155,7 @@ static double exported_error(const struct stage *stage, const struct lists_expor
                 jacobian[k] += (numbers_get(&stage->field, stage->out.indices[p], k / 3) -
                                 numbers_get(&stage->field, i, k / 3)) *
                                numbers_get(&stage->gradients, (int32_t)p, k % 3);
-        most = larger(most, error_of(jacobian));
+        most = numbers_larger(most, error_of(jacobian));
     }
     return most;
 }

@@ -17,6 +17,12 @@ double numbers_get(const struct numbers *numbers, int32_t item, int32_t componen
 void numbers_set(struct numbers *numbers, int32_t item, int32_t component, double value);
 sphg_view numbers_view(const struct numbers *numbers);
 
+/* The larger; NaN if one is NaN, so that a maximum does not forget it. */
+static inline double numbers_larger(double a, double b)
+{
+    return a != a || a > b ? a : b;
+}
+
 /* malloc that ends the program where memory runs out; free() releases it. */
 void *allocate_or_exit(size_t count, size_t size);
 #endif

@@ -145,7 +145,7 @@ static void measure_error(struct scene *scene)
         const double error = error_of(scene, i);
         one->not_finite += !isfinite(error);
         if (ranks[i] == scene->positions.width)
-            one->error = error <= one->error ? one->error : error;
+            one->error = numbers_larger(one->error, error);
         else
             deficient++;
     }

@@ -25,7 +25,7 @@ static void compare_table(const struct numbers *part, const struct numbers *full
             continue;
         const double deviation = relative_difference(part, full, i);
         result->differences++;
-        result->deviation = deviation <= result->deviation ? result->deviation : deviation;
+        result->deviation = numbers_larger(result->deviation, deviation);
     }
 }
 

@@ -81,12 +81,6 @@ static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
 
 /* ---- Comparison ------------------------------------------------------------------------------ */
 
-/* NaN is worst. */
-static double worse(double a, double b)
-{
-    return b <= a ? a : b;
-}
-
 static void note_ratio(const struct trial *trial, const oracle_result *exact, int32_t i,
                        struct stability_case *one)
 {
@@ -95,7 +89,7 @@ static void note_ratio(const struct trial *trial, const oracle_result *exact, in
         found[k] = numbers_get(&trial->jacobians[TRIAL_RANDOM], i, k);
     const double ratio = oracle_ratio(9, found, exact->gradient, exact->bound);
     double *worst = exact->touched ? &one->ratio_touched : &one->ratio_full;
-    *worst = worse(*worst, ratio);
+    *worst = numbers_larger(*worst, ratio);
 }
 
 static void note_condition(const oracle_point *point, struct stability_case *one)

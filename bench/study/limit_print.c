@@ -93,7 +93,7 @@ static void print_packed(const struct limit *limit)
         double worst = 0;
         for (int work = 0; work < LIMIT_WORKS; work++) {
             const double deviation = limit->times[set][work].deviation;
-            worst = deviation <= worst ? worst : deviation;
+            worst = numbers_larger(worst, deviation);
         }
         printf("%s%s: %.1f pairs in %d vectors a target, %.0f kB, off double by %.1e\n",
                set ? "           " : "", limit->sets[set]->name, limit->packed_pairs[set],

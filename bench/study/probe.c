@@ -202,7 +202,7 @@ double probe_matrix_deviation(const struct probe *probe, sphg_context *context)
                                            sphg_view_u8(ranks, 1)));
     for (int32_t i = 0; i < probe->count; i++) {
         const double deviation = ranks[i] == 3 ? matrix_deviation(probe, corrections[i], i) : 0;
-        most = deviation <= most ? most : deviation;
+        most = numbers_larger(most, deviation);
     }
     sphg_neighbors_destroy(neighbors);
     free(corrections);

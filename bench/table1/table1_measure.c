@@ -127,7 +127,7 @@ static double largest_error(const struct bench *bench, sphg_method method)
         if (method != SPHG_PLAIN && bench->ranks[i] < bench->table->particles.dimension)
             continue;
         const double error = linear_field_error(&bench->jacobians, i);
-        most = error <= most ? most : error;
+        most = numbers_larger(most, error);
     }
     return most < 0 ? NAN : most;
 }

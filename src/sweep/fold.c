@@ -118,7 +118,10 @@ void sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_p
                      const int32_t *order, int64_t begin, int64_t end, char *to, size_t array)
 {
     const size_t lanes = (size_t)sweep->passes->lanes;
-    struct folding f = {.sweep = sweep, .field = field};
+    struct folding f;
+    f.sweep = sweep;
+    f.field = field;
+    memset(f.b, 0, sizeof f.b); /* what is behind the last number of a row */
     struct sphgi_columns rows[3];
     for (int32_t k = 0; k < field->folded_rows; ++k)
         rows[k] =

@@ -60,6 +60,12 @@ sphg_isa test_isa(void);
  * one case is always run. True when that is asked for: a case may then be smaller, too. */
 int test_is_shared(void);
 
+/* The larger; NaN if one is NaN, which fmax would pass over. */
+static inline double test_larger(double a, double b)
+{
+    return a != a || a > b ? a : b;
+}
+
 /* Which of the targets that stand beside the reference are taken: each one; or, where the run is
  * shared or slowed by what watches it, every third. The reference is what takes the time, and it
  * says the same in each build. */
