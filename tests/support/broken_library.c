@@ -1,9 +1,10 @@
 /* Stands before the library (LD_PRELOAD) and spoils what corrected methods find, as BROKEN_LIBRARY
  * says: "zero", "minus" (the other sign), "late" (what the call before wrote to this place, at
- * first 0), "1.01" (times that), "random" (1e-6 of each number) or "none". Gates of scenes that
- * hold all the same would say nothing about the library. Values, which linearised methods do not
- * correct, densities and plain SPH stay. */
+ * first 0), "1.01" (times that), "random" (1e-6 of each number), "hole" (item 3 of each result is
+ * NaN) or "none". Gates of scenes that hold all the same would say nothing about the library.
+ * Values, which linearised methods do not correct, densities and plain SPH stay. */
 #include <dlfcn.h>
+#include <math.h>
 #include <sphgrad/sphgrad.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,14 +20,14 @@ static double noise(void)
 /* The letter that the word begins with. */
 static int how(void)
 {
-    static const char *const words[] = {"zero", "minus", "late", "1.01", "random", "none"};
+    static const char *const words[] = {"zero", "minus", "late", "1.01", "random", "hole", "none"};
     static int letter;
     const char *word = getenv("BROKEN_LIBRARY");
-    for (int k = 0; !letter && word && k < 6; k++)
+    for (int k = 0; !letter && word && k < 7; k++)
         if (strcmp(word, words[k]) == 0)
             letter = *word;
     if (!letter) {
-        fprintf(stderr, "BROKEN_LIBRARY is to be zero, minus, late, 1.01, random or none\n");
+        fprintf(stderr, "BROKEN_LIBRARY is to be zero, minus, late, 1.01, random, hole or none\n");
         abort();
     }
     return letter;
@@ -71,6 +72,8 @@ static double spoiled(const void *place, double value)
         return late(place, value);
     case '1':
         return 1.01 * value;
+    case 'h':
+        return NAN;
     case 'r':
         return value * (1 + 1e-6 * noise());
     default:
@@ -103,6 +106,8 @@ static void spoil_number(const sphg_view *view, const void *part, int32_t item, 
     char *start = (char *)(uintptr_t)part + item * view->stride;
     double *wide = (double *)(void *)start + number;
     float *narrow = (float *)(void *)start + number;
+    if (how() == 'h' && item != 3)
+        return;
     if (view->type == SPHG_F64)
         *wide = spoiled(wide, *wide);
     else
