@@ -64,3 +64,19 @@ void sphgi_shares_at(const struct sphgi_plan *plan, double radius,
         shares[2] = share_of(scales.value / h / h, pairs + d * pairs, width - pairs - d * pairs);
     }
 }
+
+/* Products of the offsets have the moments m4 (2 I + 1 1^T) in a full neighbourhood, which
+ * whitening turns into the unit matrix. */
+struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme)
+{
+    const int32_t d = scheme->dimension;
+    const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
+    const double m4 = scheme->method == SPHG_KGC ? mu2 : sphgi_kernel_mu4(scheme->kernel, d) / mu2;
+    const double deviator = 1 / sqrt(2 * m4), whole = 1 / sqrt((d + 2) * m4);
+    return (struct sphgi_second){.policy = scheme->policy,
+                                 .eps = scheme->threshold / 10,
+                                 .high = scheme->threshold,
+                                 .off = 1 / sqrt(m4),
+                                 .diagonal = deviator,
+                                 .trace = (whole - deviator) / d};
+}

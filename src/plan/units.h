@@ -24,4 +24,7 @@ void sphgi_shares_at(const struct sphgi_plan *plan, double radius,
 /* Tables are in units of H; else the factor is 1. */
 bool sphgi_has_units(const struct sphgi_scheme *scheme);
 
+/* Of order 2: what its second block is shifted and scaled by. */
+struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme);
+
 #endif

@@ -74,8 +74,8 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
     const size_t position = SPHGI_ROW * sphgi_size_of_type(n->position_type);
     const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
     const int32_t *order = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
-    char *positions = w->local_positions + (size_t)at * position;
-    int32_t *items = (int32_t *)(void *)w->local_items + at;
+    char *positions = w->rows.positions + (size_t)at * position;
+    int32_t *items = w->rows.own_items + at;
     uint32_t rows[SPHGI_CHUNK];
     const int32_t used = number_copies(w, ids, count, at, rows);
     for (int32_t k = 0; k < used; ++k) {
@@ -86,6 +86,6 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
     if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
             positions, &sweep->set->volume, sphgi_volume_unit(sweep), items, 0, used, positions))
         w->tally->bad_volume = true;
-    sphgi_fill_rows(sweep, items, 0, used, w->local_rows + (size_t)at * row,
+    sphgi_fill_rows(sweep, items, 0, used, w->rows.numbers + (size_t)at * row,
                     (size_t)(SPHGI_TILE + 1) * row);
 }

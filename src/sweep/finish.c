@@ -1,15 +1,15 @@
 #include "finish.h"
-#include "corrections.h"
 #include "core/kernel.h"
 #include "lane_radii.h"
+#include "own.h"
 #include "quadratic.h"
 
 /* The target's own term of the direct form. */
 static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     sphgi_self_gradient(w, w->extra);
-    w->passes->add_outer(w->width, w->sweep->plan->dimension, field->components,
-                         sphgi_lane(w, w->at_target, field->at_target), w->extra, NULL,
+    w->passes->add_outer(w->batch.width, w->sweep->plan->dimension, field->components,
+                         sphgi_lane(w, w->own.field, field->at_target), w->extra, NULL,
                          w->jacobian);
 }
 
@@ -19,7 +19,7 @@ static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan
     const bool multiply = plan->corrects && !plan->classic;
     if (!field->sums_gradient)
         return;
-    w->passes->apply(w->width, plan->dimension, field->components,
+    w->passes->apply(w->batch.width, plan->dimension, field->components,
                      multiply ? w->coefficients : NULL, sphgi_lane(w, w->reduced, field->sum),
                      sphgi_common(w, w->inverse_h), w->jacobian);
     sphgi_scale_by_radius(w, field->components * plan->dimension, w->jacobian);
@@ -33,13 +33,15 @@ static void finish_plain(struct sphgi_worker *w, const struct sphgi_field_plan *
     const struct sphgi_plan *plan = w->sweep->plan;
     const int32_t d = plan->dimension;
     const double volume = field->antisymmetric ? sphgi_power(plan->scheme.radius, d) : 1;
-    const char *each = field->antisymmetric ? w->volume : plan->graded ? w->inverse : NULL;
+    const char *each = field->antisymmetric ? w->own.volume
+                       : plan->graded       ? w->radii.inverse
+                                            : NULL;
     const double factor = sphgi_common(w, w->inverse_h * volume);
     if (field->sums_gradient)
-        w->passes->scale(w->width, field->components * d, sphgi_lane(w, w->reduced, field->sum),
-                         factor, each, w->jacobian);
+        w->passes->scale(w->batch.width, field->components * d,
+                         sphgi_lane(w, w->reduced, field->sum), factor, each, w->jacobian);
     if (field->contracts)
-        w->passes->scale(w->width, field->divergence.count,
+        w->passes->scale(w->batch.width, field->divergence.count,
                          sphgi_lane(w, w->reduced, field->divergence_sum), factor, each,
                          w->contracted);
 }
@@ -53,7 +55,7 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
         sphgi_apply_to_vectors(w, sum, to);
         return;
     }
-    w->passes->apply(w->width, plan->dimension, 1, multiply ? w->coefficients : NULL,
+    w->passes->apply(w->batch.width, plan->dimension, 1, multiply ? w->coefficients : NULL,
                      sphgi_lane(w, w->reduced, sum), 1, to);
     sphgi_take_side_by_radius(w, to);
 }
@@ -78,15 +80,15 @@ static struct sides sides_of(struct sphgi_worker *w, bool symmetric)
     if (symmetric) {
         char *ratio = sphgi_lane(w, w->extra, 4), *inverse = sphgi_lane(w, w->extra, 5);
         if (!volume_inside)
-            p->quotient(w->width, w->density, w->volume, ratio);
-        p->quotient(w->width, NULL, w->density, inverse);
-        sides.other = volume_inside ? w->density : ratio;
+            p->quotient(w->batch.width, w->own.density, w->own.volume, ratio);
+        p->quotient(w->batch.width, NULL, w->own.density, inverse);
+        sides.other = volume_inside ? w->own.density : ratio;
         sides.own = inverse;
         sides.factor = w->inverse_h;
     } else {
-        sides.own = volume_inside ? NULL : w->volume;
+        sides.own = volume_inside ? NULL : w->own.volume;
         sides.factor = w->inverse_h * sphgi_power(plan->scheme.radius, plan->dimension);
-        sides.each = volume_inside ? w->volume : NULL;
+        sides.each = volume_inside ? w->own.volume : NULL;
     }
     return sides;
 }
@@ -98,18 +100,18 @@ static void join_sides(struct sphgi_worker *w, const struct sphgi_field_plan *fi
     const struct sphgi_passes *p = w->passes;
     const int32_t d = w->sweep->plan->dimension;
     const int32_t count = divergence ? field->divergence.count : field->components * d;
-    const char *own = sphgi_lane(w, w->at_target, field->at_target);
+    const char *own = sphgi_lane(w, w->own.field, field->at_target);
     char *to = divergence ? w->contracted : w->jacobian;
-    p->scale(w->width, count,
+    p->scale(w->batch.width, count,
              sphgi_lane(w, w->reduced, divergence ? field->divergence_sum : field->sum),
              sides->table, NULL, to);
     if (sides->other)
-        p->scale(w->width, count, to, 1, sides->other, to);
+        p->scale(w->batch.width, count, to, 1, sides->other, to);
     if (divergence)
-        p->add_product(w->width, d, field->shape, own, w->extra, sides->own, to);
+        p->add_product(w->batch.width, d, field->shape, own, w->extra, sides->own, to);
     else
-        p->add_outer(w->width, d, field->components, own, w->extra, sides->own, to);
-    p->scale(w->width, count, to, sides->factor, sides->each, to);
+        p->add_outer(w->batch.width, d, field->components, own, w->extra, sides->own, to);
+    p->scale(w->batch.width, count, to, sides->factor, sides->each, to);
 }
 
 static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_plan *field)
@@ -130,17 +132,17 @@ static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan 
     const struct sphgi_plan *plan = w->sweep->plan;
     const char *sums = sphgi_lane(w, w->reduced, field->square_sum);
     if (sphgi_square_sums(plan) > 1) {
-        w->passes->trace_between(w->width, plan->dimension, w->coefficients, sums, w->self);
+        w->passes->trace_between(w->batch.width, plan->dimension, w->coefficients, sums, w->self);
         sums = w->self;
     }
-    w->passes->scale(w->width, 1, sums, sphgi_common(w, w->inverse_h * w->inverse_h),
-                     plan->graded ? w->inverse_square : NULL, w->contracted);
+    w->passes->scale(w->batch.width, 1, sums, sphgi_common(w, w->inverse_h * w->inverse_h),
+                     plan->graded ? w->radii.inverse_square : NULL, w->contracted);
     if (plan->classic && plan->own_set >= 0) {
         sphgi_self_gradient(w, w->extra);
-        w->passes->add_product(w->width, plan->dimension, SPHG_VECTOR, w->extra, w->extra,
-                               sphgi_lane(w, w->at_target, field->at_target), w->contracted);
+        w->passes->add_product(w->batch.width, plan->dimension, SPHG_VECTOR, w->extra, w->extra,
+                               sphgi_lane(w, w->own.field, field->at_target), w->contracted);
     }
-    w->passes->store_lanes(w->targets, &field->square, sphgi_targets(w), w->contracted,
+    w->passes->store_lanes(w->batch.targets, &field->square, sphgi_targets(w), w->contracted,
                            field->accumulate);
 }
 
@@ -151,30 +153,31 @@ static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *
     if (plan->own_set >= 0) {
         if (plan->classic) {
             sphgi_self_weight(w, w->self);
-            w->passes->scale(w->width, 1, w->coefficients, 1, w->self, w->extra);
+            w->passes->scale(w->batch.width, 1, w->coefficients, 1, w->self, w->extra);
         } else {
             const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
             sphgi_load_own_volume(w, &plan->own_volume, w->extra);
-            w->passes->scale(w->width, 1, w->extra, at_zero, NULL, w->extra);
+            w->passes->scale(w->batch.width, 1, w->extra, at_zero, NULL, w->extra);
         }
-        w->passes->add_outer(w->width, 1, field->components,
-                             sphgi_lane(w, w->at_target, field->at_target), w->extra, NULL, value);
+        w->passes->add_outer(w->batch.width, 1, field->components,
+                             sphgi_lane(w, w->own.field, field->at_target), w->extra, NULL, value);
     }
-    w->passes->store_lanes(w->targets, &field->value, sphgi_targets(w), value, field->accumulate);
+    w->passes->store_lanes(w->batch.targets, &field->value, sphgi_targets(w), value,
+                           field->accumulate);
 }
 
 static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     char *divergence = w->contracted, *curl = sphgi_lane(w, w->contracted, 3);
-    w->passes->contract(w->width, plan->dimension, field->shape, w->jacobian,
+    w->passes->contract(w->batch.width, plan->dimension, field->shape, w->jacobian,
                         field->divergence.count && !field->contracts ? divergence : NULL,
                         field->curl.count ? curl : NULL);
     const struct sphgi_columns *columns[3] = {&field->gradient, &field->divergence, &field->curl};
     const char *lanes[3] = {w->jacobian, divergence, curl};
     for (int32_t k = 0; k < 3; ++k)
         if (columns[k]->count)
-            w->passes->store_lanes(w->targets, columns[k], sphgi_targets(w), lanes[k],
+            w->passes->store_lanes(w->batch.targets, columns[k], sphgi_targets(w), lanes[k],
                                    field->accumulate);
 }
 

@@ -1,6 +1,6 @@
 #include "fold.h"
 #include "core/view.h"
-#include "corrections.h"
+#include "table.h"
 #include <string.h>
 
 /* As many sources as a group has targets, [number][SPHGI_WIDTH] of either type. */

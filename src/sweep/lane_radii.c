@@ -16,10 +16,10 @@ static void put_all(const struct sphgi_worker *w, char *base, const double *x)
 {
     char *at = sphgi_lane(w, base, 0);
     if (w->sweep->plan->type == SPHG_F64)
-        for (int32_t l = 0; l < w->width; ++l)
+        for (int32_t l = 0; l < w->batch.width; ++l)
             ((double *)(void *)at)[l] = x[l];
     else
-        for (int32_t l = 0; l < w->width; ++l)
+        for (int32_t l = 0; l < w->batch.width; ++l)
             ((float *)(void *)at)[l] = (float)x[l];
 }
 
@@ -31,17 +31,17 @@ static void put_units(struct sphgi_worker *w, const double *radius)
     const bool with_volume = plan->scheme.method != SPHG_MLS, three = plan->dimension == 3;
     const double largest = plan->scheme.radius, factor_of_h = w->factor_of_h;
     double ratio[SPHGI_WIDTH], inverse[SPHGI_WIDTH], square[SPHGI_WIDTH], factor[SPHGI_WIDTH];
-    for (int32_t l = 0; l < w->width; ++l) {
+    for (int32_t l = 0; l < w->batch.width; ++l) {
         const double one = largest / radius[l], two = one * one;
         ratio[l] = three ? two * one : two;
         inverse[l] = 1 / radius[l];
         square[l] = inverse[l] * inverse[l];
         factor[l] = factor_of_h / radius[l] * (with_volume ? ratio[l] : 1);
     }
-    put_all(w, w->ratio, ratio);
-    put_all(w, w->inverse, inverse);
-    put_all(w, w->inverse_square, square);
-    put_all(w, w->factor, factor);
+    put_all(w, w->radii.ratio, ratio);
+    put_all(w, w->radii.inverse, inverse);
+    put_all(w, w->radii.inverse_square, square);
+    put_all(w, w->radii.factor, factor);
 }
 
 /* A table's units, as sphgi_shares_of has them, lane by lane: mantissa and two powers of each. */
@@ -50,9 +50,9 @@ static void put_shares(struct sphgi_worker *w, int32_t lane, double radius)
     struct sphgi_share share[SPHGI_SHARES];
     sphgi_shares_at(w->sweep->plan, radius, share);
     for (int32_t k = 0; k < SPHGI_SHARES && share[k].count; ++k) {
-        put(w, w->shares, 3 * k, lane, share[k].mantissa);
-        put(w, w->shares, 3 * k + 1, lane, share[k].power[0]);
-        put(w, w->shares, 3 * k + 2, lane, share[k].power[1]);
+        put(w, w->radii.shares, 3 * k, lane, share[k].mantissa);
+        put(w, w->radii.shares, 3 * k + 1, lane, share[k].power[0]);
+        put(w, w->radii.shares, 3 * k + 2, lane, share[k].power[1]);
     }
 }
 
@@ -61,14 +61,14 @@ static void read_radii(struct sphgi_worker *w, const int32_t *places)
     const sphg_neighbors *n = w->sweep->set->neighbors;
     const char *rows = sphgi_target_row(n, 0);
     double radius[SPHGI_WIDTH];
-    for (int32_t l = 0; l < w->width; ++l)
+    for (int32_t l = 0; l < w->batch.width; ++l)
         radius[l] = sphgi_row_radius(n, rows, places[l]);
     put_units(w, radius);
-    for (int32_t l = 0; sphgi_has_units(&w->sweep->plan->scheme) && l < w->width; ++l)
+    for (int32_t l = 0; sphgi_has_units(&w->sweep->plan->scheme) && l < w->batch.width; ++l)
         put_shares(w, l, radius[l]);
     if (!w->sweep->plan->classic) {
-        w->shape.inverse_lanes = sphgi_lane(w, w->inverse, 0);
-        w->shape.factor_lanes = sphgi_lane(w, w->factor, 0);
+        w->shape.inverse_lanes = sphgi_lane(w, w->radii.inverse, 0);
+        w->shape.factor_lanes = sphgi_lane(w, w->radii.factor, 0);
     }
 }
 
@@ -80,13 +80,14 @@ void sphgi_read_lane_radii(struct sphgi_worker *w)
 
 void sphgi_keep_lane_radii(struct sphgi_worker *w, uint32_t kept)
 {
-    char *const each[] = {w->ratio, w->inverse, w->inverse_square, w->factor};
+    char *const each[] = {w->radii.ratio, w->radii.inverse, w->radii.inverse_square,
+                          w->radii.factor};
     if (!w->sweep->plan->graded)
         return;
     for (int32_t k = 0; k < 4; ++k)
         w->passes->pack_lanes(kept, 1, sphgi_lane(w, each[k], 0));
     if (sphgi_has_units(&w->sweep->plan->scheme))
-        w->passes->pack_lanes(kept, 3 * SPHGI_SHARES, sphgi_lane(w, w->shares, 0));
+        w->passes->pack_lanes(kept, 3 * SPHGI_SHARES, sphgi_lane(w, w->radii.shares, 0));
 }
 
 void sphgi_find_lane_radii(struct sphgi_worker *w)
@@ -96,7 +97,7 @@ void sphgi_find_lane_radii(struct sphgi_worker *w)
     int32_t places[SPHGI_WIDTH];
     if (!w->sweep->plan->graded)
         return;
-    for (int32_t l = 0; l < w->width; ++l)
+    for (int32_t l = 0; l < w->batch.width; ++l)
         places[l] = n->kind == SPHGI_HOST_LISTS ? sphgi_targets(w)[l] : place[sphgi_targets(w)[l]];
     read_radii(w, places);
 }
@@ -110,48 +111,49 @@ void sphgi_scale_volumes(struct sphgi_worker *w)
         return;
     if (!w->sweep->volumes)
         w->passes->fill(w->tile.steps * w->passes->lanes, w->sweep->volume,
-                        w->arrays + SPHGI_V * SPHGI_TILE * size);
-    w->passes->scale_pairs(&w->tile, SPHGI_V, 1, sphgi_lane(w, w->ratio, 0));
+                        (char *)w->tile.arrays + SPHGI_V * SPHGI_TILE * size);
+    w->passes->scale_pairs(&w->tile, SPHGI_V, 1, sphgi_lane(w, w->radii.ratio, 0));
 }
 
 void sphgi_scale_values(struct sphgi_worker *w)
 {
     if (w->sweep->plan->graded)
-        w->passes->scale_pairs(&w->tile, SPHGI_PHI, 1, sphgi_lane(w, w->ratio, 0));
+        w->passes->scale_pairs(&w->tile, SPHGI_PHI, 1, sphgi_lane(w, w->radii.ratio, 0));
 }
 
 void sphgi_scale_by_radius(struct sphgi_worker *w, int32_t count, char *numbers)
 {
     if (w->sweep->plan->graded)
-        w->passes->scale(w->width, count, numbers, 1, sphgi_lane(w, w->inverse, 0), numbers);
+        w->passes->scale(w->batch.width, count, numbers, 1, sphgi_lane(w, w->radii.inverse, 0),
+                         numbers);
 }
 
 void sphgi_take_side_by_radius(struct sphgi_worker *w, char *vectors)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     if (plan->graded)
-        w->passes->scale(w->width, plan->dimension, vectors, plan->scheme.radius,
-                         sphgi_lane(w, w->inverse, 0), vectors);
+        w->passes->scale(w->batch.width, plan->dimension, vectors, plan->scheme.radius,
+                         sphgi_lane(w, w->radii.inverse, 0), vectors);
 }
 
 void sphgi_weigh_other_side(struct sphgi_worker *w)
 {
     struct sphgi_shape shape = w->shape;
     shape.inverse_lanes = shape.factor_lanes = NULL;
-    w->passes->shape_other(&shape, &w->tile, w->rows[w->sweep->plan->radius_row]);
+    w->passes->shape_other(&shape, &w->tile, w->rows.at[w->sweep->plan->radius_row]);
 }
 
 /* ---- Tables --------------------------------------------------------------------------------- */
 
 static const char *unit_of(const struct sphgi_worker *w, int32_t share, int32_t which)
 {
-    return sphgi_lane(w, w->shares, 3 * share + which);
+    return sphgi_lane(w, w->radii.shares, 3 * share + which);
 }
 
 static void divide(struct sphgi_worker *w, const struct sphgi_share *share, int32_t k)
 {
     for (int32_t c = share->first; c < share->first + share->count; ++c)
-        w->passes->quotient(w->width, sphgi_lane(w, w->raw, c), unit_of(w, k, 0),
+        w->passes->quotient(w->batch.width, sphgi_lane(w, w->raw, c), unit_of(w, k, 0),
                             sphgi_lane(w, w->coefficients, c));
 }
 
@@ -162,11 +164,12 @@ void sphgi_round_by_radius(struct sphgi_worker *w, bool wanted)
         const struct sphgi_share *share = &w->share[k];
         char *ours = sphgi_lane(w, w->coefficients, share->first);
         char *raw = sphgi_lane(w, w->raw, share->first);
-        w->passes->scale(w->width, share->count, ours, 1, units ? unit_of(w, k, 0) : NULL, raw);
+        w->passes->scale(w->batch.width, share->count, ours, 1, units ? unit_of(w, k, 0) : NULL,
+                         raw);
         if (units)
             divide(w, share, k);
         for (int32_t p = 1; units && wanted && p < 3; ++p)
-            w->passes->scale(w->width, share->count, raw, 1, unit_of(w, k, p), raw);
+            w->passes->scale(w->batch.width, share->count, raw, 1, unit_of(w, k, p), raw);
     }
 }
 
@@ -177,13 +180,13 @@ void sphgi_take_by_radius(struct sphgi_worker *w)
         const struct sphgi_share *share = &w->share[k];
         char *raw = sphgi_lane(w, w->raw, share->first);
         for (int32_t p = 1; units && p < 3; ++p) {
-            w->passes->quotient(w->width, NULL, unit_of(w, k, p), w->extra);
-            w->passes->scale(w->width, share->count, raw, 1, w->extra, raw);
+            w->passes->quotient(w->batch.width, NULL, unit_of(w, k, p), w->extra);
+            w->passes->scale(w->batch.width, share->count, raw, 1, w->extra, raw);
         }
         if (units)
             divide(w, share, k);
         else
-            w->passes->scale(w->width, share->count, raw, 1, NULL,
+            w->passes->scale(w->batch.width, share->count, raw, 1, NULL,
                              sphgi_lane(w, w->coefficients, share->first));
     }
 }

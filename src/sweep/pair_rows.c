@@ -4,7 +4,7 @@
  * Returns how many. */
 static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t *at, uint32_t *ids)
 {
-    const int32_t lanes = w->passes->lanes, count = w->pairs[lane];
+    const int32_t lanes = w->passes->lanes, count = w->batch.pairs[lane];
     const uint32_t *id = w->tile.ids + lane;
     int32_t kept = 0;
     if (!w->gather.guarded && w->sweep->set->neighbors->kind == SPHGI_SEARCHED) { /* no gaps */
@@ -36,7 +36,7 @@ static void copy_gradients(const struct sphgi_worker *w, const int32_t *at, int3
                            int64_t place)
 {
     const struct sphgi_columns *to = &w->sweep->pairs->gradient;
-    const void *from = w->arrays;
+    const void *from = w->tile.arrays;
     const ptrdiff_t stride = to->stride, first = place * stride;
     const bool three = to->count == 3;
     char *x = (char *)(uintptr_t)(to->at[0] + first), *y = (char *)(uintptr_t)(to->at[1] + first);
@@ -56,12 +56,12 @@ void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
     int32_t at[SPHGI_CHUNK + 1];
     uint32_t ids[SPHGI_CHUNK + 1];
     const int32_t count = pairs_of_lane(w, lane, at, ids);
-    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->written[of] : 0;
-    w->written[of] += count;
+    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->group.written[of] : 0;
+    w->group.written[of] += count;
     if (!pairs->offsets)
         return;
     int32_t *to = pairs->indices + place;
-    const int32_t *items = w->items;
+    const int32_t *items = w->rows.items;
     if (items)
         for (int32_t k = 0; k < count; ++k)
             to[k] = items[ids[k] / SPHGI_ID_STEP];

@@ -9,22 +9,6 @@ static int32_t pairs_of(const struct sphgi_plan *plan)
     return plan->dimension * (plan->dimension + 1) / 2;
 }
 
-/* Products of the offsets have the moments m4 (2 I + 1 1^T) in a full neighbourhood, which
- * whitening turns into the unit matrix. */
-struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme)
-{
-    const int32_t d = scheme->dimension;
-    const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
-    const double m4 = scheme->method == SPHG_KGC ? mu2 : sphgi_kernel_mu4(scheme->kernel, d) / mu2;
-    const double deviator = 1 / sqrt(2 * m4), whole = 1 / sqrt((d + 2) * m4);
-    return (struct sphgi_second){.policy = scheme->policy,
-                                 .eps = scheme->threshold / 10,
-                                 .high = scheme->threshold,
-                                 .off = 1 / sqrt(m4),
-                                 .diagonal = deviator,
-                                 .trace = (whole - deviator) / d};
-}
-
 void sphgi_sum_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *field,
                          const char *at_target)
 {
@@ -33,7 +17,7 @@ void sphgi_sum_quadratic(struct sphgi_worker *w, const struct sphgi_field_plan *
     for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
         const int32_t first = k * SPHGI_ROW;
         w->passes->sum_quadratic_field(
-            &w->tile, plan->dimension, w->rows[field->row + k],
+            &w->tile, plan->dimension, w->rows.at[field->row + k],
             sphgi_min32(SPHGI_ROW, field->components - first),
             at_target + (size_t)first * SPHGI_WIDTH * size,
             sphgi_lane(w, w->reduced, field->sum + first * plan->dimension),
@@ -46,22 +30,22 @@ void sphgi_transpose_quadratic(struct sphgi_worker *w, const void *density,
                                enum sphgi_weight weight)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    w->passes->transposed_quadratic(&w->tile, plan->dimension, w->rows + plan->correction_row,
+    w->passes->transposed_quadratic(&w->tile, plan->dimension, w->rows.at + plan->correction_row,
                                     plan->scheme.radius, density, weight);
 }
 
 void sphgi_apply_to_vectors(struct sphgi_worker *w, int32_t sum, char *to)
 {
     const int32_t d = w->sweep->plan->dimension;
-    w->passes->apply_quadratic(w->width, d, 1, sphgi_lane(w, w->coefficients, 0),
+    w->passes->apply_quadratic(w->batch.width, d, 1, sphgi_lane(w, w->coefficients, 0),
                                sphgi_lane(w, w->reduced, sum), sphgi_lane(w, w->reduced, sum + d),
-                               1, to, NULL, w->hessian);
+                               1, to, NULL, w->curvature.hessian);
 }
 
 void sphgi_keep_all(struct sphgi_worker *w, struct sphgi_verdict *verdict)
 {
-    verdict->kept = sphgi_lane(w, w->share_kept, 0);
-    w->passes->fill(w->width, 1, verdict->kept);
+    verdict->kept = sphgi_lane(w, w->curvature.share_kept, 0);
+    w->passes->fill(w->batch.width, 1, verdict->kept);
 }
 
 void sphgi_invert_quadratic(struct sphgi_worker *w, const void *scale,
@@ -70,39 +54,20 @@ void sphgi_invert_quadratic(struct sphgi_worker *w, const void *scale,
     const struct sphgi_plan *plan = w->sweep->plan;
     const int32_t all = pairs_of(plan);
     const struct sphgi_borrowing first = sphgi_before_borrowing(w, scale);
-    w->passes->invert_quadratic(w->width, plan->dimension, &w->second,
+    w->passes->invert_quadratic(w->batch.width, plan->dimension, &w->second,
                                 sphgi_lane(w, w->reduced, plan->moment_sum), scale, verdict->kept,
-                                w->targets, plan->lends ? &first : NULL,
-                                sphgi_lane(w, w->coefficients, 0), w->directions);
-    for (int32_t l = 0; l < w->targets; ++l) {
+                                w->batch.targets, plan->lends ? &first : NULL,
+                                sphgi_lane(w, w->coefficients, 0), w->curvature.directions);
+    for (int32_t l = 0; l < w->batch.targets; ++l) {
         const bool linear = !(verdict->decomposed >> l & 1) || verdict->rank[l] == plan->dimension;
-        w->tally->stats.quadratic += linear && w->directions[l] == all;
+        w->tally->stats.quadratic += linear && w->curvature.directions[l] == all;
     }
 }
 
 uint8_t sphgi_quadratic_rank(const struct sphgi_worker *w, int32_t lane, uint8_t rank)
 {
-    return rank < w->sweep->plan->dimension ? rank : (uint8_t)(rank + w->directions[lane]);
-}
-
-void sphgi_store_table(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    for (int32_t first = 0; first < plan->correction.count; first += SPHGI_COLUMNS_MOST) {
-        const struct sphgi_columns part = sphgi_some_columns(&plan->correction, first, plan->type);
-        w->passes->store_lanes(w->targets, &part, sphgi_targets(w), sphgi_lane(w, w->raw, first),
-                               false);
-    }
-}
-
-void sphgi_load_table(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    for (int32_t first = 0; first < plan->target_correction.count; first += SPHGI_COLUMNS_MOST) {
-        const struct sphgi_columns part =
-            sphgi_some_columns(&plan->target_correction, first, plan->type);
-        w->passes->load_lanes(w->width, &part, sphgi_targets(w), sphgi_lane(w, w->raw, first));
-    }
+    return rank < w->sweep->plan->dimension ? rank
+                                            : (uint8_t)(rank + w->curvature.directions[lane]);
 }
 
 static void store_second(struct sphgi_worker *w, const struct sphgi_field_plan *field,
@@ -110,11 +75,12 @@ static void store_second(struct sphgi_worker *w, const struct sphgi_field_plan *
 {
     for (int32_t c = 0; c < 3; ++c)
         if (field->hessian[c].count)
-            w->passes->store_lanes(w->targets, &field->hessian[c], sphgi_targets(w),
-                                   sphgi_lane(w, w->hessian, c * pairs_of(w->sweep->plan)),
-                                   field->accumulate);
+            w->passes->store_lanes(
+                w->batch.targets, &field->hessian[c], sphgi_targets(w),
+                sphgi_lane(w, w->curvature.hessian, c * pairs_of(w->sweep->plan)),
+                field->accumulate);
     if (field->laplacian.count)
-        w->passes->store_lanes(w->targets, &field->laplacian, sphgi_targets(w), laplacian,
+        w->passes->store_lanes(w->batch.targets, &field->laplacian, sphgi_targets(w), laplacian,
                                field->accumulate);
 }
 
@@ -123,12 +89,12 @@ void sphgi_finish_quadratic(struct sphgi_worker *w, const struct sphgi_field_pla
     const struct sphgi_plan *plan = w->sweep->plan;
     const bool borrows = field->lent_rows > 0, lends = field->curvature.count > 0;
     const bool second = field->hessian[0].count || field->laplacian.count || borrows || lends;
-    char *laplacian = sphgi_lane(w, w->hessian, SPHGI_HESSIANS);
-    char *hessian = second ? sphgi_lane(w, w->hessian, 0) : NULL;
+    char *laplacian = sphgi_lane(w, w->curvature.hessian, SPHGI_HESSIANS);
+    char *hessian = second ? sphgi_lane(w, w->curvature.hessian, 0) : NULL;
     const char *coefficients = sphgi_lane(w, w->coefficients, 0);
     if (borrows)
         coefficients = sphgi_invert_borrowing(w, field);
-    w->passes->apply_quadratic(w->width, plan->dimension, field->components, coefficients,
+    w->passes->apply_quadratic(w->batch.width, plan->dimension, field->components, coefficients,
                                sphgi_lane(w, w->reduced, field->sum),
                                sphgi_lane(w, w->reduced, field->second_sum), w->inverse_h,
                                w->jacobian, hessian, laplacian);

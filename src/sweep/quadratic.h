@@ -3,8 +3,6 @@
 #define SPHGI_QUADRATIC_H
 #include "worker.h"
 
-struct sphgi_second sphgi_second_of(const struct sphgi_scheme *scheme);
-
 /* Of a field, from the tile into the sums. */
 void sphgi_sum_quadratic(struct sphgi_worker *worker, const struct sphgi_field_plan *field,
                          const char *at_target);
@@ -22,10 +20,6 @@ void sphgi_invert_quadratic(struct sphgi_worker *worker, const void *scale,
 
 /* Of the lane's target, whose linear rank is given. */
 uint8_t sphgi_quadratic_rank(const struct sphgi_worker *worker, int32_t lane, uint8_t rank);
-
-/* The host's table: its numbers do not fit the columns of one view. */
-void sphgi_store_table(struct sphgi_worker *worker);
-void sphgi_load_table(struct sphgi_worker *worker);
 
 /* Gradients into worker->jacobian; Hessians and Laplacians are written. */
 void sphgi_finish_quadratic(struct sphgi_worker *worker, const struct sphgi_field_plan *field);

@@ -22,16 +22,16 @@ static void use_local_rows(struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const sphg_type type = sweep->set->neighbors->position_type;
     const size_t size = row_size(sweep->plan->type);
-    make_dummy(w->local_positions + SPHGI_TILE * row_size(type), type);
+    make_dummy(w->rows.positions + SPHGI_TILE * row_size(type), type);
     for (int32_t k = 0; k < sweep->plan->row_count; ++k) {
-        char *rows = w->local_rows + (size_t)k * (SPHGI_TILE + 1) * size;
+        char *rows = w->rows.numbers + (size_t)k * (SPHGI_TILE + 1) * size;
         memset(rows + SPHGI_TILE * size, 0, size);
-        w->rows[k] = rows;
+        w->rows.at[k] = rows;
     }
-    w->gather.rows = w->local_positions;
+    w->gather.rows = w->rows.positions;
     w->gather.dummy = SPHGI_ID_STEP * SPHGI_TILE;
     w->gather.guarded = true;
-    w->items = (const int32_t *)(const void *)w->local_items;
+    w->rows.items = w->rows.own_items;
 }
 
 static void use_packed_rows(struct sphgi_worker *w)
@@ -41,15 +41,15 @@ static void use_packed_rows(struct sphgi_worker *w)
     const size_t rows = (size_t)n->source_count + 1, size = row_size(sweep->plan->type);
     w->gather.rows = sweep->volumes ? sweep->packed_positions : n->sources.rows.data;
     w->gather.dummy = (uint32_t)(SPHGI_ID_STEP * (rows - 1));
-    w->items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
+    w->rows.items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
     for (int32_t k = 0; k < sweep->plan->row_count; ++k)
-        w->rows[k] = sweep->packed_rows + (size_t)k * rows * size;
+        w->rows.at[k] = sweep->packed_rows + (size_t)k * rows * size;
 }
 
 void sphgi_use_rows(struct sphgi_worker *w)
 {
-    w->local = !w->sweep->packed;
-    if (w->local)
+    w->rows.local = !w->sweep->packed;
+    if (w->rows.local)
         use_local_rows(w);
     else
         use_packed_rows(w);

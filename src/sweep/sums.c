@@ -1,12 +1,11 @@
 #include "sums.h"
 #include "borrow.h"
-#include "corrections.h"
 #include "fold.h"
 #include "lane_radii.h"
+#include "own.h"
 #include "pair_rows.h"
 #include "quadratic.h"
 #include "core/view.h"
-#include <string.h>
 
 /* Classic gradients are whole; those of the linearised methods still lack C_i. */
 static enum sphgi_vectors vectors_of(const struct sphgi_worker *w)
@@ -21,21 +20,16 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
     const struct sphgi_plan *plan = w->sweep->plan;
     if (field->contracts && !field->fold)
         w->passes->sum_divergence(&w->tile, plan->dimension, field->shape, vectors,
-                                  w->rows + field->row, at_target,
+                                  w->rows.at + field->row, at_target,
                                   sphgi_lane(w, w->reduced, field->divergence_sum));
     for (int32_t k = 0; k < field->streams && field->sums_gradient; ++k) {
         const int32_t first = k * SPHGI_ROW;
         const int32_t count = sphgi_min32(SPHGI_ROW, field->components - first);
-        w->passes->sum_field(&w->tile, plan->dimension, vectors, w->rows[field->row + k], count,
+        w->passes->sum_field(&w->tile, plan->dimension, vectors, w->rows.at[field->row + k], count,
                              at_target +
                                  (size_t)first * SPHGI_WIDTH * sphgi_size_of_type(plan->type),
                              sphgi_lane(w, w->reduced, field->sum + first * plan->dimension));
     }
-}
-
-static bool is_mirrored(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
-{
-    return w->sweep->set->streams[field->stream].mirrored;
 }
 
 /* What the sums subtract from A_j: A_i in the difference form, -A_i in an antisymmetric one, else
@@ -43,9 +37,9 @@ static bool is_mirrored(const struct sphgi_worker *w, const struct sphgi_field_p
 static const char *subtracted(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const bool difference = field->form == SPHG_DIFFERENCE;
-    if (is_mirrored(w, field))
-        return difference ? w->zeros : sphgi_lane(w, w->opposite, field->at_target);
-    return difference || field->antisymmetric ? sphgi_lane(w, w->at_target, field->at_target)
+    if (sphgi_is_mirrored(w, field))
+        return difference ? w->zeros : sphgi_lane(w, w->own.opposite, field->at_target);
+    return difference || field->antisymmetric ? sphgi_lane(w, w->own.field, field->at_target)
                                               : w->zeros;
 }
 
@@ -59,7 +53,7 @@ static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *f
     sum_rows(w, field, vectors_of(w), subtracted(w, field));
     if (field->square.count)
         w->passes->sum_squares(&w->tile, w->sweep->plan->dimension, vectors_of(w),
-                               sphgi_square_sums(w->sweep->plan), w->rows[field->row],
+                               sphgi_square_sums(w->sweep->plan), w->rows.at[field->row],
                                subtracted(w, field), sphgi_lane(w, w->reduced, field->square_sum));
 }
 
@@ -68,7 +62,7 @@ static void form_transposed(struct sphgi_worker *w, bool symmetric)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const enum sphgi_weight weight = sphgi_source_weight(plan, symmetric);
-    const void *density = plan->density_row < 0 ? NULL : w->rows[plan->density_row];
+    const void *density = plan->density_row < 0 ? NULL : w->rows.at[plan->density_row];
     const void *table[4] = {NULL, NULL, NULL, NULL};
     const int32_t rows = plan->correction_row < 0 ? 0 : sphgi_correction_rows(plan);
     if (plan->quadratic) {
@@ -76,12 +70,12 @@ static void form_transposed(struct sphgi_worker *w, bool symmetric)
         return;
     }
     for (int32_t k = 0; k < rows; ++k)
-        table[k] = w->rows[plan->correction_row + k];
+        table[k] = w->rows.at[plan->correction_row + k];
     if (plan->classic) {
         const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
         w->passes->transposed_classic(&w->tile, plan->dimension, table, &units,
-                                      plan->weighted ? sphgi_lane(w, w->volume, 0) : NULL, density,
-                                      weight);
+                                      plan->weighted ? sphgi_lane(w, w->own.volume, 0) : NULL,
+                                      density, weight);
     } else
         w->passes->transposed(&w->tile, plan->dimension, table, density, weight);
 }
@@ -94,7 +88,7 @@ static void sum_folded(struct sphgi_worker *w, int32_t number)
                carrier = plan->carrier[symmetric] == number;
     const int32_t sum = field->contracts ? field->divergence_sum : field->sum;
     w->passes->sum_folded(&w->tile, plan->dimension, field->fold, symmetric && carrier,
-                          w->rows + field->folded_row, sphgi_lane(w, w->reduced, sum),
+                          w->rows.at + field->folded_row, sphgi_lane(w, w->reduced, sum),
                           carrier ? sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]) : NULL);
 }
 
@@ -102,7 +96,7 @@ static void sum_folded(struct sphgi_worker *w, int32_t number)
 static void sum_own_vectors(struct sphgi_worker *w, bool symmetric)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const void *density = symmetric ? w->rows[plan->density_row] : NULL;
+    const void *density = symmetric ? w->rows.at[plan->density_row] : NULL;
     char *vectors = sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]);
     if (plan->quadratic)
         w->passes->sum_quadratic_vectors(&w->tile, plan->dimension, density, vectors);
@@ -139,50 +133,6 @@ static void turn_to_other_side(struct sphgi_worker *w)
     sphgi_weigh_other_side(w);
 }
 
-static void load_target(struct sphgi_worker *w, int32_t number, char *to)
-{
-    const struct sphgi_sweep *sweep = w->sweep;
-    const struct sphgi_field_plan *field = &sweep->plan->fields[number];
-    const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
-    if (number < 32 && (w->targets_in_rows >> number & 1)) {
-        const size_t rows = (size_t)sweep->set->neighbors->source_count + 1;
-        struct sphgi_columns columns;
-        columns.at[0] = sweep->packed_rows + (size_t)field->row * rows * row;
-        columns.stride = (ptrdiff_t)row;
-        columns.count = SPHGI_ROW;
-        columns.together = true;
-        w->passes->load_lanes(w->width, &columns, w->group.place + w->first, to);
-    } else if (field->target.count) {
-        w->passes->load_lanes(w->width, &field->target, sphgi_targets(w), to);
-    } else {
-        for (int32_t c = 0; c < field->components; ++c)
-            w->passes->fill(w->width, 0, to + (size_t)c * SPHGI_WIDTH * row / SPHGI_ROW);
-    }
-    if (field->antisymmetric)
-        w->passes->scale(w->width, field->components, to, -1, NULL, to);
-    if (is_mirrored(w, field))
-        w->passes->scale(w->width, field->components, to, field->antisymmetric ? 2 : -1, NULL,
-                         sphgi_lane(w, w->opposite, field->at_target));
-}
-
-void sphgi_load_targets(struct sphgi_worker *w)
-{
-    if (w->targets_loaded)
-        return;
-    w->targets_loaded = true;
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_passes *p = w->passes;
-    for (int32_t k = 0; k < plan->field_count; ++k)
-        load_target(w, k, sphgi_lane(w, w->at_target, plan->fields[k].at_target));
-    if (plan->adjoint || plan->transposes[1]) {
-        if (plan->target_volume.count)
-            sphgi_load_volume(w, &plan->target_volume, sphgi_lane(w, w->volume, 0));
-        if (plan->target_density.count)
-            p->load_lanes(w->width, &plan->target_density, sphgi_targets(w),
-                          sphgi_lane(w, w->density, 0));
-    }
-}
-
 static void sum_fields(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
@@ -196,7 +146,7 @@ static void sum_fields(struct sphgi_worker *w)
         if (field->differentiates && field->forward)
             sum_forward(w, field);
         for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
-            w->passes->sum_value(&w->tile, w->rows[field->row + s],
+            w->passes->sum_value(&w->tile, w->rows.at[field->row + s],
                                  sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
                                  subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
                                  sphgi_lane(w, w->reduced, field->value_sum + s * SPHGI_ROW));
@@ -221,10 +171,11 @@ static void write_pairs(struct sphgi_worker *w)
             plan->classic || !plan->corrects ? NULL : sphgi_lane(w, w->coefficients, 0),
             sphgi_common(w, w->inverse_h));
     if (w->sweep->pairs->gradient.count && plan->graded)
-        w->passes->scale_pairs(&w->tile, SPHGI_GX, plan->dimension, sphgi_lane(w, w->inverse, 0));
-    const int32_t lanes = w->tile.spread ? w->passes->lanes : w->targets;
+        w->passes->scale_pairs(&w->tile, SPHGI_GX, plan->dimension,
+                               sphgi_lane(w, w->radii.inverse, 0));
+    const int32_t lanes = w->tile.spread ? w->passes->lanes : w->batch.targets;
     for (int32_t l = 0; l < lanes; ++l)
-        sphgi_write_lane(w, l, w->first + (w->tile.spread ? 0 : l));
+        sphgi_write_lane(w, l, w->batch.first + (w->tile.spread ? 0 : l));
 }
 
 static void weigh(struct sphgi_worker *w, int32_t count)
@@ -234,17 +185,17 @@ static void weigh(struct sphgi_worker *w, int32_t count)
     if (w->factors_at_once)
         return;
     if (plan->classic || plan->wants_value || plan->mean_volume)
-        p->shape_weights(&w->shape, w->arrays, count);
+        p->shape_weights(&w->shape, w->tile.arrays, count);
     if (plan->classic)
         return;
     if (plan->wants_value || plan->mean_volume) {
-        p->shape_values(w->arrays, count);
+        p->shape_values(w->tile.arrays, count);
         sphgi_scale_values(w);
     }
-    if (plan->mean_volume && (w->summing & SPHGI_SUM_MOMENTS))
+    if (plan->mean_volume && (w->batch.summing & SPHGI_SUM_MOMENTS))
         p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */
-        p->shape_factors(&w->shape, w->arrays, count);
+        p->shape_factors(&w->shape, w->tile.arrays, count);
 }
 
 void sphgi_evaluate_tile(struct sphgi_worker *w)
@@ -254,15 +205,15 @@ void sphgi_evaluate_tile(struct sphgi_worker *w)
     const struct sphgi_tile *tile = &w->tile;
     weigh(w, tile->steps * p->lanes);
     char *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
-    if ((w->summing & SPHGI_SUM_MOMENTS) && plan->classic)
+    if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->classic)
         p->sum_classic(tile, plan->dimension, plan->weighted, moments);
-    else if ((w->summing & SPHGI_SUM_MOMENTS) && plan->computes && plan->quadratic)
+    else if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->computes && plan->quadratic)
         p->sum_quadratic_moments(tile, plan->dimension, moments);
-    else if ((w->summing & SPHGI_SUM_MOMENTS) && plan->computes)
+    else if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->computes)
         p->sum_moments(tile, plan->dimension, moments);
-    if (w->summing & SPHGI_SUM_FIELDS)
+    if (w->batch.summing & SPHGI_SUM_FIELDS)
         sum_fields(w);
-    if ((w->summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)
+    if ((w->batch.summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)
         write_pairs(w);
-    ++w->tiles;
+    ++w->batch.tiles;
 }

@@ -7,7 +7,4 @@
  */
 void sphgi_evaluate_tile(struct sphgi_worker *worker);
 
-/* A_i, V_i, rho_i of the targets at work, once. */
-void sphgi_load_targets(struct sphgi_worker *worker);
-
 #endif

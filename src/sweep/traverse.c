@@ -1,76 +1,18 @@
 #include "traverse.h"
+#include "batch.h"
+#include "group.h"
+#include "own.h"
+#include "pieces.h"
+#include "waiting.h"
 #include "rows.h"
 #include "core/check.h"
 #include "search/find.h"
 #include <string.h>
 
-/* ---- Groups of a worker --------------------------------------------------------------------- */
-
-static int32_t add_target(struct sphgi_worker *w, int32_t target, int32_t place)
+static void open(struct sphgi_worker *w, const struct sphgi_task *task, int32_t number)
 {
-    const int32_t lane = w->group.lanes++;
-    w->group.target[lane] = target;
-    w->group.place[lane] = place;
-    return lane;
-}
-
-static void finish_group(struct sphgi_worker *w)
-{
-    if (w->group.lanes)
-        sphgi_group_finish(w);
-}
-
-/* Lists wait until a vector of targets is there. */
-static void run_rest(struct sphgi_worker *w)
-{
-    if (w->group.lanes > w->summed)
-        sphgi_group_run(w);
-    finish_group(w);
-    w->waiting_ids_used = 0;
-}
-
-static void add_list(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
-                     int32_t count, int32_t stride)
-{
-    if (w->group.lanes == w->summed && w->summed > SPHGI_WIDTH - w->passes->lanes)
-        finish_group(w); /* no room for a vector more */
-    const int32_t lane = add_target(w, target, place) - w->summed;
-    w->lists.ids[lane] = ids;
-    w->lists.count[lane] = count;
-    w->lists.stride[lane] = stride;
-    if (lane + 1 == w->passes->lanes)
-        sphgi_group_run(w);
-    if (w->summed == SPHGI_WIDTH)
-        finish_group(w);
-    if (w->group.lanes == w->summed)
-        w->waiting_ids_used = 0;
-}
-
-/* A place for a list that will not stay where it is: it waits there until the lanes are full. NULL:
- * it is too long for that. */
-static uint32_t *room_to_wait(struct sphgi_worker *w, int32_t count)
-{
-    if (w->waiting_ids_used + (int64_t)count > SPHGI_WAITING_IDS)
-        run_rest(w);
-    if (count > SPHGI_WAITING_IDS)
-        return NULL;
-    uint32_t *room = (uint32_t *)(void *)w->waiting_ids + w->waiting_ids_used;
-    w->waiting_ids_used += count;
-    return room;
-}
-
-/* What is too long is summed at once. */
-static void add_copied(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
-                       int32_t count, int32_t copied)
-{
-    uint32_t *copy = room_to_wait(w, copied);
-    if (!copy)
-        run_rest(w);
-    else if (copied)
-        memcpy(copy, ids, (size_t)copied * sizeof *ids);
-    add_list(w, target, place, copy ? copy : ids, count, 1);
-    if (!copy)
-        run_rest(w);
+    sphgi_worker_open(w, &task->sweep, number);
+    sphgi_find_targets_in_rows(w);
 }
 
 /* ---- Groups of a searched object ------------------------------------------------------------ */
@@ -120,7 +62,7 @@ static void ask_for_group(const struct sphgi_worker *w, const int32_t *targets)
     p->ask_for_lanes(SPHGI_GROUP, &plan->correction, targets, true);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (k >= 32 || !(w->targets_in_rows >> k & 1))
+        if (k >= 32 || !(w->own.in_rows >> k & 1))
             p->ask_for_lanes(SPHGI_GROUP, &field->target, targets, false);
         p->ask_for_lanes(SPHGI_GROUP, &field->gradient, targets, true);
         p->ask_for_lanes(SPHGI_GROUP, &field->divergence, targets, true);
@@ -172,28 +114,28 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
     const int32_t group = place / SPHGI_GROUP, lanes = w->passes->lanes;
     const uint32_t all = (1u << lanes) - 1;
     if (w->group.lanes > SPHGI_WIDTH - SPHGI_GROUP)
-        finish_group(w);
+        sphgi_finish_lanes(w);
     int32_t targets[SPHGI_GROUP];
     targets_of_group(w, place, active, targets);
-    w->lists.stride[0] = SPHGI_GROUP;
-    w->lists.side_by_side = true;
-    w->kept_stand = kept->number && kept->marks[group] == kept->number;
+    w->batch.lists.stride[0] = SPHGI_GROUP;
+    w->batch.lists.side_by_side = true;
+    w->batch.kept_stand = kept->number && kept->marks[group] == kept->number;
     for (int32_t first = 0; first < SPHGI_GROUP; first += lanes) {
-        w->lists.ids[0] = ids + first;
-        w->kept = kept->number ? kept_factors(w, w->lists.ids[0]) : NULL;
+        w->batch.lists.ids[0] = ids + first;
+        w->batch.kept = kept->number ? kept_factors(w, w->batch.lists.ids[0]) : NULL;
         for (int32_t l = 0; l < lanes; ++l)
-            w->lists.count[l] = lengths[first + l];
+            w->batch.lists.count[l] = lengths[first + l];
         put_into_lanes(w, targets + first, place + first);
-        sphgi_group_run(w);
+        sphgi_batch_run(w);
         if ((active >> first & all) != all)
-            sphgi_group_keep(w, active >> first & all);
+            sphgi_batch_keep(w, active >> first & all);
     }
-    w->lists.side_by_side = false;
-    w->kept = NULL;
+    w->batch.lists.side_by_side = false;
+    w->batch.kept = NULL;
     if (kept->number)
         kept->marks[group] = kept->number;
-    if (w->summed == SPHGI_WIDTH)
-        finish_group(w);
+    if (w->group.summed == SPHGI_WIDTH)
+        sphgi_finish_lanes(w);
 }
 
 /* What is far apart in memory should be on its way before the first of it is read. */
@@ -214,9 +156,9 @@ static void add_kept(struct sphgi_worker *w, int32_t place, const uint32_t *ids,
                      int32_t stride)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    if (w->local)
+    if (w->rows.local)
         ask_for_rows(n, ids, count, stride);
-    add_list(w, target_at(n, place), place, ids, count, stride);
+    sphgi_add_list(w, target_at(n, place), place, ids, count, stride);
 }
 
 /* Are groups of which some targets are active summed whole? Dropped ones must leave no trace: where
@@ -256,7 +198,7 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
     const bool whole =
         active == (1u << SPHGI_GROUP) - 1 ||
         (active && sphgi_targets_in(n, group) == SPHGI_GROUP && are_summed_whole(task, w));
-    if (whole && !w->local && w->group.lanes == w->summed) { /* no lists wait */
+    if (whole && !w->rows.local && w->group.lanes == w->group.summed) { /* no lists wait */
         add_group(w, first, ids, active);
         return;
     }
@@ -268,21 +210,21 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
 
 static void take_ids(void *data, const uint32_t *ids, int32_t count)
 {
-    sphgi_stream_add(data, ids, count);
+    sphgi_pieces_add(data, ids, count);
 }
 
 /* Pairs are found and used at once. */
 static void stream_target(struct sphgi_worker *w, struct sphgi_finder *finder, int32_t place)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    run_rest(w);
-    add_target(w, target_at(n, place), place);
-    sphgi_stream_begin(w);
+    sphgi_run_rest(w);
+    sphgi_add_target(w, target_at(n, place), place);
+    sphgi_pieces_begin(w);
     do
         sphgi_find_target(finder, place, take_ids, w);
-    while (sphgi_stream_again(w));
-    sphgi_stream_end(w);
-    finish_group(w);
+    while (sphgi_pieces_again(w));
+    sphgi_pieces_end(w);
+    sphgi_finish_lanes(w);
 }
 
 /* Nothing is kept: lists stay until the next group is looked for, then they would have to be
@@ -298,16 +240,16 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     if (!active)
         return;
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
-    const bool all = active == (1u << SPHGI_GROUP) - 1 && w->group.lanes == w->summed;
+    const bool all = active == (1u << SPHGI_GROUP) - 1 && w->group.lanes == w->group.summed;
     for (uint32_t left = active; left; left &= left - 1) {
         const int32_t k = __builtin_ctz(left), place = first + k, target = target_at(n, place);
         if (!collected)
             stream_target(w, finder, place);
         else if (all)
-            add_list(w, target, place, lists[k], lengths[k], 1);
+            sphgi_add_list(w, target, place, lists[k], lengths[k], 1);
         else
-            add_copied(w, target, place, lists[k], lengths[k],
-                       (int32_t)sphgi_round_up((size_t)lengths[k], SPHGI_PAD));
+            sphgi_add_copied(w, target, place, lists[k], lengths[k],
+                             (int32_t)sphgi_round_up((size_t)lengths[k], SPHGI_PAD));
     }
 }
 
@@ -318,7 +260,7 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     const int32_t *groups = task->selection->groups;
     struct sphgi_worker w;
     struct sphgi_finder finder;
-    sphgi_worker_open(&w, &task->sweep, number);
+    open(&w, task, number);
     sphgi_use_rows(&w);
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
@@ -328,7 +270,7 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
         else
             sweep_found(task, &w, &finder, group);
     }
-    run_rest(&w);
+    sphgi_run_rest(&w);
 }
 
 /* ---- The host's lists ----------------------------------------------------------------------- */
@@ -367,7 +309,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
     const struct sphgi_task *task = data;
     const sphg_neighbors *n = task->sweep.set->neighbors;
     struct sphgi_worker w;
-    sphgi_worker_open(&w, &task->sweep, number);
+    open(&w, task, number);
     sphgi_use_rows(&w);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
@@ -379,11 +321,11 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         if (!sphgi_is_host_row(ids, count))
             note_bad_length(w.tally, target);
         else if (n->lists.row) /* the host may use its array again */
-            add_copied(&w, target, target, numbers_of(ids), (int32_t)count, (int32_t)count);
+            sphgi_add_copied(&w, target, target, numbers_of(ids), (int32_t)count, (int32_t)count);
         else
-            add_list(&w, target, target, numbers_of(ids), (int32_t)count, 1);
+            sphgi_add_list(&w, target, target, numbers_of(ids), (int32_t)count, 1);
     }
-    run_rest(&w);
+    sphgi_run_rest(&w);
 }
 
 /* ---- Finishing the sums of several sets ----------------------------------------------------- */
@@ -392,7 +334,7 @@ void sphgi_finish_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
     struct sphgi_worker w;
-    sphgi_worker_open(&w, &task->sweep, number);
+    open(&w, task, number);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
         if (target >= 0)

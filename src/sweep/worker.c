@@ -1,6 +1,5 @@
 #include "worker.h"
 #include "core/kernel.h"
-#include "quadratic.h"
 #include "core/view.h"
 #include <string.h>
 
@@ -34,43 +33,43 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     struct layout layout = {0};
 #define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
     CARVE(tally, 1, sizeof(struct sphgi_tally));
-    CARVE(rows, arrays + 1, sizeof(void *));
-    CARVE(local_positions, local, SPHGI_ROW * position);
-    CARVE(local_rows, local * arrays, row);
-    CARVE(arrays, SPHGI_ARRAYS * SPHGI_TILE, size);
-    CARVE(ids, SPHGI_TILE, sizeof(uint32_t));
-    CARVE(clean_ids, SPHGI_TILE, sizeof(uint32_t));
-    CARVE(local_items, SPHGI_TILE, sizeof(uint32_t));
-    CARVE(waiting_ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_WAITING_IDS,
+    CARVE(rows.at, arrays + 1, sizeof(void *));
+    CARVE(rows.positions, local, SPHGI_ROW * position);
+    CARVE(rows.numbers, local * arrays, row);
+    CARVE(tile.arrays, SPHGI_ARRAYS * SPHGI_TILE, size);
+    CARVE(tile.own_ids, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(rows.clean_ids, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(rows.own_items, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(waiting.ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_WAITING_IDS,
           sizeof(uint32_t));
     CARVE(reduced, SPHGI_SECTIONS * (size_t)plan->sums * SPHGI_WIDTH, size);
-    CARVE(at_target, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
-    CARVE(opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
+    CARVE(own.field, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
+    CARVE(own.opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
     CARVE(raw, numbers * SPHGI_WIDTH, size);
     CARVE(coefficients, numbers * SPHGI_WIDTH, size);
     CARVE(lambda_min, SPHGI_WIDTH, size);
-    CARVE(volume, SPHGI_WIDTH, size);
-    CARVE(density, SPHGI_WIDTH, size);
+    CARVE(own.volume, SPHGI_WIDTH, size);
+    CARVE(own.density, SPHGI_WIDTH, size);
     CARVE(self, SPHGI_WIDTH, size);
     CARVE(zeros, 16 * SPHGI_WIDTH, size);
     CARVE(jacobian, 27 * SPHGI_WIDTH, size);
     CARVE(contracted, 6 * SPHGI_WIDTH, size);
     CARVE(extra, 8 * SPHGI_WIDTH, size);
-    CARVE(ratio, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(inverse, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(factor, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
-    CARVE(share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
-    CARVE(hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
-    CARVE(linear, 6 * lending, size);
-    CARVE(moment_scale, lending, size);
-    CARVE(confidence, lending, size);
-    CARVE(lent_confidence, lending, size);
-    CARVE(lent, (SPHGI_HESSIANS + 1) * lending, size);
-    CARVE(borrowed, numbers * lending, size);
-    CARVE(prior, 21 * lending, size);
-    CARVE(transport, 18 * lending, size);
+    CARVE(radii.ratio, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(radii.inverse, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(radii.inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(radii.factor, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(radii.shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
+    CARVE(curvature.share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
+    CARVE(curvature.hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
+    CARVE(lending.linear, 6 * lending, size);
+    CARVE(lending.moment_scale, lending, size);
+    CARVE(lending.confidence, lending, size);
+    CARVE(lending.lent_confidence, lending, size);
+    CARVE(lending.lent, (SPHGI_HESSIANS + 1) * lending, size);
+    CARVE(lending.borrowed, numbers * lending, size);
+    CARVE(lending.prior, 21 * lending, size);
+    CARVE(lending.transport, 18 * lending, size);
     CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
 #undef CARVE
     return layout.total;
@@ -82,52 +81,12 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
     return carve(&measured, sweep, NULL);
 }
 
-double sphgi_volume_unit(const struct sphgi_sweep *sweep)
-{
-    return sphgi_power(1 / sweep->plan->scheme.radius, sweep->plan->dimension);
-}
-
-/* Targets that are the sources of this set, with the same values: these stand packed already. */
-static bool are_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
-{
-    const struct sphgi_sweep *sweep = w->sweep;
-    const struct sphgi_stream *stream = &sweep->set->streams[field->stream];
-    return sweep->packed && sweep->set_number == sweep->plan->own_set && field->streams == 1 &&
-           field->rows && sweep->set->neighbors->same &&
-           field->target.stride == stream->columns.stride &&
-           memcmp(field->target.at, stream->columns.at,
-                  (size_t)field->components * sizeof field->target.at[0]) == 0;
-}
-
-static void find_targets_in_rows(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    for (int32_t k = 0; k < plan->field_count && k < 32; ++k)
-        if (are_targets_in_rows(w, &plan->fields[k]))
-            w->targets_in_rows |= 1u << k;
-}
-
 /* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
  * formed; the sums of the linearised methods are multiplied with them at the end. */
 static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
     return (plan->classic || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) && plan->corrects;
-}
-
-static bool is_superset(const struct sphgi_sweep *sweep)
-{
-    const sphg_neighbors *n = sweep->set->neighbors;
-    if (sweep->plan->graded)
-        return n->kind == SPHGI_HOST_LISTS || n->skin > 0 ||
-               (n->mutual && !sweep->pairs && sweep->plan->radius_row < 0);
-    return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
-}
-
-static bool is_guarded(const struct sphgi_sweep *sweep)
-{
-    const sphg_neighbors *n = sweep->set->neighbors;
-    return is_superset(sweep) || n->periodic || !n->dummy_is_far;
 }
 
 /* Linearised methods sum in the units of the positions, classic ones and order 2 in units of H:
@@ -153,8 +112,8 @@ static void open_scheme(struct sphgi_worker *w)
     w->gather.all = n->mutual && (w->sweep->pairs || plan->radius_row >= 0);
     if (plan->graded && scaled)
         w->gather.unit = 0;
-    w->gather.superset = is_superset(w->sweep);
-    w->gather.guarded = is_guarded(w->sweep);
+    w->gather.superset = sphgi_is_superset(w->sweep);
+    w->gather.guarded = sphgi_is_guarded(w->sweep);
     w->shape = (struct sphgi_shape){
         .kernel = scheme->kernel,
         .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
@@ -170,15 +129,6 @@ static void open_scheme(struct sphgi_worker *w)
         w->second = sphgi_second_of(scheme);
 }
 
-bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
-{
-    const struct sphgi_plan *plan = sweep->plan;
-    return sweep->packed && plan->radius_row < 0 && !is_guarded(sweep) && !plan->classic &&
-           !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
-           (plan->differentiates || plan->computes) &&
-           sweep->set->neighbors->position_type == plan->type;
-}
-
 void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
 {
     *w = (struct sphgi_worker){.sweep = sweep, .passes = sweep->passes};
@@ -187,13 +137,10 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     w->inverse_h = 1 / sweep->plan->scheme.radius;
     sphgi_shares_of(sweep->plan, w->share);
     w->coefficients_first = needs_coefficients_first(sweep);
-    w->tile.arrays = w->arrays;
-    w->tile.own_ids = (uint32_t *)(void *)w->ids;
     w->tile.section = (ptrdiff_t)sweep->plan->sums * SPHGI_WIDTH;
     const size_t volumes = SPHGI_V * SPHGI_TILE * sphgi_size_of_type(sweep->plan->type);
     if (!sweep->volumes)
-        w->passes->fill(SPHGI_TILE, sweep->volume, w->arrays + volumes);
+        w->passes->fill(SPHGI_TILE, sweep->volume, (char *)w->tile.arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
-    find_targets_in_rows(w);
     w->factors_at_once = sphgi_forms_factors_alone(sweep);
 }

@@ -1,0 +1,194 @@
+#include "batch.h"
+#include "core/view.h"
+#include "corrections.h"
+#include "lane_radii.h"
+#include "own.h"
+#include "sums.h"
+#include "table.h"
+#include "tile.h"
+#include <string.h>
+
+void sphgi_put_to_work(struct sphgi_worker *w, int32_t first)
+{
+    struct sphgi_group *group = &w->group;
+    w->batch.first = first;
+    w->batch.targets = group->lanes - first;
+    w->batch.width = (int32_t)sphgi_round_up((size_t)w->batch.targets, (size_t)w->passes->lanes);
+    for (int32_t l = group->lanes; l < first + w->batch.width; ++l) {
+        group->target[l] = group->target[first];
+        group->place[l] = group->place[first];
+    }
+}
+
+void sphgi_batch_begin(struct sphgi_worker *w)
+{
+    sphgi_put_to_work(w, w->group.summed);
+    sphgi_read_lane_radii(w);
+    w->own.loaded = false;
+    w->batch.tiles = 0;
+    if (w->sweep->pairs)
+        memset(w->group.written + w->batch.first, 0,
+               (size_t)w->batch.targets * sizeof w->group.written[0]);
+    w->batch.summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
+    if (w->coefficients_first) {
+        if (w->batch.summing & SPHGI_SUM_MOMENTS)
+            w->batch.summing = SPHGI_SUM_MOMENTS;
+        else
+            sphgi_load_corrections(w);
+    }
+}
+
+/* The sums of this round. */
+static int32_t first_sum(const struct sphgi_worker *w)
+{
+    return w->batch.summing & SPHGI_SUM_MOMENTS ? 0 : w->sweep->plan->moment_sums;
+}
+
+static int32_t sums_of_round(const struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    return (w->batch.summing & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums) - first_sum(w);
+}
+
+/* ---- From lists to tiles --------------------------------------------------------------------- */
+
+/* A lane for each target. */
+static void run_lanes(struct sphgi_worker *w)
+{
+    w->tile.spread = false;
+    int64_t at = 0; /* lists may be as long as int32_t can tell */
+    do {
+        w->tile.chunk = (int32_t)(at / SPHGI_CHUNK);
+        w->tile.steps = sphgi_min32(SPHGI_CHUNK, w->batch.longest - (int32_t)at);
+        sphgi_run_tile(w, &w->batch.lists, (int32_t)at);
+        at += SPHGI_CHUNK;
+    } while (at < w->batch.longest);
+}
+
+static void join(struct sphgi_worker *w)
+{
+    const int32_t chunks = (w->batch.spread_pairs + SPHGI_CHUNK - 1) / SPHGI_CHUNK,
+                  sums = sums_of_round(w);
+    if (w->tile.spread && sums)
+        w->passes->join_lanes(&w->tile, sphgi_max32(chunks, 1), sums,
+                              sphgi_lane(w, w->reduced, first_sum(w)));
+}
+
+void sphgi_run_spread(struct sphgi_worker *w, const uint32_t *ids, int32_t count, int32_t stride,
+                      int32_t at)
+{
+    struct sphgi_lane_lists lists = {.side_by_side = false};
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        const int32_t first = l * SPHGI_CHUNK;
+        lists.ids[l] = ids + (ptrdiff_t)first * stride;
+        lists.count[l] = sphgi_max32(0, sphgi_min32(SPHGI_CHUNK, count - first));
+        lists.stride[l] = stride;
+    }
+    w->tile.spread = true;
+    w->batch.spread_pairs = count;
+    w->tile.chunk = at / SPHGI_CHUNK;
+    w->tile.steps = sphgi_min32(SPHGI_CHUNK, count);
+    sphgi_run_tile(w, &lists, 0);
+    join(w);
+}
+
+static void run_long_list(struct sphgi_worker *w)
+{
+    const int32_t stride = w->batch.lists.stride[0], most = sphgi_spread_most(w);
+    for (int64_t at = 0; at < w->batch.longest; at += most)
+        sphgi_run_spread(w, w->batch.lists.ids[0] + at * stride,
+                         (int32_t)(w->batch.longest - at < most ? w->batch.longest - at : most),
+                         stride, (int32_t)at);
+}
+
+/* ---- Rounds ---------------------------------------------------------------------------------- */
+
+static void settle(struct sphgi_worker *w)
+{
+    if (w->batch.longest > SPHGI_PLAIN_CHUNKS * SPHGI_CHUNK)
+        w->passes->settle(&w->tile, sums_of_round(w), sphgi_lane(w, w->reduced, first_sum(w)));
+}
+
+/* One target in all lanes: the matrices of lanes without a target of their own are not decomposed.
+ */
+static void repeat_coefficients(struct sphgi_worker *w)
+{
+    const size_t size = sphgi_size_of_type(w->sweep->plan->type);
+    for (int32_t number = 0; number < sphgi_plan_width(w->sweep->plan); ++number) {
+        char *lane = sphgi_lane(w, w->coefficients, number);
+        for (int32_t l = 1; l < w->passes->lanes; ++l)
+            memcpy(lane + (size_t)l * size, lane, size);
+    }
+}
+
+/* All pairs were added once: is another round over them needed? Classic, corrections and fields in
+ * one sweep: the first round gives the coefficients. If one tile held everything, it is still
+ * there. */
+bool sphgi_batch_again(struct sphgi_worker *w)
+{
+    settle(w);
+    if (!w->coefficients_first || !(w->sweep->steps & SPHGI_SUM_MOMENTS) ||
+        w->batch.summing != SPHGI_SUM_MOMENTS)
+        return false;
+    sphgi_finish_corrections(w);
+    if (w->tile.spread)
+        repeat_coefficients(w);
+    w->batch.summing = SPHGI_SUM_FIELDS;
+    const bool held = w->batch.tiles == 1;
+    w->batch.tiles = 0;
+    if (!held)
+        return true;
+    sphgi_evaluate_tile(w);
+    join(w);
+    settle(w);
+    return false;
+}
+
+void sphgi_batch_end(struct sphgi_worker *w)
+{
+    w->group.summed = w->group.lanes;
+    if (!w->sweep->pairs && (w->batch.summing & SPHGI_SUM_FIELDS))
+        sphgi_load_targets(w);
+}
+
+void sphgi_batch_run(struct sphgi_worker *w)
+{
+    sphgi_batch_begin(w);
+    w->batch.longest = 0;
+    for (int32_t l = 0; l < w->batch.targets; ++l)
+        w->batch.longest = sphgi_max32(w->batch.longest, w->batch.lists.count[l]);
+    for (int32_t l = w->batch.targets; l < w->passes->lanes; ++l) {
+        w->batch.lists.ids[l] = w->batch.lists.ids[0];
+        w->batch.lists.count[l] = 0;
+        w->batch.lists.stride[l] = 1;
+    }
+    const bool spread = w->batch.targets == 1 && w->batch.longest > SPHGI_CHUNK;
+    do
+        if (spread)
+            run_long_list(w);
+        else
+            run_lanes(w);
+    while (sphgi_batch_again(w));
+    sphgi_batch_end(w);
+}
+
+void sphgi_batch_keep(struct sphgi_worker *w, uint32_t kept)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    struct sphgi_group *group = &w->group;
+    sphgi_keep_lane_radii(w, kept);
+    p->pack_lanes(kept, plan->sums, sphgi_lane(w, w->reduced, 0));
+    p->pack_lanes(kept, plan->target_lanes, sphgi_lane(w, w->own.field, 0));
+    if (plan->adjoint || plan->transposes[1]) {
+        p->pack_lanes(kept, 1, sphgi_lane(w, w->own.volume, 0));
+        p->pack_lanes(kept, 1, sphgi_lane(w, w->own.density, 0));
+    }
+    int32_t to = w->batch.first;
+    for (int32_t l = w->batch.first; l < group->lanes; ++l, kept >>= 1) {
+        group->target[to] = group->target[l];
+        group->place[to] = group->place[l];
+        to += (int32_t)(kept & 1);
+    }
+    group->lanes = w->group.summed = to;
+}

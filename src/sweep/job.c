@@ -1,0 +1,31 @@
+#include "job.h"
+#include "core/kernel.h"
+
+double sphgi_volume_unit(const struct sphgi_sweep *sweep)
+{
+    return sphgi_power(1 / sweep->plan->scheme.radius, sweep->plan->dimension);
+}
+
+bool sphgi_is_superset(const struct sphgi_sweep *sweep)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    if (sweep->plan->graded)
+        return n->kind == SPHGI_HOST_LISTS || n->skin > 0 ||
+               (n->mutual && !sweep->pairs && sweep->plan->radius_row < 0);
+    return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
+}
+
+bool sphgi_is_guarded(const struct sphgi_sweep *sweep)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return sphgi_is_superset(sweep) || n->periodic || !n->dummy_is_far;
+}
+
+bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    return sweep->packed && plan->radius_row < 0 && !sphgi_is_guarded(sweep) && !plan->classic &&
+           !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
+           (plan->differentiates || plan->computes) &&
+           sweep->set->neighbors->position_type == plan->type;
+}

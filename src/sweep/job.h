@@ -1,0 +1,56 @@
+/* One sweep over one source set: what it is to do, the same for all its workers. */
+#ifndef SPHGI_JOB_H
+#define SPHGI_JOB_H
+#include "search/weights.h"
+#include "plan/plan.h"
+
+/* What one sweep over one source set does. */
+enum sphgi_step {
+    SPHGI_SUM_MOMENTS = 1,
+    SPHGI_SUM_FIELDS = 2,
+    SPHGI_FINISH = 4 /* write results at once; otherwise add the sums to the arena */
+};
+
+/* Where pairs go that are wanted one by one (sphg_pair_gradients). */
+struct sphgi_pair_sink {
+    const int32_t *row_of_target; /* row of the output */
+    int64_t *counts;              /* first round: pairs per row */
+    const int64_t *offsets;       /* second round */
+    int32_t *indices;
+    struct sphgi_columns gradient; /* count 0: not wanted */
+};
+
+/* A sweep, the same for all its workers. */
+struct sphgi_sweep {
+    sphg_context *context;
+    const struct sphgi_plan *plan;
+    const struct sphgi_set_plan *set;
+    int32_t set_number;
+    unsigned steps;
+    const struct sphgi_passes *passes, *position_passes; /* of fields; of positions */
+    bool packed;                  /* fields stand as rows in storage order; else rows are copied */
+    const char *packed_positions; /* x y z V, source_count + 1 rows */
+    const char *packed_rows;      /* plan->row_count arrays of as many rows each */
+    bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
+    double volume;                /* V / H^d of all sources otherwise */
+    struct sphgi_kept_weights kept;           /* s_ij that this sweep reads and writes */
+    char *arena;                              /* sums, plan->sums numbers a target */
+    const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
+    const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
+    char *memory;
+    size_t memory_each;
+};
+
+/* What volumes are multiplied with: 1 / H^d. */
+double sphgi_volume_unit(const struct sphgi_sweep *sweep);
+
+/* s_ij can be formed as pairs are gathered: nobody asks for distances, nor for anything else that
+ * is made of them. */
+bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep);
+
+/* Lists may hold pairs with r >= H: these are cut. */
+bool sphgi_is_superset(const struct sphgi_sweep *sweep);
+/* Pairs that are none of this sweep must be told from others by looking at each. */
+bool sphgi_is_guarded(const struct sphgi_sweep *sweep);
+
+#endif

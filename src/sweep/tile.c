@@ -1,0 +1,78 @@
+#include "tile.h"
+#include "clean.h"
+#include "core/view.h"
+#include "lane_radii.h"
+#include "sums.h"
+
+/* Rows that are not at hand are copied. */
+static void copy_rows(struct sphgi_worker *w, const struct sphgi_lane_lists *lists)
+{
+    struct sphgi_lane_lists ready = {.side_by_side = false};
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        const int32_t count = lists->count[l], stride = lists->stride[l];
+        uint32_t *ids = w->rows.clean_ids + l * SPHGI_CHUNK;
+        if (count && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
+            sphgi_clean_list(w, sphgi_targets(w)[l], lists->ids[l], count, ids);
+        else
+            for (int32_t k = 0; k < count; ++k)
+                ids[k] = lists->ids[l][(ptrdiff_t)k * stride];
+        if (count)
+            sphgi_make_local(w, ids, count, l * SPHGI_CHUNK);
+        for (int32_t k = count; k % 4; ++k)
+            ids[k] = w->gather.dummy;
+        ready.ids[l] = ids;
+        ready.count[l] = count;
+        ready.stride[l] = 1;
+    }
+    w->passes->interleave(&ready, 0, w->gather.dummy, &w->tile);
+}
+
+/* Steps [begin, begin + tile.steps) of lists whose ids cannot be taken as they are. */
+static void ready_ids(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+{
+    struct sphgi_lane_lists part = {.side_by_side = false};
+    for (int32_t l = 0; l < w->passes->lanes; ++l) {
+        part.ids[l] =
+            w->batch.pairs[l] ? lists->ids[l] + (ptrdiff_t)begin * lists->stride[l] : NULL;
+        part.count[l] = w->batch.pairs[l];
+        part.stride[l] = lists->stride[l];
+    }
+    if (w->rows.local)
+        copy_rows(w, &part);
+    else
+        sphgi_clean_lists(w, &part);
+}
+
+/* s_ij that stand in memory are read instead of formed; what is formed there is kept. */
+static void gather_factors(struct sphgi_worker *w, int32_t begin)
+{
+    const struct sphgi_passes *p = w->passes;
+    const size_t step = SPHGI_GROUP * sphgi_size_of_type(w->sweep->plan->type);
+    char *kept = w->batch.kept ? w->batch.kept + (size_t)begin * step : NULL;
+    if (kept && w->batch.kept_stand) {
+        p->gather_offsets(&w->gather, kept, sphgi_places(w), &w->tile);
+        return;
+    }
+    p->gather_factors(&w->gather, &w->shape, sphgi_places(w), &w->tile);
+    if (kept)
+        p->keep_factors(&w->tile, kept);
+}
+
+void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+{
+    const bool ready = !w->rows.local && w->sweep->set->neighbors->kind != SPHGI_HOST_LISTS;
+    if (!ready || w->sweep->pairs)
+        for (int32_t l = 0; l < w->passes->lanes; ++l)
+            w->batch.pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
+    if (ready)
+        w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
+    else
+        ready_ids(w, lists, begin);
+    if (w->factors_at_once)
+        gather_factors(w, begin);
+    else
+        w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
+            &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
+    sphgi_scale_volumes(w);
+    sphgi_evaluate_tile(w);
+}
