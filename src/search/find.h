@@ -2,6 +2,7 @@
 #ifndef SPHGI_FIND_H
 #define SPHGI_FIND_H
 #include "neighbors.h"
+#include "surroundings.h"
 
 enum {
     SPHGI_CANDIDATES_MOST =

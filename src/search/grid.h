@@ -1,67 +1,13 @@
-/* The uniform grid: cells a little wider than the search radius, gathered in blocks, bars of cells
- * along x. Only blocks that hold a particle exist, so that memory depends on the number of
- * particles alone. Particles are sorted by z, y and x of their cells, inside a cell by number:
- * whatever lies in neighbouring cells along x follows one another. */
+/* The uniform grid: cells gathered in blocks. Only blocks that hold a particle exist, so that
+ * memory depends on the number of particles alone. Particles are sorted by z, y and x of their
+ * cells, inside a cell by number: whatever lies in neighbouring cells along x follows one another.
+ */
 #ifndef SPHGI_GRID_H
 #define SPHGI_GRID_H
 #include "core/context.h"
-#include "octaves.h"
-
-enum {
-    SPHGI_BLOCK_SHIFT = 5,
-    SPHGI_BLOCK_CELLS = 1 << SPHGI_BLOCK_SHIFT,
-    SPHGI_BARS_MOST = 9 /* a block and the bars beside it */
-};
-
-/* ---- Lattice -------------------------------------------------------------------------------- */
-
-struct sphgi_axis {
-    double inverse;    /* open: 1 / cell width */
-    double length;     /* of the period; 0: open */
-    int64_t cells;     /* of the period */
-    int32_t shift;     /* a block is 2^shift cells long: SPHGI_BLOCK_SHIFT along x, else 0 */
-    int32_t low, high; /* neighbouring cells that are cells of their own: -1 .. 1, fewer where the
-                          period holds less than three */
-};
-
-/* How space is cut: shared by the grids of sources and targets. */
-struct sphgi_lattice {
-    struct sphgi_axis axis[3];
-    int32_t dimension;
-    bool periodic;
-    double slack;    /* rounding of differences between periodic images [L] */
-    int32_t octaves; /* of radii (octaves.h); 0: all particles have the same */
-    double top;      /* the largest radius, if there are octaves */
-};
-
-/* The periodic axes of a search for that radius. */
-struct sphgi_periods sphgi_periods_of(int32_t dimension, double radius, const double *period,
-                                      sphg_type type);
-/* Bounds how far rounding brings images apart or together along any periodic axis [L]. largest[a]:
- * the largest |coordinate|. */
-double sphgi_slack_of(const struct sphgi_periods *periods, const double *largest, sphg_type type);
-struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
-                                      const struct sphgi_periods *periods, const double *largest,
-                                      sphg_type type);
-struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice);
-/* Cells of octave k are 2^-k as wide. */
-double sphgi_place_on_axis(const struct sphgi_axis *axis, int32_t octave, double x, int64_t *cell);
-void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell);
-/* Its number in its block. */
-int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell);
-
-/* ---- Grid ----------------------------------------------------------------------------------- */
-
-/* Three coordinates of a block. Keys rise as blocks do in storage. */
-struct sphgi_key {
-    uint64_t low, high;
-};
-
-struct sphgi_block {
-    struct sphgi_key key;
-    int32_t first;     /* particle */
-    uint32_t occupied; /* a bit per cell that holds somebody */
-};
+#include "block.h"
+#include "lattice.h"
+#include "tree.h"
 
 /* Blocks may be as many as particles: what there is per block must be small. The starts of a
  * block's occupied cells, and the end of the last one, stand in cell_start from the number of its
@@ -104,24 +50,12 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              int32_t count, void *tables);
 void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allocator);
 
-struct sphgi_key sphgi_key_of(const int64_t *at);
-void sphgi_key_open(struct sphgi_key key, int64_t *at);
-static inline bool sphgi_same_key(struct sphgi_key a, struct sphgi_key b)
-{
-    return a.low == b.low && a.high == b.high;
-}
-
 /* A number in [0, slots). */
 static inline uint32_t sphgi_slot_of(struct sphgi_key key, uint32_t slots)
 {
     uint64_t h = (key.low ^ key.high << 29 ^ key.high >> 35) * 0x9E3779B97F4A7C15u;
     h = (h ^ h >> 32) * 0xD6E8FEB86659FD93u;
     return (uint32_t)((h >> 32) * slots >> 32);
-}
-
-static inline bool sphgi_is_before(struct sphgi_key a, struct sphgi_key b)
-{
-    return a.high != b.high ? a.high < b.high : a.low < b.low;
 }
 
 /* The block's number, -1: no particle is there. */
@@ -149,30 +83,5 @@ static inline int32_t sphgi_first_of_cell(const struct sphgi_grid *grid, int32_t
 
 /* Numbers of the first particles of all cells of a block, and the number behind the last. */
 void sphgi_cell_starts(const struct sphgi_grid *grid, int32_t block, int32_t *start);
-
-/* ---- Surroundings --------------------------------------------------------------------------- */
-
-/* The sources of a bar and of the cells before and behind it: those of cell c begin with row
- * first[c + 1] and end before first[c + 2], for c from -1 to SPHGI_BLOCK_CELLS. What a period puts
- * before or behind it stands somewhere else in storage: from row before[0] up to, and without,
- * before[1]. */
-struct sphgi_bar {
-    int32_t first[SPHGI_BLOCK_CELLS + 3];
-    int32_t before[2], behind[2];
-};
-
-/* The bars around a block, its own first. */
-struct sphgi_surroundings {
-    int32_t bars, cells; /* cells: along x, in a period what the block has of it */
-    struct sphgi_bar bar[SPHGI_BARS_MOST];
-};
-
-void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key block,
-                           struct sphgi_surroundings *around);
-
-/* The rows of the candidates of a cell. */
-void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                          const struct sphgi_surroundings *around, int32_t cell,
-                          struct sphgi_runs *runs);
 
 #endif

@@ -1,5 +1,5 @@
 /* How space is cut into cells and blocks. */
-#include "grid.h"
+#include "lattice.h"
 #include <math.h>
 #include <string.h>
 

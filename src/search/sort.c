@@ -445,6 +445,6 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     memset((char *)grid->rows.data + n * row_size, 0, SPHGI_LANES_MOST * row_size);
     grid->fullest = (int32_t)atomic_load(&sort.fullest);
     if (lattice->octaves)
-        sphgi_tree_build(grid);
+        sphgi_tree_build(&grid->tree, grid->blocks, grid->block_count, lattice->octaves);
     return SPHG_OK;
 }

@@ -1,5 +1,5 @@
 /* What lies around a block of the grid. */
-#include "grid.h"
+#include "surroundings.h"
 
 /* ---- Bars ----------------------------------------------------------------------------------- */
 

@@ -1,0 +1,31 @@
+/* What is near a block: the bars of cells beside it, and from these the candidates of a cell. */
+#ifndef SPHGI_SURROUNDINGS_H
+#define SPHGI_SURROUNDINGS_H
+#include "grid.h"
+
+enum { SPHGI_BARS_MOST = 9 /* a block and the bars beside it */ };
+
+/* The sources of a bar and of the cells before and behind it: those of cell c begin with row
+ * first[c + 1] and end before first[c + 2], for c from -1 to SPHGI_BLOCK_CELLS. What a period puts
+ * before or behind it stands somewhere else in storage: from row before[0] up to, and without,
+ * before[1]. */
+struct sphgi_bar {
+    int32_t first[SPHGI_BLOCK_CELLS + 3];
+    int32_t before[2], behind[2];
+};
+
+/* The bars around a block, its own first. */
+struct sphgi_surroundings {
+    int32_t bars, cells; /* cells: along x, in a period what the block has of it */
+    struct sphgi_bar bar[SPHGI_BARS_MOST];
+};
+
+void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key block,
+                           struct sphgi_surroundings *around);
+
+/* The rows of the candidates of a cell. */
+void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
+                          const struct sphgi_surroundings *around, int32_t cell,
+                          struct sphgi_runs *runs);
+
+#endif

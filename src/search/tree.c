@@ -1,0 +1,86 @@
+#include "tree.h"
+
+static int32_t groups_of(int32_t items)
+{
+    return items / SPHGI_TREE_WIDTH + (items % SPHGI_TREE_WIDTH != 0);
+}
+
+size_t sphgi_tree_size(int32_t blocks)
+{
+    int32_t groups = groups_of(blocks);
+    size_t bytes = sphgi_round_up((size_t)groups * sizeof(struct sphgi_leaf), SPHGI_ALIGNMENT);
+    for (; groups > 1; bytes += (size_t)groups * sizeof(struct sphgi_node))
+        groups = groups_of(groups);
+    return sphgi_round_up(bytes, SPHGI_ALIGNMENT);
+}
+
+void sphgi_tree_use(struct sphgi_tree *tree, int32_t blocks, void *memory)
+{
+    int32_t groups = groups_of(blocks);
+    tree->height = 0;
+    tree->groups[0] = groups;
+    tree->leaves = memory;
+    struct sphgi_node *node =
+        (void *)((char *)memory +
+                 sphgi_round_up((size_t)groups * sizeof(*tree->leaves), SPHGI_ALIGNMENT));
+    while (groups > 1) {
+        groups = groups_of(groups);
+        tree->groups[++tree->height] = groups;
+        tree->nodes[tree->height] = node;
+        node += groups;
+    }
+}
+
+static void fill_leaves(struct sphgi_tree *tree, const struct sphgi_block *blocks, int32_t count,
+                        int32_t octaves)
+{
+    int32_t octave = -1;
+    for (int32_t b = 0; b < tree->groups[0] * SPHGI_TREE_WIDTH; ++b) {
+        int64_t at[3] = {INT32_MIN, INT32_MIN, INT32_MIN}; /* nobody looks there */
+        struct sphgi_leaf *leaf = &tree->leaves[b / SPHGI_TREE_WIDTH];
+        if (b < count) {
+            sphgi_key_open(blocks[b].key, at);
+            const int32_t own = octaves > 1 ? sphgi_lower_octave(at) : 0;
+            while (octave < own)
+                tree->first[++octave] = b;
+        }
+        for (int32_t a = 0; a < 3; ++a)
+            leaf->at[a][b % SPHGI_TREE_WIDTH] = b < count ? sphgi_narrowed(at[a]) : INT32_MIN;
+    }
+    while (octave < octaves)
+        tree->first[++octave] = count;
+}
+
+/* What group number g of a height spans along an axis; places without an item span nothing. */
+static void span_of(const struct sphgi_tree *tree, int32_t height, int32_t g, int32_t axis,
+                    int32_t *low, int32_t *high)
+{
+    *low = INT32_MAX;
+    *high = INT32_MIN;
+    for (int32_t k = 0; k < SPHGI_TREE_WIDTH; ++k) {
+        const int32_t l =
+            height ? tree->nodes[height][g].low[axis][k] : tree->leaves[g].at[axis][k];
+        const int32_t h = height ? tree->nodes[height][g].high[axis][k] : l;
+        if (h == INT32_MIN)
+            continue;
+        *low = sphgi_min32(*low, l);
+        *high = sphgi_max32(*high, h);
+    }
+}
+
+void sphgi_tree_build(struct sphgi_tree *tree, const struct sphgi_block *blocks, int32_t count,
+                      int32_t octaves)
+{
+    fill_leaves(tree, blocks, count, octaves);
+    for (int32_t height = 1; height <= tree->height; ++height)
+        for (int32_t k = 0; k < tree->groups[height] * SPHGI_TREE_WIDTH; ++k) {
+            struct sphgi_node *node = &tree->nodes[height][k / SPHGI_TREE_WIDTH];
+            const int32_t at = k % SPHGI_TREE_WIDTH;
+            for (int32_t a = 0; a < 3; ++a) {
+                node->low[a][at] = INT32_MAX;
+                node->high[a][at] = INT32_MIN;
+                if (k < tree->groups[height - 1])
+                    span_of(tree, height - 1, k, a, &node->low[a][at], &node->high[a][at]);
+            }
+        }
+}

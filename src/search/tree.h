@@ -1,0 +1,47 @@
+/* A tree over the blocks of a grid with octaves. Where many small cells are within the reach of a
+ * large particle, most of them empty, it finds the blocks that count. */
+#ifndef SPHGI_TREE_H
+#define SPHGI_TREE_H
+#include "core/memory.h"
+#include "block.h"
+#include "octaves.h"
+
+enum {
+    SPHGI_TREE_WIDTH = 8,
+    SPHGI_TREE_HEIGHT = 11 /* more than any count of blocks needs */
+};
+
+/* Coordinates of SPHGI_TREE_WIDTH blocks, and what as many items of the height below span. */
+struct sphgi_leaf {
+    int32_t at[3][SPHGI_TREE_WIDTH];
+};
+struct sphgi_node {
+    int32_t low[3][SPHGI_TREE_WIDTH], high[3][SPHGI_TREE_WIDTH];
+};
+
+/* Item number k of a height has the items 8 k .. 8 k + 7 of the height below; those of height 0 are
+ * the blocks, in the order of storage. */
+struct sphgi_tree {
+    int32_t height;                    /* the largest: of one node, or 0 */
+    int32_t groups[SPHGI_TREE_HEIGHT]; /* leaves, then nodes of each height */
+    struct sphgi_leaf *leaves;
+    struct sphgi_node *nodes[SPHGI_TREE_HEIGHT]; /* [0]: unused */
+    int32_t first[SPHGI_OCTAVES_MOST + 1];       /* block of each octave */
+};
+
+size_t sphgi_tree_size(int32_t blocks);
+/* The tree stands there. */
+void sphgi_tree_use(struct sphgi_tree *tree, int32_t blocks, void *memory);
+/* Over so many blocks of so many octaves, in the order of storage. */
+void sphgi_tree_build(struct sphgi_tree *tree, const struct sphgi_block *blocks, int32_t count,
+                      int32_t octaves);
+
+/* A place as the tree has it. Far out, places that are neighbours may become one: the order stays.
+ */
+static inline int32_t sphgi_narrowed(int64_t at)
+{
+    const int64_t most = 1 << 30;
+    return (int32_t)(at < -most ? -most : at > most ? most : at);
+}
+
+#endif
