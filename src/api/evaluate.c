@@ -1,6 +1,6 @@
 /* sphg_evaluate and the short ways to call it. */
 #include "core/check.h"
-#include "plan/plan.h"
+#include "plan/make.h"
 #include "sweep/sweep.h"
 
 static sphg_result evaluate(struct sphgi_checker checker, const sphg_scheme *scheme,

@@ -2,7 +2,7 @@
 #include "core/check.h"
 #include "entries.h"
 #include "core/parallel.h"
-#include "plan/plan.h"
+#include "plan/make.h"
 #include "sweep/selection.h"
 #include "sweep/sweep.h"
 #include "core/view.h"

@@ -31,12 +31,18 @@ struct sphg_context {
     struct sphgi_buffer order_grid[4]; /* of sphg_neighbors_get_order() for the host's lists */
 };
 
+/* Fills a new one, but for `threads`. The configuration was checked. */
+void sphgi_context_open(sphg_context *context, const sphg_config *config);
+
 const struct sphgi_passes *sphgi_passes_of(const sphg_context *context, sphg_type type);
 
 /* A call begins: refuses a context in use, and sets the default floating-point environment. Every
  * sphgi_enter() that gave SPHG_OK needs a leave, which puts the host's back. */
 sphg_result sphgi_enter(sphg_context *context);
 sphg_result sphgi_leave(sphg_context *context, sphg_result result);
+
+/* Tells the host's log. */
+void sphgi_report(const sphg_config *config, sphg_result result, const char *message);
 
 /* Notes what was objected to, tells the host's log, returns result. */
 __attribute__((format(printf, 3, 4))) sphg_result

@@ -121,9 +121,4 @@ static inline int32_t sphgi_quadratic_moments(int32_t dimension)
 /* Numbers that `square` of a field is summed in. */
 int32_t sphgi_square_sums(const struct sphgi_plan *plan);
 
-/* Everything in request that is wrong is refused here. The plan lives in context->plan. */
-sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *scheme,
-                            const sphg_request *request, enum sphgi_purpose purpose,
-                            struct sphgi_plan *plan);
-
 #endif

@@ -1,5 +1,6 @@
 #include "build.h"
 #include "dummy.h"
+#include "geometry.h"
 #include "core/kernel.h"
 #include "core/parallel.h"
 #include "core/view.h"

@@ -1,7 +1,7 @@
 /* Pairs found up to H + skin serve until a particle has moved skin / 2. */
 #ifndef SPHGI_SKIN_H
 #define SPHGI_SKIN_H
-#include "build.h"
+#include "geometry.h"
 
 /* The object holds pairs with a skin, found for the same question. */
 bool sphgi_skin_asks_the_same(const sphg_neighbors *neighbors,

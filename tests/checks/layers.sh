@@ -38,6 +38,17 @@ files=$(cd src && find . -name '*.[ch]' | sed 's|^\./||' | sort)
             complain("src/" FILENAME " includes " name ", which stands above it")
     }
     END { exit failed }' $files) >&2 || status=1
+# A header and its source are one part: none needs itself by way of others.
+# shellcheck disable=SC2086
+(cd src && awk '
+    function part(path) { sub(/\.[ch]$/, "", path); return path }
+    /^[ \t]*#[ \t]*include[ \t]*"/ {
+        split($0, parts, "\"")
+        beside = FILENAME
+        sub(/[^\/]*$/, "", beside)
+        name = parts[2] ~ /\// ? parts[2] : beside parts[2]
+        if (part(name) != part(FILENAME)) print part(FILENAME), part(name)
+    }' $files) | tsort >/dev/null || complain "files of src include one another in a circle"
 for folder in $order; do
     [ -e "src/$folder" ] || complain "src/$folder is named as a layer and is not there"
     grep -q "$folder" src/README.md || complain "src/README.md does not show $folder"

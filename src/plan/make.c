@@ -1,3 +1,4 @@
+#include "make.h"
 #include "making.h"
 #include "core/digits.h"
 #include "search/places.h"
