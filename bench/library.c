@@ -1,7 +1,6 @@
 #include "library.h"
 #include "particles/names.h"
-#include "options.h"
-
+#include "command_line.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -72,6 +71,47 @@ sphg_context *library_open_path(int32_t threads, int path)
     sphg_context *context = NULL;
     const sphg_config config = {.threads = threads, .isa = (sphg_isa)(path + 1)};
     return sphg_context_create(SPHG_VERSION, &config, &context) == SPHG_OK ? context : NULL;
+}
+
+sphg_neighbors *library_neighbors(sphg_context *context)
+{
+    sphg_neighbors *neighbors = NULL;
+    library_check(context, sphg_neighbors_create(context, &neighbors));
+    return neighbors;
+}
+
+sphg_geometry library_geometry(const struct numbers *positions, sphg_type field_type)
+{
+    sphg_geometry geometry = sphg_all(numbers_view(positions), positions->count);
+    geometry.precision = field_type;
+    return geometry;
+}
+
+void library_search(sphg_context *context, sphg_neighbors *neighbors, const sphg_scheme *scheme,
+                    const sphg_geometry *geometry)
+{
+    library_check(context, sphg_neighbors_search(context, neighbors, scheme, geometry));
+}
+
+sphg_neighbors_info library_info(sphg_context *context, const sphg_neighbors *neighbors)
+{
+    sphg_neighbors_info info;
+    library_check(context, sphg_neighbors_get_info(context, neighbors, &info));
+    return info;
+}
+
+void library_correct(sphg_context *context, const sphg_scheme *scheme, const sphg_sources *sources,
+                     sphg_view corrections, uint8_t *ranks)
+{
+    library_check(context, sphg_correction(context, scheme, sources, NULL, corrections,
+                                           ranks ? sphg_view_u8(ranks, 1) : sphg_absent()));
+}
+
+void library_jacobian(sphg_context *context, const sphg_scheme *scheme, const sphg_sources *sources,
+                      const struct numbers *field, const struct numbers *jacobians)
+{
+    library_check(context, sphg_jacobian(context, scheme, sources, NULL, numbers_view(field),
+                                         numbers_view(jacobians)));
 }
 
 void library_volumes(sphg_context *context, const sphg_scheme *scheme,

@@ -1,7 +1,6 @@
 /* sphgrad-bench: finds the command and hands over. */
 #include "commands.h"
-#include "options.h"
-
+#include "command_line.h"
 #include <sphgrad/sphgrad.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +25,8 @@ static const struct command commands[] = {
      "at 100 % the library would do nothing but the arithmetic that its formulas ask for",
      command_limit},
     {"forces", "time the operators that a solver iterates: forces and divergences (15 s)",
-     "an iteration costs what its operators take; forces add up to nothing where their error is one "
+     "an iteration costs what its operators take; forces add up to nothing where their error is "
+     "one "
      "of rounding",
      command_forces},
     {"lists", "time a pair of sums over a host's own lists, and of pairs written out (5 s)",
@@ -75,7 +75,7 @@ static int run(const struct command *command, int argc, char **argv)
     char name[64]; /* in front of messages about options */
     snprintf(name, sizeof name, "sphgrad-bench %s", command->name);
     argv[0] = name;
-    options_end_help(command->summary);
+    command_line_end_help(command->summary);
     const int status = command->run(argc, argv);
     printf("\nmeaning    %s\n", command->meaning);
     return status;
@@ -84,6 +84,7 @@ static int run(const struct command *command, int argc, char **argv)
 int main(int argc, char **argv)
 {
     const char *first = argc > 1 ? argv[1] : "";
+    command_line_program("sphgrad-bench");
     if (strcmp(first, "--help") == 0 || strcmp(first, "-?") == 0 || strcmp(first, "-h") == 0)
         return print_overview();
     if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0)
@@ -93,5 +94,5 @@ int main(int argc, char **argv)
     for (int k = 0; k < command_count; k++)
         if (strcmp(first, commands[k].name) == 0)
             return run(&commands[k], argc - 1, argv + 1);
-    options_refuse("there is no command '%s' (sphgrad-bench --help lists them)", first);
+    command_line_refuse("there is no command '%s' (sphgrad-bench --help lists them)", first);
 }

@@ -4,7 +4,6 @@
  * in ../shared/data beside the checkout; skips where there is none. */
 #include "support/fixture.h"
 #include "tables/csv.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,6 @@
  * by what `sphgrad-bench fields` runs and compared with those of an independent program. */
 #include "support/test.h"
 #include "../bench/fields/field_study.h"
-
 #include <math.h>
 
 enum { SIZES = 3 };

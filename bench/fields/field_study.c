@@ -1,7 +1,6 @@
 #include "field_study.h"
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "library.h"
-
 #include <math.h>
 
 static const int32_t boundary_layers = 2;
@@ -27,13 +26,10 @@ static sphg_scheme scheme_of(const struct study *study, sphg_method method)
 static void find_neighbors(struct study *study)
 {
     const sphg_scheme scheme = scheme_of(study, SPHG_KGC);
-    const sphg_geometry geometry = {.sources = numbers_view(&study->positions),
-                                    .source_count = study->count,
-                                    .target_count = study->count,
-                                    .precision = field_type(study->setting.precision)};
-    library_check(study->context, sphg_neighbors_create(study->context, &study->neighbors));
-    library_check(study->context,
-                  sphg_neighbors_search(study->context, study->neighbors, &scheme, &geometry));
+    const sphg_geometry geometry =
+        library_geometry(&study->positions, field_type(study->setting.precision));
+    study->neighbors = library_neighbors(study->context);
+    library_search(study->context, study->neighbors, &scheme, &geometry);
     library_volumes(study->context, &scheme, study->neighbors, &study->volumes);
 }
 

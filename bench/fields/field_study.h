@@ -4,8 +4,7 @@
 #ifndef SPHGRAD_BENCH_FIELD_STUDY_H
 #define SPHGRAD_BENCH_FIELD_STUDY_H
 #include "particles/names.h"
-#include "particles/numbers.h"
-
+#include "numbers.h"
 #include <stdbool.h>
 
 enum study_field {

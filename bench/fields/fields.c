@@ -1,122 +1,138 @@
 /* The command `fields`: errors of plain and corrected derivatives on a square, Figs. 2 and 4 of
  * Westhofen, Jeske, Bender 2023, doi:10.1145/3606933. */
-#include "fields.h"
 #include "commands.h"
-#include "options.h"
-
+#include "field_study.h"
+#include "report/plot.h"
+#include "report/table.h"
+#include "settings.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-struct options {
-    struct study_setting setting;
-    const char *output;
+enum { METHODS = 6, SIZES = 3 /* N, 2 N, 4 N */, KINDS = 2 /* of fields */ };
+
+static const sphg_method order[METHODS] = {SPHG_PLAIN, SPHG_KGC,  SPHG_MLS,
+                                           SPHG_RKPM,  SPHG_CMLS, SPHG_CRKPM};
+
+/* Everything measured on one lattice. */
+struct lattice_results {
+    const char *name;                                  /* "square" or "jittered" */
+    struct study_setting setting;                      /* with the smallest N */
+    struct study_errors errors[KINDS][METHODS][SIZES]; /* methods in the order above */
 };
 
-enum {
-    OPTION_SIZE = 256,
-    OPTION_SUPPORT,
-    OPTION_JITTER,
-    OPTION_KERNEL,
-    OPTION_PRECISION,
-    OPTION_OUTPUT
-};
+/* ---- Measuring ------------------------------------------------------------------------------- */
 
-static const struct argp_option option_list[] = {
-    {"size", OPTION_SIZE, "N", 0, "N x N particles; convergence over N, 2 N, 4 N (40)", 0},
-    {"support", OPTION_SUPPORT, "H", 0, "support radius in spacings (2)", 0},
-    {"jitter", OPTION_JITTER, "SHARE", 0, "of the spacing, each way, on the jittered lattice (0.2)",
-     0},
-    {"kernel", OPTION_KERNEL, "NAME", 0,
-     "cubic, quintic, wendland-c2, wendland-c4, wendland-c6, poly6 or spiky (cubic)", 0},
-    {"precision", OPTION_PRECISION, "TYPE", 0,
-     "f32, f64, or mixed: positions f64, the rest f32 (f64)", 0},
-    {"output", OPTION_OUTPUT, "FOLDER", 0, "where CSV, scripts and pictures go (fields)", 0},
-    {0}};
-
-static error_t parse_option(int key, char *text, struct argp_state *state)
+/* One row a particle: where, which velocity, all errors of the method in the order above. */
+static void write_particles(const char *folder, const char *name, const struct study *study,
+                            enum study_field field, const double *errors)
 {
-    struct options *options = state->input;
-    struct study_setting *setting = &options->setting;
-    switch (key) {
-    case OPTION_SIZE:
-        setting->side = option_integer("size", text, 5, 500);
-        return 0;
-    case OPTION_SUPPORT:
-        setting->support = option_real("support", text, 0.1, 20);
-        return 0;
-    case OPTION_JITTER:
-        setting->jitter = option_real("jitter", text, 0.001, 0.5);
-        return 0;
-    case OPTION_KERNEL:
-        setting->kernel = (sphg_kernel)option_choice("kernel", text, kernel_names);
-        return 0;
-    case OPTION_PRECISION:
-        setting->precision = (enum precision)option_choice("precision", text, precision_names);
-        return 0;
-    case OPTION_OUTPUT:
-        options->output = text;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
+    struct column columns[5 + 2 * METHODS] = {{NULL, "x", NULL, NULL},
+                                              {NULL, "y", NULL, NULL},
+                                              {NULL, "vx", NULL, NULL},
+                                              {NULL, "vy", NULL, NULL}};
+    for (int k = 0; k < 2 * METHODS; k++)
+        columns[4 + k].key = table_text("%s_error_%s", k < METHODS ? "gradient" : "curl",
+                                        method_names[order[k % METHODS]]);
+    struct table *table = table_create("", columns);
+    for (int32_t i = 0; i < study->count; i++) {
+        struct cell cells[4 + 2 * METHODS];
+        double velocity[2];
+        study_velocity(study, field, i, velocity);
+        for (int axis = 0; axis < 2; axis++) {
+            cells[axis] = cell_number(numbers_get(&study->positions, i, axis));
+            cells[2 + axis] = cell_number(velocity[axis]);
+        }
+        for (int k = 0; k < 2 * METHODS; k++)
+            cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->count + i]);
+        table_add(table, cells);
     }
+    table_write_csv(table, folder, name);
 }
 
-static void measure(const char *directory, struct lattice_results *results)
+/* The smallest lattice leaves a file of its particles. */
+static void measure_field(const char *folder, const struct study *study, enum study_field field,
+                          struct lattice_results *results, int size)
 {
-    for (int size = 0; size < FIELDS_SIZES; size++) {
+    const size_t count = (size_t)study->count;
+    double *errors = allocate_or_exit(2 * METHODS * count, sizeof *errors);
+    for (int k = 0; k < METHODS; k++)
+        results->errors[field][k][size] =
+            study_measure(study, field, order[k], errors + (size_t)k * count,
+                          errors + (size_t)(METHODS + k) * count);
+    if (size == 0)
+        write_particles(folder,
+                        table_text("fields_%s_%s.csv", study_field_name(field), results->name),
+                        study, field, errors);
+    free(errors);
+}
+
+static void measure(const char *folder, struct lattice_results *results)
+{
+    for (int size = 0; size < SIZES; size++) {
         struct study_setting setting = results->setting;
         setting.side <<= size;
         struct study study = study_open(&setting);
-        for (int field = 0; field < FIELDS_KINDS; field++) {
-            const enum study_field kind = (enum study_field)field;
-            if (size == 0)
-                fields_write_particles(directory, &study, kind, results);
-            for (int k = 0; size > 0 && k < FIELDS_METHODS; k++)
-                results->errors[field][fields_order[k]][size] =
-                    study_measure(&study, kind, fields_order[k], NULL, NULL);
-        }
+        for (int field = 0; field < KINDS; field++)
+            measure_field(folder, &study, (enum study_field)field, results, size);
         study_close(&study);
     }
 }
 
-static void print_field(const struct lattice_results *results, enum study_field field)
+/* ---- Tables ---------------------------------------------------------------------------------- */
+
+static struct table *table_of_errors(const struct lattice_results *results)
 {
-    printf("\n  %-34s %21s %21s %10s\n", study_field_formula(field), "boundary      ",
-           "inside        ", "curl   ");
-    printf("  %-34s %10s %10s %10s %10s %10s\n", "error |J_i - J|_F", "max", "mean", "max", "mean",
-           "max");
-    for (int k = 0; k < FIELDS_METHODS; k++) {
-        const struct study_errors *errors = &results->errors[field][fields_order[k]][0];
-        printf("  %-34s %10.3e %10.3e %10.3e %10.3e %10.3e\n", method_names[fields_order[k]],
-               errors->boundary_max, errors->boundary_mean, errors->inside_max, errors->inside_mean,
-               errors->curl_max);
+    static const struct column columns[] = {{"", NULL, NULL, NULL},
+                                            {"boundary max", NULL, "%.3e", NULL},
+                                            {"mean", NULL, "%.3e", NULL},
+                                            {"inside max", NULL, "%.3e", NULL},
+                                            {"mean", NULL, "%.3e", NULL},
+                                            {"curl max", NULL, "%.3e", NULL},
+                                            {0}};
+    struct table *table = table_create("", columns);
+    for (int field = 0; field < KINDS; field++) {
+        table_section(table, study_field_formula((enum study_field)field));
+        for (int k = 0; k < METHODS; k++) {
+            const struct study_errors *e = &results->errors[field][k][0];
+            TABLE_ROW(table, cell_text(method_names[order[k]]), cell_number(e->boundary_max),
+                      cell_number(e->boundary_mean), cell_number(e->inside_max),
+                      cell_number(e->inside_mean), cell_number(e->curl_max));
+        }
     }
+    return table;
 }
 
 /* The error falls as d^order between the two finest lattices. */
-static double order_of(double coarse, double fine)
+static struct cell cell_order(double coarse, double fine)
 {
-    return log2(coarse / fine);
+    return cell_number(log2(coarse / fine));
 }
 
-static void print_convergence(const struct lattice_results *results)
+static struct table *table_of_convergence(const struct lattice_results *results)
 {
+    static struct column columns[10];
+    const char *const halves[] = {"boundary", "inside"};
     const int32_t side = results->setting.side;
-    printf("\n  %-12s %39s   %39s\n", "convergence", "boundary max          ",
-           "inside max           ");
-    printf("  %-12s", study_field_name(FIELD_TRIGONOMETRIC));
-    for (int half = 0; half < 2; half++)
-        printf(" %9s%-4d %6d %9d %7s  ", "N = ", side, 2 * side, 4 * side, "order");
-    printf("\n");
-    for (int k = 0; k < FIELDS_METHODS; k++) {
-        const struct study_errors *e = results->errors[FIELD_TRIGONOMETRIC][fields_order[k]];
-        printf("  %-12s   %9.3e %9.3e %9.3e %6.2f", method_names[fields_order[k]],
-               e[0].boundary_max, e[1].boundary_max, e[2].boundary_max,
-               order_of(e[1].boundary_max, e[2].boundary_max));
-        printf("     %9.3e %9.3e %9.3e %6.2f\n", e[0].inside_max, e[1].inside_max, e[2].inside_max,
-               order_of(e[1].inside_max, e[2].inside_max));
+    columns[0] = (struct column){"convergence, trigonometric, max", NULL, NULL, NULL};
+    for (int half = 0; half < 2; half++) {
+        columns[4 * half + 1].head = table_text("%s N = %d", halves[half], (int)side);
+        columns[4 * half + 2].head = table_text("%d", 2 * (int)side);
+        columns[4 * half + 3].head = table_text("%d", 4 * (int)side);
+        columns[4 * half + 4] = (struct column){"order", NULL, "%.2f", NULL};
+        for (int size = 0; size < SIZES; size++)
+            columns[4 * half + 1 + size].format = "%.3e";
     }
+    struct table *table = table_create("", columns);
+    for (int k = 0; k < METHODS; k++) {
+        const struct study_errors *e = results->errors[FIELD_TRIGONOMETRIC][k];
+        TABLE_ROW(table, cell_text(method_names[order[k]]), cell_number(e[0].boundary_max),
+                  cell_number(e[1].boundary_max), cell_number(e[2].boundary_max),
+                  cell_order(e[1].boundary_max, e[2].boundary_max), cell_number(e[0].inside_max),
+                  cell_number(e[1].inside_max), cell_number(e[2].inside_max),
+                  cell_order(e[1].inside_max, e[2].inside_max));
+    }
+    return table;
 }
 
 static void print_lattice(const struct lattice_results *results)
@@ -125,42 +141,117 @@ static void print_lattice(const struct lattice_results *results)
     printf("\n%s lattice", results->name);
     if (results->setting.jitter > 0)
         printf(", each coordinate moved by up to %g d", results->setting.jitter);
-    printf(": N = %d, %d particles, %d of them on the boundary\n", side, side * side,
-           side * side - (side - 4) * (side - 4));
-    for (int field = 0; field < FIELDS_KINDS; field++)
-        print_field(results, (enum study_field)field);
-    print_convergence(results);
+    printf(": N = %d, %d particles, %d of them on the boundary; error |J_i - J|_F\n", side,
+           side * side, side * side - (side - 4) * (side - 4));
+    table_print(table_of_errors(results));
+    table_print(table_of_convergence(results));
+}
+
+static void write_convergence(const char *folder, const struct lattice_results results[2])
+{
+    static const struct column columns[] = {{NULL, "lattice", NULL, NULL},
+                                            {NULL, "field", NULL, NULL},
+                                            {NULL, "method", NULL, NULL},
+                                            {NULL, "N", NULL, NULL},
+                                            {NULL, "spacing", NULL, NULL},
+                                            {NULL, "boundary_max", NULL, NULL},
+                                            {NULL, "boundary_mean", NULL, NULL},
+                                            {NULL, "inside_max", NULL, NULL},
+                                            {NULL, "inside_mean", NULL, NULL},
+                                            {NULL, "curl_max", NULL, NULL},
+                                            {0}};
+    struct table *table = table_create("", columns);
+    for (int n = 0; n < 2 * KINDS * METHODS * SIZES; n++) {
+        const int size = n % SIZES, k = n / SIZES % METHODS, field = n / SIZES / METHODS % KINDS;
+        const struct lattice_results *lattice = &results[n / SIZES / METHODS / KINDS];
+        const struct study_errors *e = &lattice->errors[field][k][size];
+        const int32_t side = lattice->setting.side << size;
+        TABLE_ROW(
+            table, cell_text(lattice->name), cell_text(study_field_name((enum study_field)field)),
+            cell_text(method_names[order[k]]), cell_count(side), cell_number(2.0 / side),
+            cell_number(e->boundary_max), cell_number(e->boundary_mean), cell_number(e->inside_max),
+            cell_number(e->inside_mean), cell_number(e->curl_max));
+    }
+    table_write_csv(table, folder, "fields_convergence.csv");
+}
+
+/* ---- Pictures -------------------------------------------------------------------------------- */
+
+/* Three panels of a field, or, without a quantity, convergence. */
+struct picture {
+    const char *name, *quantity;
+    enum study_field field;
+};
+
+static const struct picture pictures[] = {
+    {"fields_rotation", "gradient", FIELD_ROTATION},
+    {"fields_trigonometric", "gradient", FIELD_TRIGONOMETRIC},
+    {"fields_curl", "curl", FIELD_ROTATION},
+    {"fields_convergence", NULL, FIELD_TRIGONOMETRIC},
+};
+
+static bool draw(const char *folder, const struct lattice_results *results,
+                 const struct picture *picture)
+{
+    const struct study_setting *setting = &results->setting;
+    const char *ending = setting->jitter > 0 ? "_jittered" : "";
+    const char *const parts[] = {
+        "fields/fields_common.gp",
+        picture->quantity ? "fields/fields_panels.gp" : "fields/fields_convergence.gp", NULL};
+    const char *given =
+        table_text("output = '%s%s.png'\nfield = '%s'\nformula = '%s'\nlattice = '%s'\n"
+                   "support = '%g'\nkernel = '%s'\nprecision = '%s'\nside = %d\nquantity = '%s'\n",
+                   picture->name, ending, study_field_name(picture->field),
+                   study_field_formula(picture->field), results->name, setting->support,
+                   kernel_title(setting->kernel), precision_names[setting->precision],
+                   setting->side, picture->quantity ? picture->quantity : "");
+    return plot_draw(folder, table_text("%s%s.gp", picture->name, ending), given, parts);
+}
+
+static bool draw_all(const char *folder, const struct lattice_results results[2])
+{
+    for (int lattice = 0; lattice < 2; lattice++)
+        for (size_t k = 0; k < sizeof pictures / sizeof pictures[0]; k++)
+            if (!draw(folder, &results[lattice], &pictures[k]))
+                return false;
+    return true;
 }
 
 int command_fields(int argc, char **argv)
 {
-    struct options options = {
-        {40, 2, 0.2, SPHG_CUBIC_SPLINE, PRECISION_F64},
-        "fields",
-    };
-    const struct argp argp = {
-        .options = option_list,
-        .parser = parse_option,
-        .doc = "Errors of plain and corrected derivatives of velocity fields on the square "
-               "[-1, 1]^2: tables here, every particle as CSV and pictures in a folder."};
-    options_parse(&argp, argc, argv, &options);
-    option_folder("output", options.output);
-
+    struct settings settings = {
+        .support = 2, .jitter = 0.2, .precision = PRECISION_F64, .output = "fields"};
+    int32_t side = 40;
+    const struct command_option options[] = {
+        {"size", 0, "N", "N x N particles; convergence over N, 2 N, 4 N (40)", OPTION_WHOLE, &side,
+         5, 500, NULL, NULL},
+        {"support", 0, "H", "support radius in spacings (2)", OPTION_REAL, &settings.support, 0.1,
+         20, NULL, NULL},
+        {"jitter", 0, "SHARE", "of the spacing, each way, on the jittered lattice (0.2)",
+         OPTION_REAL, &settings.jitter, 0.001, 0.5, NULL, NULL},
+        KERNEL_OPTION(settings),
+        PRECISION_OPTION(settings, "f64"),
+        OUTPUT_OPTION(settings, "CSV, scripts and pictures", "fields"),
+        {0}};
+    settings_read(&settings, options,
+                  "Errors of plain and corrected derivatives of velocity fields on the square "
+                  "[-1, 1]^2: tables here, every particle as CSV and pictures in a folder.",
+                  argc, argv);
+    const struct study_setting setting = {side, settings.support, settings.jitter, settings.kernel,
+                                          settings.precision};
+    struct lattice_results results[2] = {{.name = "square", .setting = setting},
+                                         {.name = "jittered", .setting = setting}};
+    results[0].setting.jitter = 0;
     printf("Velocity gradients on [-1, 1]^2, Figs. 2 and 4 of doi:10.1145/3606933\n"
            "difference form, %s, H = %g d, d = 2 / N, %s, V_j = 1 / sum_k W_jk (j included)\n"
            "boundary: the two outermost layers\n",
-           kernel_title(options.setting.kernel), options.setting.support,
-           precision_names[options.setting.precision]);
-    struct lattice_results results[2] = {{.name = "square", .setting = options.setting},
-                                         {.name = "jittered", .setting = options.setting}};
-    results[0].setting.jitter = 0;
+           kernel_title(settings.kernel), settings.support, precision_names[settings.precision]);
     for (int k = 0; k < 2; k++) {
-        measure(options.output, &results[k]);
+        measure(settings.output, &results[k]);
         print_lattice(&results[k]);
     }
-    fields_write_convergence(options.output, results, 2);
-    const bool drawn = fields_draw(options.output, results);
-    printf("\nwritten to %s: fields_*.csv, fields_*.gp%s\n", options.output,
-           drawn ? ", fields_*.png" : "");
+    write_convergence(settings.output, results);
+    printf("\nwritten to %s: fields_*.csv, fields_*.gp%s\n", settings.output,
+           draw_all(settings.output, results) ? ", fields_*.png" : "");
     return EXIT_SUCCESS;
 }

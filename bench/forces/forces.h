@@ -2,11 +2,8 @@
  * weights that neighbours keep. */
 #ifndef SPHGRAD_BENCH_FORCES_H
 #define SPHGRAD_BENCH_FORCES_H
-#include "particles/names.h"
-#include "settings.h"
 #include "report/timing.h"
-
-#include <stdbool.h>
+#include "settings.h"
 
 struct force_case {
     const char *name;
@@ -23,14 +20,11 @@ extern const struct force_case force_cases[FORCE_CASES];
  * differences the largest relative error of a linear field's divergence. */
 struct forces {
     struct settings settings;
-    enum precision precision;
     int32_t count;
-    int64_t pairs;
+    double pairs; /* a particle */
     struct samples times[FORCE_CASES][FORCE_SUPPLIES];
     double error[FORCE_CASES];
 };
 
 void forces_measure(struct forces *forces);
-void forces_print(const struct forces *forces);
-void forces_write_json(const struct forces *forces, const char *path, const char *executable);
 #endif

@@ -1,10 +1,10 @@
 /* The measurements of forces. */
 #include "forces.h"
 #include "library.h"
-#include "particles/lattice.h"
+#include "lattice.h"
+#include "particles/linear_field.h"
 #include "particles/particles.h"
 #include "report/progress.h"
-
 #include <math.h>
 
 const struct force_case force_cases[FORCE_CASES] = {
@@ -105,18 +105,16 @@ static void fill_fields(struct stage *stage)
         }
         numbers_set(&stage->densities, i, 0, 1000);
     }
-    particles_linear_field(&stage->particles, &stage->velocities);
+    linear_field_fill(&stage->particles.positions, &stage->velocities);
 }
 
 static void search(struct stage *stage, int supply)
 {
-    sphg_geometry geometry =
-        sphg_all(numbers_view(&stage->particles.positions), stage->particles.count);
-    geometry.precision = field_type(stage->forces->precision);
+    sphg_geometry geometry = library_geometry(&stage->particles.positions,
+                                              field_type(stage->forces->settings.precision));
     geometry.keep_weights = supply;
-    library_check(stage->context, sphg_neighbors_create(stage->context, &stage->neighbors[supply]));
-    library_check(stage->context, sphg_neighbors_search(stage->context, stage->neighbors[supply],
-                                                        &stage->scheme[0], &geometry));
+    stage->neighbors[supply] = library_neighbors(stage->context);
+    library_search(stage->context, stage->neighbors[supply], &stage->scheme[0], &geometry);
 }
 
 /* Corrections of the methods that some case asks for. */
@@ -127,23 +125,22 @@ static void correct(struct stage *stage, sphg_method method)
     const int32_t width = sphg_correction_width(&stage->scheme[method]);
     if (stage->corrections[method].count || !width)
         return;
-    stage->corrections[method] =
-        numbers_create(field_type(stage->forces->precision), stage->particles.count, width);
-    library_check(stage->context,
-                  sphg_correction(stage->context, &stage->scheme[method], &sources, NULL,
-                                  numbers_view(&stage->corrections[method]), sphg_absent()));
+    stage->corrections[method] = numbers_create(field_type(stage->forces->settings.precision),
+                                                stage->particles.count, width);
+    library_correct(stage->context, &stage->scheme[method], &sources,
+                    numbers_view(&stage->corrections[method]), NULL);
 }
 
 static struct stage open_stage(struct forces *forces)
 {
     const struct particle_source source = {.side = settings_side(forces->settings.particles, 3),
                                            .jitter = forces->settings.jitter,
-                                           .precision = forces->precision};
+                                           .precision = forces->settings.precision};
     struct stage stage = {.forces = forces,
                           .context = library_open(forces->settings.threads),
                           .particles = particles_create(&source)};
     const int32_t count = forces->count = stage.particles.count;
-    const sphg_type type = field_type(forces->precision);
+    const sphg_type type = field_type(forces->settings.precision);
     for (int method = 0; method < METHODS; method++)
         stage.scheme[method] =
             (sphg_scheme){.method = (sphg_method)method,
@@ -188,7 +185,7 @@ static void measure_round(struct stage *stage, bool is_first)
             const struct moment start = now();
             run(stage, &force_cases[k], supply);
             if (!is_first)
-                samples_add_since(&forces->times[k][supply], start);
+                samples_add(&forces->times[k][supply], since(start));
             else
                 forces->error[k] =
                     numbers_larger(forces->error[k], error_of(stage, &force_cases[k]));
@@ -199,11 +196,8 @@ void forces_measure(struct forces *forces)
 {
     struct stage stage = open_stage(forces);
     const int32_t rounds = forces->settings.repetitions;
-    sphg_neighbors_info info;
-    library_check(stage.context, sphg_neighbors_get_info(stage.context, stage.neighbors[0], &info));
-    forces->pairs = info.pairs;
-    for (int k = 0; k < FORCE_CASES * FORCE_SUPPLIES; k++)
-        forces->times[k / FORCE_SUPPLIES][k % FORCE_SUPPLIES] = samples_create(rounds);
+    forces->pairs =
+        (double)library_info(stage.context, stage.neighbors[0]).pairs / stage.particles.count;
     for (int32_t round = 0; round <= rounds; round++) {
         progress_show("forces: round %d of %d", round, rounds);
         measure_round(&stage, round == 0);

@@ -1,38 +1,19 @@
 /* The command `frontier`. */
 #include "frontier.h"
 #include "commands.h"
+#include "numbers.h"
 #include "report/machine.h"
-#include "particles/numbers.h"
-#include "options.h"
-
+#include "report/plot.h"
+#include "report/report.h"
+#include "report/text.h"
 #include <stdio.h>
 #include <stdlib.h>
-
-enum { OPTION_OUTPUT = 256 };
-
-static const struct argp_option option_list[] = {
-    {"output", OPTION_OUTPUT, "FOLDER", 0, "where CSV, script and picture go (frontier)", 0}, {0}};
-
-static error_t parse_option(int key, char *text, struct argp_state *state)
-{
-    struct frontier *frontier = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &frontier->settings;
-        return 0;
-    case OPTION_OUTPUT:
-        frontier->output = text;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
 
 /* Every way; plain SPH has no matrices and so no table of them. */
 static void create_points(struct frontier *frontier)
 {
     const int room = FRONTIER_METHODS * FRONTIER_KERNELS * FRONTIER_PRECISIONS * PATHS * 2;
-    frontier->points = allocate_or_exit((size_t)room, sizeof *frontier->points);
+    frontier->points = allocate_to_the_end((size_t)room, sizeof *frontier->points);
     for (int k = 0; k < room; k++) {
         const struct frontier_point point = {
             .by_table = k % 2,
@@ -40,12 +21,176 @@ static void create_points(struct frontier *frontier)
             .precision = (enum precision)(k / 2 / PATHS % FRONTIER_PRECISIONS),
             .kernel = (sphg_kernel)(k / 2 / PATHS / FRONTIER_PRECISIONS % FRONTIER_KERNELS),
             .method = (sphg_method)(k / 2 / PATHS / FRONTIER_PRECISIONS / FRONTIER_KERNELS)};
-        if (point.method == SPHG_PLAIN && point.by_table)
-            continue;
-        frontier->points[frontier->point_count] = point;
-        frontier->points[frontier->point_count++].time =
-            samples_create(frontier->settings.repetitions);
+        if (point.method != SPHG_PLAIN || !point.by_table)
+            frontier->points[frontier->point_count++] = point;
     }
+}
+
+/* ---- Tables ---------------------------------------------------------------------------------- */
+
+static struct cell path_of(const struct frontier_point *point)
+{
+    static const char *const names[PATHS] = {"kept lists", "list-free", "host's lists"};
+    return cell_text(names[point->path]);
+}
+
+static struct cell option_of(const struct frontier_point *point)
+{
+    return cell_text(point->method == SPHG_PLAIN ? "one sweep"
+                     : point->by_table           ? "table"
+                                                 : "fused");
+}
+
+static void add_point(struct table *table, const struct frontier *frontier,
+                      const struct frontier_point *point)
+{
+    TABLE_ROW(table, cell_text(method_names[point->method]), cell_text(kernel_names[point->kernel]),
+              cell_text(precision_names[point->precision]), path_of(point), option_of(point),
+              cell_time(&point->time, 1e6 / frontier->count), cell_number(point->mean[0]),
+              cell_number(point->most[0]), cell_number(point->mean[1]), cell_number(point->most[1]),
+              cell_number(point->on_frontier[0]), cell_number(point->on_frontier[1]));
+}
+
+static struct table *create_table(void)
+{
+    static const struct column columns[] = {{"method", "method", NULL, NULL},
+                                            {"kernel", "kernel", NULL, NULL},
+                                            {"type", "precision", NULL, NULL},
+                                            {"path", "path", NULL, NULL},
+                                            {"option", "option", NULL, NULL},
+                                            {"ns", "", "%.1f (%.0f-%.0f)", "ns_per_particle"},
+                                            {"trig. mean", "trigonometric_mean", "%.2e", NULL},
+                                            {"max", "trigonometric_max", "%.1e", NULL},
+                                            {"lin. mean", "linear_mean", "%.1e", NULL},
+                                            {"max", "linear_max", "%.1e", NULL},
+                                            {NULL, "trigonometric_frontier", NULL, NULL},
+                                            {NULL, "linear_frontier", NULL, NULL},
+                                            {0}};
+    return table_create("frontier", columns);
+}
+
+/* Points lie in the order of their times: the first is the fastest. */
+static void add_fastest(struct table *table, const struct frontier *frontier, sphg_method method,
+                        enum precision precision, enum frontier_side side)
+{
+    for (int k = 0; k < frontier->point_count; k++) {
+        const struct frontier_point *point = &frontier->points[k];
+        if (point->method == method && point->precision == precision &&
+            frontier_side(point) == side) {
+            add_point(table, frontier, point);
+            return;
+        }
+    }
+}
+
+static void print_fastest(const struct frontier *frontier)
+{
+    struct table *table = create_table();
+    printf("\nfastest way of each method and precision, whatever its error\n");
+    for (int k = 0; k < FRONTIER_METHODS * FRONTIER_PRECISIONS * SIDES; k++)
+        add_fastest(table, frontier, (sphg_method)(k / SIDES / FRONTIER_PRECISIONS),
+                    (enum precision)(k / SIDES % FRONTIER_PRECISIONS),
+                    (enum frontier_side)(k % SIDES));
+    table_print(table);
+}
+
+static void print_frontier(const struct frontier *frontier, enum frontier_field field,
+                           enum frontier_side side, const char *title)
+{
+    struct table *table = create_table();
+    for (int k = 0; k < frontier->point_count; k++)
+        if (frontier->points[k].on_frontier[field] && frontier_side(&frontier->points[k]) == side)
+            add_point(table, frontier, &frontier->points[k]);
+    printf("\n%s\n", title);
+    table_print(table);
+}
+
+/* The points of each frontier: "1", "2" and so on, over the host's lists "a", "b". */
+static struct table *table_of_steps(const struct frontier *frontier)
+{
+    static const struct column columns[] = {{NULL, "field", NULL, NULL},
+                                            {NULL, "side", NULL, NULL},
+                                            {NULL, "mark", NULL, NULL},
+                                            {NULL, "ns", NULL, NULL},
+                                            {NULL, "error", NULL, NULL},
+                                            {NULL, "method", NULL, NULL},
+                                            {NULL, "kernel", NULL, NULL},
+                                            {NULL, "precision", NULL, NULL},
+                                            {NULL, "path", NULL, NULL},
+                                            {NULL, "option", NULL, NULL},
+                                            {0}};
+    static const char *const fields[] = {"trigonometric", "linear"}, *const sides[] = {"search",
+                                                                                       "host"};
+    struct table *table = table_create("", columns);
+    for (int n = 0; n < FRONTIER_FIELDS * SIDES; n++) {
+        int mark = 0;
+        for (int k = 0; k < frontier->point_count; k++) {
+            const struct frontier_point *point = &frontier->points[k];
+            if (!point->on_frontier[n / SIDES] || (int)frontier_side(point) != n % SIDES)
+                continue;
+            TABLE_ROW(
+                table, cell_text(fields[n / SIDES]), cell_text(sides[n % SIDES]),
+                cell_text(n % SIDES == SIDE_HOST ? table_text("%c", 'a' + mark % 26)
+                                                 : table_text("%d", mark + 1)),
+                cell_number(1e6 / frontier->count * samples_median(&point->time)),
+                cell_number(frontier_error(point, (enum frontier_field)(n / SIDES))),
+                cell_text(method_names[point->method]), cell_text(kernel_title(point->kernel)),
+                cell_text(precision_names[point->precision]), path_of(point), option_of(point));
+            mark++;
+        }
+    }
+    return table;
+}
+
+/* ---- The whole ------------------------------------------------------------------------------- */
+
+static void print_results(const struct frontier *frontier)
+{
+    const struct settings *settings = &frontier->settings;
+    char count[TEXT_SIZE];
+    printf("particles  %s, a block with free surfaces, jittered by %g spacings, H = %g spacings, "
+           "%.1f pairs a particle\n",
+           text_grouped(frontier->count, count), settings->jitter, settings->support,
+           frontier->pairs);
+    text_print_machine(settings->threads);
+    printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
+           "through %d ways;\n           host's lists: taken over, not searched for\n",
+           settings->repetitions, frontier->point_count);
+    printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
+           "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");
+    text_print_if_busy(&frontier->points[0].time, settings->threads);
+    print_fastest(frontier);
+    print_frontier(
+        frontier, FRONTIER_TRIGONOMETRIC, SIDE_SEARCH,
+        "frontier: nothing is faster and, on average, nearer to the trigonometric field");
+    print_frontier(frontier, FRONTIER_LINEAR, SIDE_SEARCH,
+                   "frontier: nothing is faster and, at worst, nearer to the linear field");
+    print_frontier(frontier, FRONTIER_TRIGONOMETRIC, SIDE_HOST,
+                   "the first frontier of those who search for themselves");
+    print_frontier(frontier, FRONTIER_LINEAR, SIDE_HOST, "and the second");
+}
+
+static void write_results(const struct frontier *frontier)
+{
+    static const char *const parts[] = {"frontier/frontier.gp", NULL};
+    const struct settings *settings = &frontier->settings;
+    struct table *all = create_table();
+    for (int k = 0; k < frontier->point_count; k++)
+        add_point(all, frontier, &frontier->points[k]);
+    table_write_csv(all, settings->output, "frontier.csv");
+    table_write_csv(table_of_steps(frontier), settings->output, "frontier_steps.csv");
+    const bool drawn =
+        plot_draw(settings->output, "frontier.gp",
+                  table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s\"\n",
+                             frontier->count, settings->support, settings->threads,
+                             settings->threads > 1 ? "s" : "", machine_cpu()),
+                  parts);
+    printf("\nwritten to %s: frontier.csv, frontier_steps.csv, frontier.gp%s\n", settings->output,
+           drawn ? ", frontier.png" : "");
+    struct report *report = report_create(settings->threads);
+    report_lattice(report, settings, frontier->count, frontier->pairs);
+    report_table(report, all);
+    report_write(report, settings->json);
 }
 
 int command_frontier(int argc, char **argv)
@@ -54,30 +199,20 @@ int command_frontier(int argc, char **argv)
                                              .threads = machine_threads(),
                                              .repetitions = 7,
                                              .support = 2,
-                                             .jitter = 0.2},
-                                .output = "frontier"};
-    const struct argp_child children[] = {{&settings_argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
-    const struct argp argp = {
-        .options = option_list,
-        .parser = parse_option,
-        .children = children,
-        .doc = "Times every way to a velocity gradient (method, kernel, precision, path, option) "
-               "from positions to result, and measures its error on a block with free surfaces: "
-               "which are worth their time."};
-    options_parse(&argp, argc, argv, &frontier);
-    option_folder("output", frontier.output);
+                                             .jitter = 0.2,
+                                             .output = "frontier"}};
+    const struct command_option options[] = {
+        OUTPUT_OPTION(frontier.settings, "CSV, script and picture", "frontier"),
+        LATTICE_OPTIONS(frontier.settings),
+        {0}};
+    settings_read(&frontier.settings, options,
+                  "Times every way to a velocity gradient (method, kernel, precision, path, "
+                  "option) from positions to result, and measures its error on a block with free "
+                  "surfaces: which are worth their time.",
+                  argc, argv);
     create_points(&frontier);
     frontier_measure(&frontier);
-    frontier_print(&frontier);
-    frontier_write_csv(&frontier);
-    frontier_write_steps(&frontier);
-    if (frontier.settings.json)
-        frontier_write_json(&frontier, frontier.settings.json, "sphgrad-bench");
-    const bool drawn = frontier_draw(&frontier);
-    printf("\nwritten to %s: frontier.csv, frontier_steps.csv, frontier.gp%s\n", frontier.output,
-           drawn ? ", frontier.png" : "");
-    for (int k = 0; k < frontier.point_count; k++)
-        samples_destroy(&frontier.points[k].time);
-    free(frontier.points);
+    print_results(&frontier);
+    write_results(&frontier);
     return EXIT_SUCCESS;
 }

@@ -16,7 +16,7 @@ precisions = 'f32 f64 mixed'
 symbols = '6 4 8' # open circle, open square, open triangle
 
 # So that a way that met a slow moment does not press the others together.
-stats data using (log(column('ns'))) nooutput
+stats data using (log(column('ns_per_particle'))) nooutput
 shortest = exp(STATS_min)
 slow = 6 * exp(STATS_mean)
 slow = slow > 3 * shortest ? slow : 3 * shortest
@@ -27,7 +27,7 @@ most = STATS_max
 # Where a panel stands, and beneath it the names.
 frame(panel, above, below) = sprintf('set lmargin at screen %.3f; set rmargin at screen %.3f; set tmargin at screen %.3f; set bmargin at screen %.3f', \
     0.07 + 0.5 * panel, 0.485 + 0.5 * panel, above, below)
-ns(method, precision) = strcol('method') eq method && strcol('precision') eq precision ? column('ns') : NaN
+ns(method, precision) = strcol('method') eq method && strcol('precision') eq precision ? column('ns_per_particle') : NaN
 step(field, side) = strcol('field') eq field && strcol('side') eq side ? column('ns') : NaN
 named = 14 # at most; the CSV has the rest
 line = 0

@@ -1,11 +1,8 @@
 /* Run time against error of every way to a velocity gradient: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_FRONTIER_H
 #define SPHGRAD_BENCH_FRONTIER_H
-#include "particles/names.h"
-#include "settings.h"
 #include "report/timing.h"
-
-#include <stdbool.h>
+#include "settings.h"
 
 enum frontier_path { PATH_KEPT, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
 enum frontier_field { FRONTIER_TRIGONOMETRIC, FRONTIER_LINEAR, FRONTIER_FIELDS };
@@ -27,34 +24,20 @@ struct frontier_point {
 
 struct frontier {
     struct settings settings;
-    const char *output;
     int32_t count; /* particles */
     double pairs;  /* a particle */
     int point_count;
     struct frontier_point *points;
 };
 
-extern const char *const path_names[PATHS];
-
 /* The field's mean error for the trigonometric field, its largest for the linear one. */
 double frontier_error(const struct frontier_point *point, enum frontier_field field);
-double frontier_time(const struct frontier *frontier,
-                     const struct frontier_point *point); /* [ns] */
 
 /* Ways that search for themselves and ways over lists of the host, who searched, do not compete:
- * each side has a frontier of its own. Its points, fastest first; the count is returned. */
+ * each side has a frontier of its own. */
 enum frontier_side { SIDE_SEARCH, SIDE_HOST, SIDES };
 enum frontier_side frontier_side(const struct frontier_point *point);
-int frontier_points(const struct frontier *frontier, enum frontier_field field,
-                    enum frontier_side side, const struct frontier_point *points[]);
 
-/* Fastest first. */
-void frontier_sort(const struct frontier_point *points[], int count);
-
+/* Leaves the points in the order of their times, the fastest first. */
 void frontier_measure(struct frontier *frontier);
-void frontier_print(const struct frontier *frontier);
-void frontier_write_csv(const struct frontier *frontier);
-void frontier_write_steps(const struct frontier *frontier);
-void frontier_write_json(const struct frontier *frontier, const char *path, const char *executable);
-bool frontier_draw(const struct frontier *frontier); /* after the CSV; false: no picture */
 #endif

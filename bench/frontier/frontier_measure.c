@@ -1,10 +1,9 @@
 /* The measurements of frontier. A round goes once through all ways. */
 #include "frontier.h"
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "library.h"
 #include "particles/particles.h"
 #include "report/progress.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -63,25 +62,17 @@ static sphg_scheme scheme_of(const struct scene *scene, const struct frontier_po
         .method = point->method, .kernel = point->kernel, .support_radius = scene->support_radius};
 }
 
-static sphg_geometry geometry_of(const struct scene *scene, enum frontier_path path)
-{
-    return (sphg_geometry){.sources = numbers_view(&scene->particles.positions),
-                           .source_count = scene->particles.count,
-                           .target_count = scene->particles.count,
-                           .precision = scene->jacobians.type,
-                           .list_free = path == PATH_LIST_FREE};
-}
-
 static void build(const struct scene *scene, const sphg_scheme *scheme, enum frontier_path path)
 {
-    const sphg_geometry geometry = geometry_of(scene, path);
+    sphg_geometry geometry = library_geometry(&scene->particles.positions, scene->jacobians.type);
     const sphg_lists lists = {.offsets = scene->offsets, .indices = scene->indices};
     sphg_neighbors *neighbors = scene->neighbors[path];
-    library_check(
-        scene->context,
-        path == PATH_HOST_LISTS
-            ? sphg_neighbors_use_lists(scene->context, neighbors, scheme, &geometry, &lists)
-            : sphg_neighbors_search(scene->context, neighbors, scheme, &geometry));
+    geometry.list_free = path == PATH_LIST_FREE;
+    if (path != PATH_HOST_LISTS)
+        library_search(scene->context, neighbors, scheme, &geometry);
+    else
+        library_check(scene->context, sphg_neighbors_use_lists(scene->context, neighbors, scheme,
+                                                               &geometry, &lists));
 }
 
 static void run(const struct scene *scene, const struct frontier_point *point,
@@ -94,13 +85,10 @@ static void run(const struct scene *scene, const struct frontier_point *point,
     if (point->by_table) {
         struct numbers table = scene->corrections;
         table.width = sphg_correction_width(&scheme);
-        library_check(scene->context, sphg_correction(scene->context, &scheme, &sources, NULL,
-                                                      numbers_view(&table), sphg_absent()));
+        library_correct(scene->context, &scheme, &sources, numbers_view(&table), NULL);
         sources.correction = numbers_view(&table);
     }
-    library_check(scene->context, sphg_jacobian(scene->context, &scheme, &sources, NULL,
-                                                numbers_view(&scene->fields[field]),
-                                                numbers_view(&scene->jacobians)));
+    library_jacobian(scene->context, &scheme, &sources, &scene->fields[field], &scene->jacobians);
 }
 
 static void measure_error(const struct scene *scene, struct frontier_point *point,
@@ -160,7 +148,7 @@ static struct scene open_scene(const struct settings *settings, sphg_context *co
         fill_field(&scene, (enum frontier_field)field);
     }
     for (int path = 0; path < PATHS; path++)
-        library_check(context, sphg_neighbors_create(context, &scene.neighbors[path]));
+        scene.neighbors[path] = library_neighbors(context);
     export_lists(&scene);
     return scene;
 }
@@ -198,8 +186,27 @@ static void measure_times(struct frontier *frontier, const struct scene *scenes)
                               k, frontier->point_count);
             const struct moment start = now();
             run(&scenes[point->precision], point, FRONTIER_TRIGONOMETRIC);
-            samples_add_since(&point->time, start);
+            samples_add(&point->time, since(start));
         }
+}
+
+/* ---- The frontiers --------------------------------------------------------------------------- */
+
+double frontier_error(const struct frontier_point *point, enum frontier_field field)
+{
+    return field == FRONTIER_LINEAR ? point->most[field] : point->mean[field];
+}
+
+enum frontier_side frontier_side(const struct frontier_point *point)
+{
+    return point->path == PATH_HOST_LISTS ? SIDE_HOST : SIDE_SEARCH;
+}
+
+static int compare_times(const void *left, const void *right)
+{
+    const struct frontier_point *a = left, *b = right;
+    const double time_a = samples_median(&a->time), time_b = samples_median(&b->time);
+    return (time_a > time_b) - (time_a < time_b);
 }
 
 /* From the fastest on, those with a smaller error than all before. Errors that say the same do
@@ -208,20 +215,15 @@ static void find_frontier(struct frontier *frontier, enum frontier_field field,
                           enum frontier_side side)
 {
     const double smaller = field == FRONTIER_LINEAR ? 0.5 : 0.97;
-    const struct frontier_point **points =
-        allocate_or_exit((size_t)frontier->point_count, sizeof *points);
     double least = INFINITY;
-    for (int k = 0; k < frontier->point_count; k++)
-        points[k] = &frontier->points[k];
-    frontier_sort(points, frontier->point_count);
     for (int k = 0; k < frontier->point_count; k++) {
-        const double error = frontier_error(points[k], field);
-        if (frontier_side(points[k]) != side || !(error < smaller * least))
+        struct frontier_point *point = &frontier->points[k];
+        const double error = frontier_error(point, field);
+        if (frontier_side(point) != side || !(error < smaller * least))
             continue;
         least = error;
-        frontier->points[points[k] - frontier->points].on_frontier[field] = true;
+        point->on_frontier[field] = true;
     }
-    free(points);
 }
 
 void frontier_measure(struct frontier *frontier)
@@ -235,6 +237,7 @@ void frontier_measure(struct frontier *frontier)
     measure_errors(frontier, scenes);
     measure_times(frontier, scenes);
     progress_clear();
+    qsort(frontier->points, (size_t)frontier->point_count, sizeof *frontier->points, compare_times);
     for (int k = 0; k < FRONTIER_FIELDS * SIDES; k++)
         find_frontier(frontier, (enum frontier_field)(k / SIDES), (enum frontier_side)(k % SIDES));
     for (int precision = 0; precision < FRONTIER_PRECISIONS; precision++)

@@ -2,11 +2,8 @@
  * pairs that the library writes out for loops of a host's own. */
 #ifndef SPHGRAD_BENCH_LISTS_H
 #define SPHGRAD_BENCH_LISTS_H
-#include "particles/names.h"
-#include "settings.h"
 #include "report/timing.h"
-
-#include <stdbool.h>
+#include "settings.h"
 
 /* Who says which pairs there are. */
 enum lists_supply {
@@ -35,14 +32,11 @@ struct lists_export {
 };
 
 enum { EXPORTS = 7, NO_ERROR = -1 /* where no gradient comes out */ };
-extern const char *const supply_names[SUPPLIES];
-extern const char *const lists_work_names[LISTS_WORKS];
 extern const struct lists_export lists_exports[EXPORTS];
 
 /* Errors: the largest |J_i - J|_F / |J|_F of a linear field. */
 struct lists {
     struct settings settings;
-    enum precision precision;
     int32_t count;
     int64_t pairs;
     struct samples supplied[SUPPLIES][LISTS_WORKS];
@@ -52,6 +46,4 @@ struct lists {
 };
 
 void lists_measure(struct lists *lists);
-void lists_print(const struct lists *lists);
-void lists_write_json(const struct lists *lists, const char *path, const char *executable);
 #endif

@@ -1,12 +1,11 @@
 /* The measurements of lists. */
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "library.h"
 #include "lists.h"
-#include "options.h"
+#include "command_line.h"
+#include "particles/linear_field.h"
 #include "particles/particles.h"
 #include "report/progress.h"
-
-#include <math.h>
 #include <stdlib.h>
 
 const struct lists_export lists_exports[EXPORTS] = {
@@ -17,9 +16,6 @@ const struct lists_export lists_exports[EXPORTS] = {
     {"indices and gradients, any order", true, true, true, 0},
     {"the same, sorted, 256 targets a call", true, true, false, 256},
     {"the same, any order, 256 targets a call", true, true, true, 256}};
-
-/* J of v = (-y, x, 2z), the field of particles_linear_field. */
-static const double linear[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
 
 struct stage {
     struct lists *lists;
@@ -64,8 +60,7 @@ static sphg_sources sources_of(const struct stage *stage, enum lists_supply supp
 static void build(struct stage *stage, enum lists_supply supply)
 {
     sphg_geometry geometry =
-        sphg_all(numbers_view(&stage->particles.positions), stage->particles.count);
-    geometry.precision = field_type(stage->lists->precision);
+        library_geometry(&stage->particles.positions, field_type(stage->lists->settings.precision));
     geometry.list_free = supply == SUPPLY_LIST_FREE;
     const sphg_lists lists = lists_of(stage, supply);
     library_check(stage->context,
@@ -80,20 +75,15 @@ static void run(struct stage *stage, enum lists_supply supply, enum lists_work w
 {
     sphg_sources sources = sources_of(stage, supply);
     const sphg_view corrections = numbers_view(&stage->corrections);
-    if (work == WORK_BUILD) {
-        build(stage, supply);
-        return;
-    }
-    if (work == WORK_MATRICES) {
-        library_check(stage->context, sphg_correction(stage->context, &stage->scheme, &sources,
-                                                      NULL, corrections, sphg_absent()));
-        return;
-    }
     if (work == WORK_GRADIENT)
         sources.correction = corrections;
-    library_check(stage->context,
-                  sphg_jacobian(stage->context, &stage->scheme, &sources, NULL,
-                                numbers_view(&stage->field), numbers_view(&stage->jacobians)));
+    if (work == WORK_BUILD)
+        build(stage, supply);
+    else if (work == WORK_MATRICES)
+        library_correct(stage->context, &stage->scheme, &sources, corrections, NULL);
+    else
+        library_jacobian(stage->context, &stage->scheme, &sources, &stage->field,
+                         &stage->jacobians);
 }
 
 /* All pairs that are asked for, block after block: a block's arrays are written over by the next.
@@ -120,43 +110,24 @@ static void export_pairs(struct stage *stage, const struct lists_export *one)
 
 /* ---- Errors ---------------------------------------------------------------------------------- */
 
-static double error_of(const double *jacobian)
-{
-    double difference = 0, size = 0;
-    for (int k = 0; k < 9; k++) {
-        difference += (jacobian[k] - linear[k]) * (jacobian[k] - linear[k]);
-        size += linear[k] * linear[k];
-    }
-    return sqrt(difference / size);
-}
-
-static double supplied_error(const struct stage *stage)
-{
-    double most = 0;
-    for (int32_t i = 0; i < stage->particles.count; i++) {
-        double jacobian[9];
-        for (int k = 0; k < 9; k++)
-            jacobian[k] = numbers_get(&stage->jacobians, i, k);
-        most = numbers_larger(most, error_of(jacobian));
-    }
-    return most;
-}
-
 /* J_i = sum_j (v_j - v_i) G_ij over the pairs of the last call, the last `block` targets. */
 static double exported_error(const struct stage *stage, const struct lists_export *one)
 {
     const int32_t count = stage->particles.count, block = one->block ? one->block : count;
     const int32_t begin = (count - 1) / block * block;
-    double most = 0;
+    struct numbers jacobian = numbers_create(SPHG_F64, 1, 9);
+    double *sums = jacobian.data, most = 0;
     for (int32_t i = begin; i < count; i++) {
-        double jacobian[9] = {0};
+        for (int32_t k = 0; k < 9; k++)
+            sums[k] = 0;
         for (int64_t p = stage->out.offsets[i - begin]; p < stage->out.offsets[i - begin + 1]; p++)
             for (int32_t k = 0; k < 9; k++)
-                jacobian[k] += (numbers_get(&stage->field, stage->out.indices[p], k / 3) -
-                                numbers_get(&stage->field, i, k / 3)) *
-                               numbers_get(&stage->gradients, (int32_t)p, k % 3);
-        most = numbers_larger(most, error_of(jacobian));
+                sums[k] += (numbers_get(&stage->field, stage->out.indices[p], k / 3) -
+                            numbers_get(&stage->field, i, k / 3)) *
+                           numbers_get(&stage->gradients, (int32_t)p, k % 3);
+        most = numbers_larger(most, linear_field_error(&jacobian, 0));
     }
+    numbers_destroy(&jacobian);
     return most;
 }
 
@@ -165,10 +136,8 @@ static double exported_error(const struct stage *stage, const struct lists_expor
 static void take_lists(struct stage *stage)
 {
     const size_t count = (size_t)stage->particles.count;
-    sphg_neighbors_info info;
     build(stage, SUPPLY_KEPT);
-    library_check(stage->context,
-                  sphg_neighbors_get_info(stage->context, stage->neighbors[SUPPLY_KEPT], &info));
+    const sphg_neighbors_info info = library_info(stage->context, stage->neighbors[SUPPLY_KEPT]);
     stage->lists->pairs = stage->out.capacity = info.pairs;
     stage->offsets = allocate_or_exit(count + 1, sizeof *stage->offsets);
     stage->indices = allocate_or_exit((size_t)info.pairs, sizeof *stage->indices);
@@ -191,21 +160,20 @@ static struct stage open_stage(struct lists *lists)
 {
     const struct particle_source source = {.side = settings_side(lists->settings.particles, 3),
                                            .jitter = lists->settings.jitter,
-                                           .precision = lists->precision};
+                                           .precision = lists->settings.precision};
     struct stage stage = {
         .lists = lists,
         .context = library_open(lists->settings.threads),
         .scheme = {.dimension = 3, .support_radius = lists->settings.support * lattice_spacing},
         .particles = particles_create(&source)};
     const int32_t count = lists->count = stage.particles.count;
-    const sphg_type type = field_type(lists->precision);
+    const sphg_type type = field_type(lists->settings.precision);
     stage.field = numbers_create(type, count, 3);
     stage.corrections = numbers_create(type, count, sphg_correction_width(&stage.scheme));
     stage.jacobians = numbers_create(type, count, 9);
-    particles_linear_field(&stage.particles, &stage.field);
+    linear_field_fill(&stage.particles.positions, &stage.field);
     for (int supply = 0; supply < SUPPLIES; supply++)
-        library_check(stage.context,
-                      sphg_neighbors_create(stage.context, &stage.neighbors[supply]));
+        stage.neighbors[supply] = library_neighbors(stage.context);
     return stage;
 }
 
@@ -236,16 +204,16 @@ static void measure_round(struct stage *stage, bool is_first)
             const struct moment start = now();
             run(stage, (enum lists_supply)supply, (enum lists_work)work);
             if (!is_first)
-                samples_add_since(&lists->supplied[supply][work], start);
+                samples_add(&lists->supplied[supply][work], since(start));
         }
         if (is_first)
-            lists->supplied_error[supply] = supplied_error(stage);
+            lists->supplied_error[supply] = linear_field_worst(&stage->jacobians, NULL);
     }
     for (int k = 0; k < EXPORTS; k++) {
         const struct moment start = now();
         export_pairs(stage, &lists_exports[k]);
         if (!is_first)
-            samples_add_since(&lists->exported[k], start);
+            samples_add(&lists->exported[k], since(start));
         else
             lists->exported_error[k] =
                 lists_exports[k].gradients ? exported_error(stage, &lists_exports[k]) : NO_ERROR;
@@ -258,12 +226,9 @@ void lists_measure(struct lists *lists)
     const int32_t rounds = lists->settings.repetitions;
     take_lists(&stage);
     if (lists->pairs > INT32_MAX)
-        options_refuse("--particles: more pairs than fit into an index");
-    stage.gradients = numbers_create(field_type(lists->precision), (int32_t)lists->pairs, 3);
-    for (int k = 0; k < SUPPLIES * LISTS_WORKS; k++)
-        lists->supplied[k / LISTS_WORKS][k % LISTS_WORKS] = samples_create(rounds);
-    for (int k = 0; k < EXPORTS; k++)
-        lists->exported[k] = samples_create(rounds);
+        command_line_refuse("--particles: more pairs than fit into an index");
+    stage.gradients =
+        numbers_create(field_type(lists->settings.precision), (int32_t)lists->pairs, 3);
     for (int32_t round = 0; round <= rounds; round++) {
         progress_show("lists: round %d of %d", round, rounds);
         measure_round(&stage, round == 0);

@@ -1,5 +1,4 @@
 #include "names.h"
-
 #include <stddef.h>
 
 const char *const precision_names[] = {"f32", "f64", "mixed", NULL};

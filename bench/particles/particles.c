@@ -1,8 +1,8 @@
 #include "particles.h"
 #include "tables/csv.h"
 #include "lattice.h"
-#include "options.h"
-
+#include "linear_field.h"
+#include "command_line.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -14,16 +14,6 @@ static void create_tables(struct particles *particles, enum precision precision,
     particles->positions = numbers_create(position_type(precision), count, particles->dimension);
     particles->velocities = numbers_create(field_type(precision), count, particles->dimension);
     particles->volumes = numbers_create(field_type(precision), count, 1);
-}
-
-void particles_linear_field(const struct particles *particles, struct numbers *field)
-{
-    for (int32_t i = 0; i < particles->count; i++) {
-        numbers_set(field, i, 0, -numbers_get(&particles->positions, i, 1));
-        numbers_set(field, i, 1, numbers_get(&particles->positions, i, 0));
-        if (particles->dimension == 3)
-            numbers_set(field, i, 2, 2 * numbers_get(&particles->positions, i, 2));
-    }
 }
 
 static struct particles create_lattice(const struct particle_source *source)
@@ -47,8 +37,8 @@ static void store(struct numbers *numbers, int32_t i, int32_t component, double 
 {
     numbers_set(numbers, i, component, value);
     if (!isfinite(numbers_get(numbers, i, component)))
-        options_refuse("%s, line %lld: %g is beyond the precision", csv->path,
-                       (long long)csv->lines[i], value);
+        command_line_refuse("%s, line %lld: %g is beyond the precision", csv->path,
+                            (long long)csv->lines[i], value);
 }
 
 /* Where volumes come from: the file's, its densities with masses or --mass, or the positions. What
@@ -59,7 +49,7 @@ static const char *choose_volumes(const struct particle_source *source, struct c
     const bool densities = csv->columns[QUANTITY_DENSITY] >= 0;
     const bool masses = csv->columns[QUANTITY_MASS] >= 0 && source->mass <= 0;
     if (source->mass > 0 && (given || !densities))
-        options_refuse("--mass: %s has %s", csv->path, given ? "volumes" : "no densities");
+        command_line_refuse("--mass: %s has %s", csv->path, given ? "volumes" : "no densities");
     const bool by_density = !given && densities && (masses || source->mass > 0);
     if (!by_density)
         csv->columns[QUANTITY_DENSITY] = -1;
@@ -79,11 +69,11 @@ static double volume_of(const struct particle_source *source, const struct csv *
     const double volume = values[QUANTITY_VOLUME], density = values[QUANTITY_DENSITY];
     const double mass = csv->columns[QUANTITY_MASS] >= 0 ? values[QUANTITY_MASS] : source->mass;
     if (given ? volume < 0 : density <= 0)
-        options_refuse("%s, line %lld: the %s is %g", csv->path, (long long)csv->lines[row],
-                       given ? "volume" : "density", given ? volume : density);
+        command_line_refuse("%s, line %lld: the %s is %g", csv->path, (long long)csv->lines[row],
+                            given ? "volume" : "density", given ? volume : density);
     if (!given && mass < 0)
-        options_refuse("%s, line %lld: the mass is %g", csv->path, (long long)csv->lines[row],
-                       mass);
+        command_line_refuse("%s, line %lld: the mass is %g", csv->path, (long long)csv->lines[row],
+                            mass);
     return given ? volume : mass / density;
 }
 
@@ -156,11 +146,11 @@ static struct particles read_particles(const struct particle_source *source)
 {
     struct csv csv;
     if (!csv_open(&csv, source->input))
-        options_refuse("%s", csv.message);
+        command_line_refuse("%s", csv.message);
     struct particles particles = {.volume_origin = choose_volumes(source, &csv)};
     describe_columns(&particles, &csv);
     if (!csv_read(&csv))
-        options_refuse("%s", csv.message);
+        command_line_refuse("%s", csv.message);
     particles.more = csv.more;
     int axes[3] = {0, 1, 2};
     choose_axes(&particles, &csv, axes);
@@ -183,7 +173,7 @@ struct particles particles_create(const struct particle_source *source)
 {
     struct particles particles = source->input ? read_particles(source) : create_lattice(source);
     if (!particles.own_velocities)
-        particles_linear_field(&particles, &particles.velocities);
+        linear_field_fill(&particles.positions, &particles.velocities);
     return particles;
 }
 

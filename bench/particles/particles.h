@@ -3,7 +3,6 @@
 #define SPHGRAD_BENCH_PARTICLES_H
 #include "names.h"
 #include "numbers.h"
-
 #include <stdbool.h>
 
 struct particle_source {
@@ -32,8 +31,4 @@ extern const double lattice_spacing;
 /* Ends the program with one line where the file is not usable. */
 struct particles particles_create(const struct particle_source *source);
 void particles_destroy(struct particles *particles);
-
-/* v = (-y, x, 2z), in 2D (-y, x), at the positions as stored. Exact in the precision of positions.
- */
-void particles_linear_field(const struct particles *particles, struct numbers *field);
 #endif

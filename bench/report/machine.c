@@ -1,6 +1,5 @@
 #define _DEFAULT_SOURCE /* gethostname, tm_gmtoff, sysconf */
 #include "machine.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,15 +1,8 @@
-#define _POSIX_C_SOURCE 200809L /* fork, chdir */
 #include "plot.h"
-
+#include "gnuplot.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-enum {
-    STATUS_NO_PROGRAM = 127 /* as in the shell */
-};
 
 FILE *plot_file(const char *directory, const char *name)
 {
@@ -55,32 +48,5 @@ bool plot_draw(const char *directory, const char *script, const char *assignment
     for (; *parts; parts++)
         copy_part(file, *parts);
     plot_close(file, script);
-    return plot_run(directory, script);
-}
-
-static void become_gnuplot(const char *directory, const char *script)
-{
-    if (chdir(directory) == 0)
-        execlp("gnuplot", "gnuplot", script, (char *)NULL);
-    _exit(STATUS_NO_PROGRAM);
-}
-
-bool plot_run(const char *directory, const char *script)
-{
-    int status = -1;
-    fflush(NULL); /* or the child would print buffered text again */
-    const pid_t child = fork();
-    if (child == 0)
-        become_gnuplot(directory, script);
-    if (child < 0 || waitpid(child, &status, 0) < 0) {
-        fprintf(stderr, "sphgrad-bench: cannot start gnuplot: %s\n", strerror(errno));
-        return false;
-    }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
-        return true;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == STATUS_NO_PROGRAM)
-        fprintf(stderr, "sphgrad-bench: no gnuplot here, so no pictures; the tables are written\n");
-    else
-        fprintf(stderr, "sphgrad-bench: gnuplot failed on %s/%s\n", directory, script);
-    return false;
+    return gnuplot_run(directory, script);
 }

@@ -1,7 +1,6 @@
 #include "text.h"
 #include "library.h"
 #include "machine.h"
-
 #include <stdio.h>
 
 const char *text_grouped(int64_t value, char text[TEXT_SIZE])
@@ -24,18 +23,11 @@ void text_time(double milliseconds, char text[TEXT_SIZE])
     snprintf(text, TEXT_SIZE, "%.*f", decimals, milliseconds);
 }
 
-void text_median(const struct samples *samples, char text[TEXT_SIZE])
+void text_print_lattice(const struct settings *settings, int32_t count, double pairs)
 {
-    char median[TEXT_SIZE], least[TEXT_SIZE], most[TEXT_SIZE];
-    if (samples->count == 0) {
-        snprintf(text, TEXT_SIZE, "-");
-        return;
-    }
-    const struct spread spread = samples_wall(samples);
-    text_time(spread.median, median);
-    text_time(spread.min, least);
-    text_time(spread.max, most);
-    snprintf(text, TEXT_SIZE, "%.16s (%.16s-%.16s)", median, least, most);
+    char text[TEXT_SIZE];
+    printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, %.2f pairs a particle",
+           text_grouped(count, text), settings->jitter, settings->support, pairs);
 }
 
 void text_print_machine(int32_t threads)

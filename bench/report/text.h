@@ -1,6 +1,7 @@
 /* How tables write numbers, and the lines that name the machine. */
 #ifndef SPHGRAD_BENCH_TEXT_H
 #define SPHGRAD_BENCH_TEXT_H
+#include "settings.h"
 #include "timing.h"
 
 enum { TEXT_SIZE = 64 };
@@ -11,9 +12,8 @@ const char *text_grouped(int64_t value, char text[TEXT_SIZE]);
 /* Four digits are more than two runs agree on. */
 void text_time(double milliseconds, char text[TEXT_SIZE]);
 
-/* "12.3 (11.9-14.0)": median, least and most; "-" if there are no samples. */
-void text_median(const struct samples *samples, char text[TEXT_SIZE]);
-
+/* "4 096, lattice jittered by ...": the particles of these settings. */
+void text_print_lattice(const struct settings *settings, int32_t count, double pairs);
 void text_print_machine(int32_t threads);
 
 /* One line if others kept the processors from the program while these samples were taken. */

@@ -1,9 +1,9 @@
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "timing.h"
-#include "particles/numbers.h"
-
+#include "numbers.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 static double read_clock(clockid_t clock)
@@ -18,27 +18,22 @@ struct moment now(void)
     return (struct moment){read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_PROCESS_CPUTIME_ID)};
 }
 
-struct samples samples_create(int32_t capacity)
+struct moment since(struct moment start)
 {
-    return (struct samples){allocate_or_exit((size_t)capacity, sizeof(struct moment)), 0, capacity};
-}
-
-void samples_destroy(struct samples *samples)
-{
-    free(samples->values);
-    *samples = (struct samples){0};
+    const struct moment end = now();
+    return (struct moment){end.wall - start.wall, end.cpu - start.cpu};
 }
 
 void samples_add(struct samples *samples, struct moment duration)
 {
-    if (samples->count < samples->capacity)
-        samples->values[samples->count++] = duration;
-}
-
-void samples_add_since(struct samples *samples, struct moment start)
-{
-    const struct moment end = now();
-    samples_add(samples, (struct moment){end.wall - start.wall, end.cpu - start.cpu});
+    if (samples->count == samples->capacity) {
+        struct moment *values = samples->values;
+        samples->capacity = 2 * samples->capacity + 8;
+        samples->values = allocate_to_the_end((size_t)samples->capacity, sizeof *values);
+        if (samples->count > 0)
+            memcpy(samples->values, values, (size_t)samples->count * sizeof *values);
+    }
+    samples->values[samples->count++] = duration;
 }
 
 static int compare_numbers(const void *left, const void *right)
@@ -55,17 +50,23 @@ static double standard_deviation(const double *values, int32_t count, double mea
     return count > 1 ? sqrt(sum / (count - 1)) : 0;
 }
 
+double median_of(double *values, int32_t count)
+{
+    qsort(values, (size_t)count, sizeof *values, compare_numbers);
+    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+}
+
 /* Sorts the values. */
 static struct spread spread_of(double *values, int32_t count)
 {
     if (count == 0)
         return (struct spread){NAN, NAN, NAN, NAN, NAN};
-    qsort(values, (size_t)count, sizeof *values, compare_numbers);
+    const double median = median_of(values, count);
     double sum = 0;
     for (int32_t k = 0; k < count; k++)
         sum += values[k];
-    struct spread spread = {.mean = sum / count, .min = values[0], .max = values[count - 1]};
-    spread.median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+    struct spread spread = {
+        .median = median, .mean = sum / count, .min = values[0], .max = values[count - 1]};
     spread.deviation = standard_deviation(values, count, spread.mean);
     return spread;
 }
@@ -88,4 +89,9 @@ struct spread samples_wall(const struct samples *samples)
 struct spread samples_cpu(const struct samples *samples)
 {
     return spread_of_clock(samples, 1);
+}
+
+double samples_median(const struct samples *samples)
+{
+    return samples_wall(samples).median;
 }

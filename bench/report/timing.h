@@ -7,6 +7,7 @@ struct moment {
     double wall, cpu; /* [ms]; cpu: of all threads of the process together */
 };
 
+/* {0} has none; there is room for as many as come. */
 struct samples {
     struct moment *values;
     int32_t count, capacity;
@@ -17,11 +18,13 @@ struct spread {
 };
 
 struct moment now(void);
+struct moment since(struct moment start);
 
-struct samples samples_create(int32_t capacity);
-void samples_destroy(struct samples *samples);
-void samples_add(struct samples *samples, struct moment duration);    /* at most capacity */
-void samples_add_since(struct samples *samples, struct moment start); /* at most capacity */
-struct spread samples_wall(const struct samples *samples);            /* NaN if there are none */
+void samples_add(struct samples *samples, struct moment duration);
+struct spread samples_wall(const struct samples *samples); /* NaN if there are none */
 struct spread samples_cpu(const struct samples *samples);
+double samples_median(const struct samples *samples); /* wall [ms] */
+
+/* Sorts the values. */
+double median_of(double *values, int32_t count);
 #endif

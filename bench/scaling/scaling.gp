@@ -14,11 +14,11 @@ set datafile missing NaN
 # Colour-blind-safe: Okabe, Ito 2008, "Color universal design".
 works = 'search matrices gradient fused'
 colours = '#999999 #0072B2 #009E73 #D55E00'
-ns(k) = column(word(works, k).'_ns')
+ns(k) = column(word(works, k).'_ns_per_particle')
 is(group) = strcol('group') eq group
 array single[4]
 do for [k = 1:4] {
-    stats data using (is('threads') && column('threads') == 1 ? ns(k) : NaN) nooutput
+    stats data using (is('threads') && column('case_threads') == 1 ? ns(k) : NaN) nooutput
     single[k] = STATS_min
 }
 
@@ -42,14 +42,14 @@ set ylabel 'speed-up'
 set xrange [1:threads > 1 ? threads : 2]
 set key left top
 plot x with lines lw 1 dt 2 lc rgb 'black' title 'ideal', \
-    for [k = 1:4] data using (is('threads') ? column('threads') : NaN):(single[k] / ns(k)) \
+    for [k = 1:4] data using (is('threads') ? column('case_threads') : NaN):(single[k] / ns(k)) \
     with linespoints pt 7 ps 0.8 lw 1.6 lc rgb word(colours, k) title word(works, k)
 
 set title 'neighbours in 3D'
 set xrange [0:*]
 set xlabel 'pairs a particle'
 set ylabel 'time [ns a particle]'
-plot for [k = 1:4] data using (is('neighbours') && column('dimension') == 3 ? column('pairs') : NaN):(ns(k)) \
+plot for [k = 1:4] data using (is('neighbours') && column('dimension') == 3 ? column('pairs_per_particle') : NaN):(ns(k)) \
     with linespoints pt 7 ps 0.8 lw 1.6 lc rgb word(colours, k) title word(works, k)
 
 # Labels by the number of their column: by name gnuplot 5.4 cuts them at commas.

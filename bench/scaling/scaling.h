@@ -1,9 +1,9 @@
 /* Time a particle over sizes, threads, neighbours, orders and clouds: what is measured. */
 #ifndef SPHGRAD_BENCH_SCALING_H
 #define SPHGRAD_BENCH_SCALING_H
+#include "report/timing.h"
 #include "scaling_cloud.h"
 #include "settings.h"
-#include "report/timing.h"
 
 enum scaling_work {
     SCALING_SEARCH,
@@ -14,8 +14,7 @@ enum scaling_work {
 };
 
 struct scaling_case {
-    const char *group;
-    char label[48];
+    const char *group, *label;
     struct cloud_setting cloud;
     int32_t threads;
     struct samples time[SCALING_WORKS];
@@ -28,19 +27,11 @@ struct scaling_case {
 
 struct scaling {
     struct settings settings;
-    const char *output;
     bool full; /* up to 30 times the particles */
     int case_count;
     struct scaling_case *cases; /* those of a group stand together */
 };
 
-extern const char *const scaling_work_names[SCALING_WORKS];
-
 void scaling_create_cases(struct scaling *scaling);
 void scaling_measure(struct scaling *scaling); /* the cases of a group in turn, round by round */
-double scaling_time(const struct scaling_case *one, enum scaling_work work); /* [ns a particle] */
-void scaling_print(const struct scaling *scaling);
-void scaling_write_csv(const struct scaling *scaling);
-void scaling_write_json(const struct scaling *scaling, const char *path, const char *executable);
-bool scaling_draw(const struct scaling *scaling); /* after the CSV; false: no picture */
 #endif

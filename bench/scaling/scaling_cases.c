@@ -1,8 +1,7 @@
 /* The cases of scaling: in each group one thing changes. */
 #include "scaling.h"
+#include "report/table.h"
 #include "report/text.h"
-
-#include <stdio.h>
 
 enum { CASES_MOST = 64 };
 
@@ -29,7 +28,7 @@ static void add_sizes(struct scaling *scaling)
             continue;
         struct scaling_case *one = add(scaling, "particles");
         one->cloud.particles = (int32_t)particles;
-        snprintf(one->label, sizeof one->label, "%s", text_grouped(one->cloud.particles, count));
+        one->label = table_text("%s", text_grouped(one->cloud.particles, count));
     }
 }
 
@@ -40,7 +39,7 @@ static void add_threads(struct scaling *scaling)
         struct scaling_case *one = add(scaling, "threads");
         if (threads < scaling->settings.threads)
             one->threads = threads;
-        snprintf(one->label, sizeof one->label, "%d", one->threads);
+        one->label = table_text("%d", one->threads);
     }
 }
 
@@ -52,8 +51,7 @@ static void add_neighbours(struct scaling *scaling, int32_t dimension, const cha
         struct scaling_case *one = add(scaling, group);
         one->cloud.dimension = dimension;
         one->cloud.support = supports[dimension - 2][k];
-        snprintf(one->label, sizeof one->label, "%dD, H = %g spacings", dimension,
-                 one->cloud.support);
+        one->label = table_text("%dD, H = %g spacings", dimension, one->cloud.support);
     }
 }
 
@@ -62,7 +60,7 @@ static void add_orders(struct scaling *scaling)
     for (int shuffled = 0; shuffled < 2; shuffled++) {
         struct scaling_case *one = add(scaling, "order");
         one->cloud.shuffled = shuffled;
-        snprintf(one->label, sizeof one->label, "%s", shuffled ? "shuffled" : "coherent");
+        one->label = shuffled ? "shuffled" : "coherent";
     }
 }
 
@@ -73,7 +71,7 @@ static void add_clouds(struct scaling *scaling)
     for (int shape = CLOUD_LATTICE; shape <= CLOUD_FAR; shape++) {
         struct scaling_case *one = add(scaling, "cloud");
         one->cloud.shape = (enum cloud_shape)shape;
-        snprintf(one->label, sizeof one->label, "%s", names[shape]);
+        one->label = names[shape];
     }
 }
 
@@ -84,13 +82,13 @@ static void add_radii(struct scaling *scaling)
         struct scaling_case *one = add(scaling, "radii");
         one->cloud.shape = CLOUD_GRADED;
         one->cloud.ratio = ratios[k];
-        snprintf(one->label, sizeof one->label, "largest / smallest %g", ratios[k]);
+        one->label = table_text("largest / smallest %g", ratios[k]);
     }
 }
 
 void scaling_create_cases(struct scaling *scaling)
 {
-    scaling->cases = allocate_or_exit(CASES_MOST, sizeof *scaling->cases);
+    scaling->cases = allocate_to_the_end(CASES_MOST, sizeof *scaling->cases);
     add_sizes(scaling);
     add_threads(scaling);
     add_neighbours(scaling, 3, "neighbours");
@@ -98,7 +96,4 @@ void scaling_create_cases(struct scaling *scaling)
     add_orders(scaling);
     add_clouds(scaling);
     add_radii(scaling);
-    for (int k = 0; k < scaling->case_count; k++)
-        for (int work = 0; work < SCALING_WORKS; work++)
-            scaling->cases[k].time[work] = samples_create(scaling->settings.repetitions);
 }

@@ -1,8 +1,7 @@
 #include "scaling_cloud.h"
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "particles/particles.h"
 #include "settings.h"
-
 #include <math.h>
 
 /* R = Rz(0.7) Ry(0.3) Rx(0.5), in 2D Rz alone: no axis stays near an axis or a diagonal. */

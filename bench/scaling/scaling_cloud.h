@@ -1,8 +1,7 @@
 /* Clouds of particles that a solver may bring. */
 #ifndef SPHGRAD_BENCH_SCALING_CLOUD_H
 #define SPHGRAD_BENCH_SCALING_CLOUD_H
-#include "particles/numbers.h"
-
+#include "numbers.h"
 #include <stdbool.h>
 
 enum cloud_shape {

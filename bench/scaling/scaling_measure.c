@@ -1,9 +1,9 @@
 /* The measurements of scaling. */
 #include "library.h"
+#include "particles/linear_field.h"
 #include "particles/particles.h"
 #include "report/progress.h"
 #include "scaling.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,21 +18,6 @@ struct scene {
         jacobians;          /* radii: count 0, one for all */
     struct numbers volumes; /* count 1: one for all */
 };
-
-/* v = (-y, x, 2z), in 2D (-y, 2x): numbers that are stored exactly, whatever the positions. */
-static const double linear[2][9] = {{0, -1, 2, 0}, {0, -1, 0, 1, 0, 0, 0, 0, 2}};
-
-static void fill_field(struct scene *scene)
-{
-    const int32_t d = scene->positions.width;
-    for (int32_t i = 0; i < scene->positions.count; i++)
-        for (int32_t a = 0; a < d; a++) {
-            double value = 0;
-            for (int32_t b = 0; b < d; b++)
-                value += linear[d - 2][a * d + b] * numbers_get(&scene->positions, i, b);
-            numbers_set(&scene->field, i, a, value);
-        }
-}
 
 static void take_cloud(struct scene *scene)
 {
@@ -68,8 +53,8 @@ static struct scene open_scene(struct scaling_case *one)
     scene.field = numbers_create(SPHG_F32, count, d);
     scene.corrections = numbers_create(SPHG_F32, count, sphg_correction_width(&scene.scheme));
     scene.jacobians = numbers_create(SPHG_F32, count, d * d);
-    fill_field(&scene);
-    library_check(scene.context, sphg_neighbors_create(scene.context, &scene.neighbors));
+    linear_field_fill(&scene.positions, &scene.field);
+    scene.neighbors = library_neighbors(scene.context);
     return scene;
 }
 
@@ -85,46 +70,23 @@ static void close_scene(struct scene *scene)
     numbers_destroy(&scene->jacobians);
 }
 
-static void run(struct scene *scene, enum scaling_work work)
+/* ranks: where they go, of matrices; NULL: nowhere */
+static void run(struct scene *scene, enum scaling_work work, uint8_t *ranks)
 {
-    sphg_geometry geometry = sphg_all(numbers_view(&scene->positions), scene->positions.count);
+    sphg_geometry geometry = library_geometry(&scene->positions, SPHG_F32);
     sphg_sources sources = {.neighbors = scene->neighbors, .volume = volumes_of(scene)};
     const sphg_view corrections = numbers_view(&scene->corrections);
-    sphg_result result = SPHG_OK;
     if (scene->radii.count)
         geometry.source_support = numbers_view(&scene->radii);
     if (work == SCALING_GRADIENT)
         sources.correction = corrections;
     if (work == SCALING_SEARCH)
-        result = sphg_neighbors_search(scene->context, scene->neighbors, &scene->scheme, &geometry);
+        library_search(scene->context, scene->neighbors, &scene->scheme, &geometry);
     else if (work == SCALING_MATRICES)
-        result = sphg_correction(scene->context, &scene->scheme, &sources, NULL, corrections,
-                                 sphg_absent());
+        library_correct(scene->context, &scene->scheme, &sources, corrections, ranks);
     else
-        result = sphg_jacobian(scene->context, &scene->scheme, &sources, NULL,
-                               numbers_view(&scene->field), numbers_view(&scene->jacobians));
-    library_check(scene->context, result);
-}
-
-static void compute_ranks(struct scene *scene, uint8_t *ranks)
-{
-    const sphg_sources sources = {.neighbors = scene->neighbors, .volume = volumes_of(scene)};
-    library_check(scene->context,
-                  sphg_correction(scene->context, &scene->scheme, &sources, NULL,
-                                  numbers_view(&scene->corrections), sphg_view_u8(ranks, 1)));
-}
-
-static double error_of(const struct scene *scene, int32_t i)
-{
-    const int32_t d = scene->positions.width;
-    double difference = 0, size = 0;
-    for (int32_t k = 0; k < d * d; k++) {
-        const double expected = linear[d - 2][k];
-        const double off = numbers_get(&scene->jacobians, i, k) - expected;
-        difference += off * off;
-        size += expected * expected;
-    }
-    return sqrt(difference / size);
+        library_jacobian(scene->context, &scene->scheme, &sources, &scene->field,
+                         &scene->jacobians);
 }
 
 /* Warms up on the way. */
@@ -132,23 +94,17 @@ static void measure_error(struct scene *scene)
 {
     struct scaling_case *one = scene->one;
     uint8_t *ranks = allocate_or_exit((size_t)one->count, 1);
-    sphg_neighbors_info info;
     int32_t deficient = 0;
-    run(scene, SCALING_SEARCH);
-    compute_ranks(scene, ranks);
-    run(scene, SCALING_GRADIENT);
-    run(scene, SCALING_FUSED);
-    library_check(scene->context, sphg_neighbors_get_info(scene->context, scene->neighbors, &info));
+    for (int work = 0; work < SCALING_WORKS; work++)
+        run(scene, (enum scaling_work)work, ranks);
+    const sphg_neighbors_info info = library_info(scene->context, scene->neighbors);
     one->pairs = (double)info.pairs / one->count;
     one->bytes = (double)info.bytes / one->count;
     for (int32_t i = 0; i < one->count; i++) {
-        const double error = error_of(scene, i);
-        one->not_finite += !isfinite(error);
-        if (ranks[i] == scene->positions.width)
-            one->error = numbers_larger(one->error, error);
-        else
-            deficient++;
+        one->not_finite += !isfinite(linear_field_error(&scene->jacobians, i));
+        deficient += ranks[i] < scene->positions.width;
     }
+    one->error = deficient < one->count ? linear_field_worst(&scene->jacobians, ranks) : 0;
     one->deficient = (double)deficient / one->count;
     free(ranks);
 }
@@ -178,8 +134,8 @@ static void measure_group(struct scaling *scaling, int begin, int end)
                           scaling->settings.repetitions, one->label);
             for (int work = 0; work < SCALING_WORKS; work++) {
                 const struct moment start = now();
-                run(&scenes[k - begin], (enum scaling_work)work);
-                samples_add_since(&one->time[work], start);
+                run(&scenes[k - begin], (enum scaling_work)work, NULL);
+                samples_add(&one->time[work], since(start));
             }
         }
     for (int k = 0; k < end - begin; k++)

@@ -2,11 +2,13 @@
 #include "skip.h"
 #include "commands.h"
 #include "report/machine.h"
-#include "options.h"
 #include "report/progress.h"
+#include "report/report.h"
+#include "report/text.h"
 #include "skip_compare.h"
-
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The first run of a row is for the comparison, untimed, and warms up. */
 static void compare_row(struct skip_stage *stage, const struct skip_row *row,
@@ -24,19 +26,18 @@ static void time_row(struct skip_stage *stage, const struct skip_row *row,
 {
     const struct moment full_start = now();
     row->full(stage, &stage->solid.full, row->parameter);
-    samples_add_since(&result->full, full_start);
+    samples_add(&result->full, since(full_start));
     const struct moment part_start = now();
     row->part(stage, &stage->solid.part, row->parameter);
-    samples_add_since(&result->part, part_start);
+    samples_add(&result->part, since(part_start));
 }
 
 static void keep_matrices(struct skip_stage *stage)
 {
     const sphg_sources sources = {.neighbors = stage->solid.kept,
                                   .volume = numbers_view(&stage->volumes)};
-    library_check(stage->context,
-                  sphg_correction(stage->context, &stage->solid.scheme, &sources, NULL,
-                                  numbers_view(&stage->corrections), sphg_absent()));
+    library_correct(stage->context, &stage->solid.scheme, &sources,
+                    numbers_view(&stage->corrections), NULL);
 }
 
 static void measure(struct skip *skip)
@@ -63,14 +64,63 @@ static void measure(struct skip *skip)
     skip_stage_destroy(&stage);
 }
 
-static error_t parse_option(int key, char *text, struct argp_state *state)
+static const char *exactness(const struct skip_row *row, const struct skip_result *result)
 {
-    struct skip *skip = state->input;
-    (void)text;
-    if (key != ARGP_KEY_INIT)
-        return ARGP_ERR_UNKNOWN;
-    state->child_inputs[0] = &skip->settings;
-    return 0;
+    if (row->compared == 0)
+        return "-";
+    return result->differences == 0 ? "same bits" : table_text("off by %.1e", result->deviation);
+}
+
+static struct table *table_of(const struct skip *skip)
+{
+    static const struct column columns[] = {{NULL, "group", NULL, NULL},
+                                            {"what", "what", NULL, NULL},
+                                            {"against", NULL, NULL, NULL},
+                                            {"full [ms]", "full", NULL, NULL},
+                                            {"this [ms]", "this", NULL, NULL},
+                                            {"saved %", "saved_percent", "%.0f", NULL},
+                                            {"exact", NULL, NULL, NULL},
+                                            {NULL, "compared", NULL, NULL},
+                                            {NULL, "targets_with_other_bits", NULL, NULL},
+                                            {NULL, "deviation", NULL, NULL},
+                                            {0}};
+    struct table *table = table_create("skip", columns);
+    for (int k = 0; k < skip_row_count; k++) {
+        const struct skip_row *row = &skip_rows[k];
+        const struct skip_result *result = &skip->results[k];
+        if (k > 0 && strcmp(row->group, skip_rows[k - 1].group) != 0)
+            table_section(table, NULL);
+        TABLE_ROW(
+            table, cell_text(row->group), cell_text(row->what), cell_text(row->against),
+            cell_time(&result->full, 1), cell_time(&result->part, 1),
+            cell_number(100 * (1 - samples_median(&result->part) / samples_median(&result->full))),
+            cell_text(exactness(row, result)), cell_number(row->compared != 0),
+            cell_count(result->differences), cell_number(result->deviation));
+    }
+    return table;
+}
+
+static void report_results(const struct skip *skip)
+{
+    const struct settings *settings = &skip->settings;
+    const struct table *table = table_of(skip);
+    text_print_lattice(settings, skip->count, skip->pairs);
+    printf("; 2D: %.2f\n", skip->plane_pairs);
+    printf("scheme     KGC, cubic spline, f32; neighbours kept and found before, unless it says "
+           "search\n");
+    text_print_machine(settings->threads);
+    printf("times      median (min-max) of %d rounds [ms]; exact: compared with the full result\n",
+           settings->repetitions);
+    text_print_if_busy(&skip->results[0].full, settings->threads);
+    table_print(table);
+    if (skip->skin_was_spent)
+        printf("\nThe skin did not hold: its row includes searches that found pairs anew.\n");
+
+    struct report *report = report_create(settings->threads);
+    report_lattice(report, settings, skip->count, skip->pairs);
+    report_number(report, "skin_was_spent", skip->skin_was_spent);
+    report_table(report, table);
+    report_write(report, settings->json);
 }
 
 int command_skip(int argc, char **argv)
@@ -80,27 +130,14 @@ int command_skip(int argc, char **argv)
                                      .repetitions = 9,
                                      .support = 2,
                                      .jitter = 0.2}};
-    const struct argp_child children[] = {{&settings_argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
-    const struct argp argp = {
-        .parser = parse_option,
-        .children = children,
-        .doc = "Times parts of an evaluation beside the whole: outputs that are not wanted, "
-               "particles that are not active, neighbours that are still known. Says where "
-               "results are the same to the bit."};
-    options_parse(&argp, argc, argv, &skip);
-    skip.results = allocate_or_exit((size_t)skip_row_count, sizeof *skip.results);
-    for (int k = 0; k < skip_row_count; k++) {
-        skip.results[k].part = samples_create(skip.settings.repetitions);
-        skip.results[k].full = samples_create(skip.settings.repetitions);
-    }
+    const struct command_option options[] = {LATTICE_OPTIONS(skip.settings), {0}};
+    settings_read(&skip.settings, options,
+                  "Times parts of an evaluation beside the whole: outputs that are not wanted, "
+                  "particles that are not active, neighbours that are still known. Says where "
+                  "results are the same to the bit.",
+                  argc, argv);
+    skip.results = allocate_to_the_end((size_t)skip_row_count, sizeof *skip.results);
     measure(&skip);
-    skip_print(&skip);
-    if (skip.settings.json)
-        skip_write_json(&skip, skip.settings.json, "sphgrad-bench");
-    for (int k = 0; k < skip_row_count; k++) {
-        samples_destroy(&skip.results[k].part);
-        samples_destroy(&skip.results[k].full);
-    }
-    free(skip.results);
+    report_results(&skip);
     return EXIT_SUCCESS;
 }

@@ -39,7 +39,4 @@ struct skip {
     int skin_was_spent;
     struct skip_result *results;
 };
-
-void skip_print(const struct skip *skip);
-void skip_write_json(const struct skip *skip, const char *path, const char *executable);
 #endif

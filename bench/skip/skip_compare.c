@@ -1,5 +1,4 @@
 #include "skip_compare.h"
-
 #include <math.h>
 #include <string.h>
 

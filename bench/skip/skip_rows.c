@@ -71,9 +71,8 @@ static void matrices(struct skip_stage *stage, struct outputs *outputs, int para
 {
     (void)parameter;
     const sphg_sources sources = sources_of(stage, stage->solid.kept);
-    library_check(stage->context,
-                  sphg_correction(stage->context, &stage->solid.scheme, &sources, NULL,
-                                  numbers_view(&outputs->corrections), sphg_absent()));
+    library_correct(stage->context, &stage->solid.scheme, &sources,
+                    numbers_view(&outputs->corrections), NULL);
 }
 
 /* As if no matrix were certified: 4 eps is more than any of their eigenvalues. */
@@ -83,9 +82,7 @@ static void decomposed_matrices(struct skip_stage *stage, struct outputs *output
     const sphg_sources sources = sources_of(stage, stage->solid.kept);
     sphg_scheme scheme = stage->solid.scheme;
     scheme.threshold = 0.5;
-    library_check(stage->context,
-                  sphg_correction(stage->context, &scheme, &sources, NULL,
-                                  numbers_view(&outputs->corrections), sphg_absent()));
+    library_correct(stage->context, &scheme, &sources, numbers_view(&outputs->corrections), NULL);
 }
 
 /* With the matrices that the stage keeps. */
@@ -160,13 +157,10 @@ static void jacobian_of_listed(struct skip_stage *stage, struct outputs *outputs
 static void search(const struct skip_stage *stage, const struct numbers *positions,
                    sphg_neighbors *neighbors, int32_t list_free, double skin)
 {
-    const sphg_geometry geometry = {.sources = numbers_view(positions),
-                                    .source_count = positions->count,
-                                    .target_count = positions->count,
-                                    .list_free = list_free,
-                                    .skin = skin};
-    library_check(stage->context, sphg_neighbors_search(stage->context, neighbors,
-                                                        &stage->solid.scheme, &geometry));
+    sphg_geometry geometry = library_geometry(positions, SPHG_F32);
+    geometry.list_free = list_free;
+    geometry.skin = skin;
+    library_search(stage->context, neighbors, &stage->solid.scheme, &geometry);
 }
 
 static void search_and_jacobian(struct skip_stage *stage, struct outputs *outputs, int parameter)
@@ -203,13 +197,10 @@ static void skinned_search_and_jacobian(struct skip_stage *stage, struct outputs
                                         int parameter)
 {
     (void)parameter;
-    sphg_neighbors_info info;
     search(stage, positions_of_round(stage), stage->solid.skinned, 0, stage->skin);
     const sphg_sources sources = sources_of(stage, stage->solid.skinned);
     jacobian_of(stage, &stage->solid, &sources, NULL, outputs, 0);
-    library_check(stage->context,
-                  sphg_neighbors_get_info(stage->context, stage->solid.skinned, &info));
-    stage->skin_was_spent |= info.rebuilt;
+    stage->skin_was_spent |= library_info(stage->context, stage->solid.skinned).rebuilt;
 }
 
 static void jacobian_in_plane(struct skip_stage *stage, struct outputs *outputs, int parameter)

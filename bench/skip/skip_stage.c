@@ -1,7 +1,6 @@
 #include "skip_stage.h"
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "particles/particles.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -79,16 +78,12 @@ static void move(struct cloud *cloud, double skin)
 static sphg_neighbors *find(const struct skip_stage *stage, const struct cloud *cloud,
                             int32_t list_free, double skin, int32_t keep_weights)
 {
-    sphg_neighbors *neighbors = NULL;
-    const sphg_geometry geometry = {.sources = numbers_view(&cloud->positions),
-                                    .source_count = cloud->positions.count,
-                                    .target_count = cloud->positions.count,
-                                    .list_free = list_free,
-                                    .keep_weights = keep_weights,
-                                    .skin = skin};
-    library_check(stage->context, sphg_neighbors_create(stage->context, &neighbors));
-    library_check(stage->context,
-                  sphg_neighbors_search(stage->context, neighbors, &cloud->scheme, &geometry));
+    sphg_neighbors *neighbors = library_neighbors(stage->context);
+    sphg_geometry geometry = library_geometry(&cloud->positions, SPHG_F32);
+    geometry.list_free = list_free;
+    geometry.keep_weights = keep_weights;
+    geometry.skin = skin;
+    library_search(stage->context, neighbors, &cloud->scheme, &geometry);
     return neighbors;
 }
 
@@ -110,7 +105,7 @@ static struct cloud create_cloud(const struct skip_stage *stage, const struct se
     cloud.full = create_outputs(&cloud, dimension);
     cloud.part = create_outputs(&cloud, dimension);
     cloud.kept = find(stage, &cloud, 0, 0, 0);
-    library_check(stage->context, sphg_neighbors_get_info(stage->context, cloud.kept, &cloud.info));
+    cloud.info = library_info(stage->context, cloud.kept);
     return cloud;
 }
 

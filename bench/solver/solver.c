@@ -1,41 +1,10 @@
 /* The command `solver`. */
 #include "solver.h"
 #include "commands.h"
-#include "particles/names.h"
-#include "options.h"
-
+#include "report/report.h"
+#include "report/text.h"
+#include <stdio.h>
 #include <stdlib.h>
-
-enum { OPTION_MATRICES = 256, OPTION_ISA, OPTION_PRECISION };
-
-static const struct argp_option option_list[] = {
-    {"matrices", OPTION_MATRICES, "N", 0, "of the large batches (1000000); 0: only small ones", 0},
-    {"isa", OPTION_ISA, "NAME", 0,
-     "baseline, x86-64-v3, x86-64-v4 or neon alone (all that run here)", 0},
-    {"precision", OPTION_PRECISION, "TYPE", 0, "f32 or f64 alone (both)", 0},
-    {0}};
-
-static error_t parse_option(int key, char *text, struct argp_state *state)
-{
-    static const char *const precisions[] = {"f32", "f64", NULL};
-    struct solver *solver = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &solver->settings;
-        return 0;
-    case OPTION_MATRICES:
-        solver->matrices = option_integer("matrices", text, 0, 100000000);
-        return 0;
-    case OPTION_ISA:
-        solver->path = option_choice("isa", text, isa_names + 1);
-        return 0;
-    case OPTION_PRECISION:
-        solver->precision = option_choice("precision", text, precisions);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
 
 static void find_paths(struct solver *solver)
 {
@@ -47,7 +16,7 @@ static void find_paths(struct solver *solver)
         sphg_context_destroy(context);
     }
     if (found == 0)
-        options_refuse("--isa: %s does not run here", library_path_name(solver->path));
+        command_line_refuse("--isa: %s does not run here", library_path_name(solver->path));
 }
 
 static void list_groups(struct solver *solver)
@@ -62,36 +31,116 @@ static void list_groups(struct solver *solver)
                         (struct solver_group){types[type], d, counts[size], {{{{0}}, {0}, {0}}}};
 }
 
-static void destroy_samples(struct solver *solver)
+/* The worst path's. */
+static double most(const double *values, const bool *available)
 {
-    for (int g = 0; g < solver->group_count; g++)
+    double largest = 0;
+    for (int path = 0; path < LIBRARY_PATHS; path++)
+        if (available[path])
+            largest = numbers_larger(largest, values[path]);
+    return largest;
+}
+
+static void add_case(struct table *table, const struct solver *solver,
+                     const struct solver_group *group, int k)
+{
+    static const char *const works[] = {"invert moments", "eigen", "SVD"};
+    const struct solver_case *one = &solver_cases[k];
+    const struct solver_result *result = &group->results[k];
+    const double ns_a_matrix = 1e6 / group->count;
+    const bool copied = one->spectrum == SOLVER_COPIED;
+    struct cell cells[8 + LIBRARY_PATHS];
+    int count = 0;
+    cells[count++] = cell_text(table_text("%dD", (int)group->dimension));
+    cells[count++] = cell_text(group->type == SPHG_F64 ? "f64" : "f32");
+    cells[count++] = cell_text(table_text("%d", (int)group->count));
+    cells[count++] = cell_text(works[one->work]);
+    cells[count++] = cell_text(one->what);
+    cells[count++] = copied ? cell_time(&result->times[0], ns_a_matrix) : cell_none();
+    for (int path = 0; path < LIBRARY_PATHS; path++)
+        if (solver->available[path])
+            cells[count++] = copied ? cell_none() : cell_time(&result->times[path], ns_a_matrix);
+    cells[count++] = one->spectrum == SOLVER_MOMENTS
+                         ? cell_number(100 * most(result->decomposed, solver->available))
+                         : cell_none();
+    cells[count++] = !copied && one->share == 0
+                         ? cell_number(most(result->deviation, solver->available))
+                         : cell_none();
+    table_add(table, cells);
+}
+
+static struct table *table_of(const struct solver *solver)
+{
+    static const char format[] = "%.2f (%.2f-%.2f)", unit[] = "ns_per_matrix";
+    static struct column columns[9 + LIBRARY_PATHS] = {
+        {NULL, "dimension", NULL, NULL}, {NULL, "precision", NULL, NULL},
+        {NULL, "matrices", NULL, NULL},  {"", "work", NULL, NULL},
+        {"", "what", NULL, NULL},        {"memcpy", "memcpy", format, unit}};
+    int count = 6;
+    for (int path = 0; path < LIBRARY_PATHS; path++)
+        if (solver->available[path])
+            columns[count++] =
+                (struct column){library_path_name(path), library_path_name(path), format, unit};
+    columns[count++] = (struct column){"fell %", "decomposed_percent", "%.2f", NULL};
+    columns[count++] = (struct column){"off by", "deviation", "%.1e", NULL};
+    columns[count] = (struct column){0};
+    struct table *table = table_create("solver", columns);
+    for (int g = 0; g < solver->group_count; g++) {
+        const struct solver_group *group = &solver->groups[g];
+        char text[TEXT_SIZE];
+        table_section(table, table_text("%dD, %s, %s", (int)group->dimension,
+                                        group->type == SPHG_F64 ? "f64" : "f32",
+                                        text_grouped(group->count, text)));
         for (int k = 0; k < SOLVER_CASES; k++)
-            for (int path = 0; path < LIBRARY_PATHS; path++)
-                samples_destroy(&solver->groups[g].results[k].times[path]);
+            if (solver_has(group, k))
+                add_case(table, solver, group, k);
+    }
+    return table;
+}
+
+static void report_results(const struct solver *solver)
+{
+    const struct settings *settings = &solver->settings;
+    const struct table *table = table_of(solver);
+    printf("matrices   3 x 3 and 2 x 2, items packed, so many in a batch; memcpy: their numbers "
+           "moved from the input\n           to the results, no arithmetic; fell: share that the "
+           "call sent to the decomposition\n");
+    text_print_machine(settings->threads);
+    printf("times      ns a matrix, median (min-max) of %d rounds through the cases and "
+           "instruction sets of a group;\n           off by: C M - 1 of the certified, else "
+           "what the factors miss of A, the largest entry over that of A\n",
+           settings->repetitions);
+    table_print(table);
+    struct report *report = report_create(settings->threads);
+    report_table(report, table);
+    report_write(report, settings->json);
 }
 
 int command_solver(int argc, char **argv)
 {
+    static const char *const precisions[] = {"f32", "f64", NULL};
     struct solver solver = {.settings = {.threads = 1, .repetitions = 9},
                             .matrices = 1000000,
                             .path = -1,
                             .precision = -1};
-    const struct argp_child children[] = {{&settings_run_argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
-    const struct argp argp = {
-        .options = option_list,
-        .parser = parse_option,
-        .children = children,
-        .doc = "Times batches of small matrices: moments that the certificate lets pass and "
-               "moments that fall back to the decomposition, eigenvalues, SVD; on every "
-               "instruction set, in batches that stay in the cache and batches that do not. One "
-               "thread unless --threads says otherwise."};
-    options_parse(&argp, argc, argv, &solver);
+    const struct command_option options[] = {
+        {"matrices", 0, "N", "of the large batches (1000000); 0: only small ones", OPTION_WHOLE,
+         &solver.matrices, 0, 1e8, NULL, NULL},
+        {"isa", 0, "NAME", "baseline, x86-64-v3, x86-64-v4 or neon alone (all that run here)",
+         OPTION_CHOICE, &solver.path, 0, 0, isa_names + 1, NULL},
+        {"precision", 0, "TYPE", "f32 or f64 alone (both)", OPTION_CHOICE, &solver.precision, 0, 0,
+         precisions, NULL},
+        RUN_OPTIONS(solver.settings),
+        {0}};
+    settings_read(&solver.settings, options,
+                  "Times batches of small matrices: moments that the certificate lets pass and "
+                  "moments that fall back to the decomposition, eigenvalues, SVD; on every "
+                  "instruction set, in batches that stay in the cache and batches that do not. "
+                  "One thread unless --threads says otherwise.",
+                  argc, argv);
     find_paths(&solver);
     list_groups(&solver);
     solver_measure(&solver);
-    solver_print(&solver);
-    if (solver.settings.json)
-        solver_write_json(&solver, solver.settings.json, "sphgrad-bench");
-    destroy_samples(&solver);
+    report_results(&solver);
     return EXIT_SUCCESS;
 }

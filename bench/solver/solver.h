@@ -2,10 +2,8 @@
 #ifndef SPHGRAD_BENCH_SOLVER_H
 #define SPHGRAD_BENCH_SOLVER_H
 #include "library.h"
-#include "settings.h"
 #include "report/timing.h"
-
-#include <stdbool.h>
+#include "settings.h"
 
 enum solver_work { SOLVER_INVERSION, SOLVER_EIGEN, SOLVER_SVD };
 
@@ -64,6 +62,4 @@ struct numbers solver_batch(const struct solver_case *one, sphg_type type, int32
                             int32_t count);
 
 void solver_measure(struct solver *solver);
-void solver_print(const struct solver *solver);
-void solver_write_json(const struct solver *solver, const char *path, const char *executable);
 #endif

@@ -1,8 +1,7 @@
 /* Batches of matrices with chosen spectra. */
-#include "particles/lattice.h"
-#include "particles/numbers.h"
+#include "lattice.h"
+#include "numbers.h"
 #include "solver.h"
-
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,6 @@
 #include "report/progress.h"
 #include "solver.h"
 #include "team.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,9 +124,9 @@ static void time_case(const struct scene *scene, int k, int path)
     const struct moment start = now();
     for (int32_t call = 0; call < calls; call++)
         run_case(scene, k, path);
-    const struct moment end = now();
-    const struct moment one = {(end.wall - start.wall) / calls, (end.cpu - start.cpu) / calls};
-    samples_add(&scene->group->results[k].times[path], one);
+    const struct moment all = since(start);
+    samples_add(&scene->group->results[k].times[path],
+                (struct moment){all.wall / calls, all.cpu / calls});
 }
 
 /* ---- What came out -------------------------------------------------------------------------- */
@@ -249,9 +248,6 @@ void solver_measure(struct solver *solver)
     for (int g = 0; g < solver->group_count; g++) {
         struct solver_group *group = &solver->groups[g];
         progress_show("group %d of %d: warm-up", g + 1, solver->group_count);
-        for (int k = 0; k < SOLVER_CASES; k++)
-            for (int path = 0; path < LIBRARY_PATHS; path++)
-                group->results[k].times[path] = samples_create(rounds);
         struct scene scene = open_scene(solver, group);
         for_all(&scene, prepare);
         for (int32_t round = 0; round < rounds; round++) {

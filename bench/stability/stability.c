@@ -1,62 +1,253 @@
 /* The command `stability`. */
 #include "stability.h"
 #include "commands.h"
+#include "numbers.h"
 #include "report/machine.h"
-#include "options.h"
-
+#include "report/plot.h"
+#include "report/report.h"
+#include "report/text.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum {
-    OPTION_OUTPUT = 256,
-    OPTION_QUICK,
-    OPTION_SWEEP,
-    OPTION_KERNEL,
-    OPTION_COMPARE,
-    OPTION_SEED
+/* ---- What all cases of a sweep and method come to ---------------------------------------------
+ */
+
+struct summary {
+    int cases;
+    int64_t targets, compared, undecided, not_finite, wrong_ranks, other_bits;
+    double rank_least, rank_most, fallback_least, fallback_most;
+    double ratio[STABILITY_PRECISIONS];
 };
 
-static const struct argp_option option_list[] = {
-    {"output", OPTION_OUTPUT, "FOLDER", 0, "where CSV, scripts and pictures go (stability)", 0},
-    {"quick", OPTION_QUICK, NULL, 0, "a few places of each sweep, in seconds", 0},
-    {"sweep", OPTION_SWEEP, "NAME", 0,
-     "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging; or "
-     "crowds, which only shows how errors grow",
-     0},
-    {"kernel", OPTION_KERNEL, "NAME", 0, "one of the seven smoothing functions (cubic)", 0},
-    {"compare", OPTION_COMPARE, "N", 0,
-     "targets of a case that stand beside the reference (32, quick 2); 0: none", 0},
-    {"seed", OPTION_SEED, "N", 0, "other random numbers (0)", 0},
-    {0}};
-
-static error_t parse_option(int key, char *text, struct argp_state *state)
+static void add_to_summary(struct summary *sum, const struct stability_case *one)
 {
-    struct stability *stability = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &stability->settings;
-        return 0;
-    case OPTION_OUTPUT:
-        stability->output = text;
-        return 0;
-    case OPTION_QUICK:
-        stability->quick = true;
-        return 0;
-    case OPTION_SWEEP:
-        stability->first = stability->last = option_choice("sweep", text, sweep_names);
-        return 0;
-    case OPTION_KERNEL:
-        stability->kernel = (sphg_kernel)option_choice("kernel", text, kernel_names);
-        return 0;
-    case OPTION_COMPARE:
-        stability->compared = option_integer("compare", text, 0, 1 << 20);
-        return 0;
-    case OPTION_SEED:
-        stability->seed = option_integer("seed", text, 0, 9999);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
+    double *ratio = &sum->ratio[one->precision];
+    sum->cases++;
+    sum->targets += one->targets;
+    sum->compared += one->compared;
+    sum->undecided += one->undecided;
+    sum->not_finite += one->not_finite;
+    sum->wrong_ranks += one->wrong_ranks;
+    sum->other_bits += one->other_bits;
+    sum->rank_least = fmin(sum->rank_least, stability_rank(one));
+    sum->rank_most = fmax(sum->rank_most, stability_rank(one));
+    sum->fallback_least = fmin(sum->fallback_least, stability_fallback(one));
+    sum->fallback_most = fmax(sum->fallback_most, stability_fallback(one));
+    *ratio = numbers_larger(*ratio, stability_ratio(one));
+}
+
+static struct summary summarise(const struct stability *stability, int sweep, int method)
+{
+    struct summary sum = {.rank_least = 3, .fallback_least = 1};
+    for (int k = 0; k < stability->case_count; k++) {
+        const struct stability_case *one = &stability->cases[k];
+        if ((int)one->sweep == sweep && (int)one->method == method)
+            add_to_summary(&sum, one);
     }
+    return sum;
+}
+
+static void add_summary(struct table *table, const char *sweep, const char *method,
+                        const struct summary *sum)
+{
+    const bool ranked = sum->rank_most > 0;
+    TABLE_ROW(
+        table, cell_text(sweep), cell_text(method), cell_count(sum->cases),
+        cell_count(sum->targets), cell_count(sum->compared), cell_number(sum->ratio[PRECISION_F32]),
+        cell_number(sum->ratio[PRECISION_F64]), cell_number(sum->ratio[PRECISION_MIXED]),
+        ranked ? cell_text(table_text("%.2f - %.2f", sum->rank_least, sum->rank_most))
+               : cell_none(),
+        ranked ? cell_text(
+                     table_text("%.1f - %.1f", 100 * sum->fallback_least, 100 * sum->fallback_most))
+               : cell_none(),
+        cell_count(sum->wrong_ranks), cell_count(sum->other_bits), cell_count(sum->not_finite));
+}
+
+static void print_summaries(const struct stability *stability)
+{
+    static const struct column columns[] = {
+        {"sweep", NULL, NULL, NULL},      {"method", NULL, NULL, NULL},
+        {"cases", NULL, NULL, NULL},      {"targets", NULL, NULL, NULL},
+        {"compared", NULL, NULL, NULL},   {"f32", NULL, "%.2g", NULL},
+        {"f64", NULL, "%.2g", NULL},      {"mixed", NULL, "%.2g", NULL},
+        {"rank", NULL, NULL, NULL},       {"decomposed", NULL, NULL, NULL},
+        {"wrong", NULL, NULL, NULL},      {"bits", NULL, NULL, NULL},
+        {"not finite", NULL, NULL, NULL}, {0}};
+    struct table *table = table_create("", columns);
+    for (int sweep = stability->first; sweep <= stability->last; sweep++)
+        for (int method = 0; method < STABILITY_METHODS; method++) {
+            const struct summary sum = summarise(stability, sweep, method);
+            if (sum.cases > 0)
+                add_summary(table, sweep_names[sweep], method_names[method], &sum);
+        }
+    table_print(table);
+}
+
+/* ---- What one sweep alone comes to, place by place ---------------------------------------------
+ */
+
+/* The same case in another precision. */
+static const struct stability_case *beside(const struct stability *stability,
+                                           const struct stability_case *one,
+                                           enum precision precision)
+{
+    for (int k = 0; k < stability->case_count; k++) {
+        const struct stability_case *other = &stability->cases[k];
+        if (other->precision == precision && other->method == one->method &&
+            other->policy == one->policy && other->at == one->at)
+            return other;
+    }
+    return one;
+}
+
+static void print_places(const struct stability *stability)
+{
+    static const struct column columns[] = {
+        {"sweep", NULL, NULL, NULL},        {"at", NULL, "%.3g", NULL},
+        {"method", NULL, NULL, NULL},       {"policy", NULL, NULL, NULL},
+        {"targets", NULL, NULL, NULL},      {"rank", NULL, "%.2f", NULL},
+        {"decomposed", NULL, "%.2f", NULL}, {"linear", NULL, "%.2g", NULL},
+        {"noise", NULL, "%.2g", NULL},      {"exact f32", NULL, "%.1g", NULL},
+        {"f64", NULL, "%.1g", NULL},        {"bound f32", NULL, "%.2g", NULL},
+        {"f64", NULL, "%.2g", NULL},        {0}};
+    struct table *table = table_create("", columns);
+    printf("\nplaces     f32, but for the last columns; rank: particles of full rank, decomposed: "
+           "shares in percent;\n           linear: mean error of a linear field, noise: largest "
+           "|J| H of a random field; exact: the\n           largest error of a linear field at "
+           "full rank, bound: the largest error of a random field\n           over its bound\n");
+    for (int k = 0; k < stability->case_count; k++) {
+        const struct stability_case *one = &stability->cases[k];
+        const struct stability_case *wide = beside(stability, one, PRECISION_F64);
+        if (one->precision == PRECISION_F32)
+            TABLE_ROW(table, cell_text(sweep_names[one->sweep]), cell_number(one->at),
+                      cell_text(method_names[one->method]), cell_text(policy_names[one->policy]),
+                      cell_count(one->targets),
+                      cell_number(100 * (double)one->full / (double)one->targets),
+                      cell_number(100 * stability_fallback(one)),
+                      cell_number(stability_linear(one)), cell_number(one->noise),
+                      cell_number(one->linear_full), cell_number(wide->linear_full),
+                      cell_number(stability_ratio(one)), cell_number(stability_ratio(wide)));
+    }
+    table_print(table);
+}
+
+/* ---- All of it --------------------------------------------------------------------------------
+ */
+
+static struct table *table_of_cases(const struct stability *stability)
+{
+    static const char *const keys[] = {"sweep",
+                                       "policy",
+                                       "method",
+                                       "precision",
+                                       "place",
+                                       "at",
+                                       "end",
+                                       "threshold",
+                                       "targets",
+                                       "rank",
+                                       "full",
+                                       "decomposed",
+                                       "empty",
+                                       "compared",
+                                       "undecided",
+                                       "ratio_full",
+                                       "ratio_touched",
+                                       "wrong_ranks",
+                                       "not_finite",
+                                       "linear_mean",
+                                       "linear_full",
+                                       "noise",
+                                       "condition",
+                                       "jump",
+                                       "jump_left",
+                                       "correction_jump",
+                                       "correction_jump_left",
+                                       "other_bits",
+                                       "" /* the time */};
+    enum { KEYS = sizeof keys / sizeof keys[0] };
+    static struct column columns[KEYS + 1];
+    for (int k = 0; k < KEYS; k++)
+        columns[k].key = keys[k];
+    struct table *table = table_create("stability", columns);
+    for (int k = 0; k < stability->case_count; k++) {
+        struct stability_case *one = &stability->cases[k];
+        one->once = (struct samples){&one->time, 1, 1};
+        TABLE_ROW(
+            table, cell_text(sweep_names[one->sweep]), cell_text(policy_names[one->policy]),
+            cell_text(method_names[one->method]), cell_text(precision_names[one->precision]),
+            cell_text(table_text("%g", one->at)), cell_number(one->at), cell_number(one->end),
+            cell_number(stability_threshold(one)), cell_count(one->targets),
+            cell_number(stability_rank(one)), cell_number((double)one->full / (double)one->targets),
+            cell_number(stability_fallback(one)), cell_count(one->empty), cell_count(one->compared),
+            cell_count(one->undecided), cell_number(one->ratio_full),
+            cell_number(one->ratio_touched), cell_count(one->wrong_ranks),
+            cell_count(one->not_finite), cell_number(stability_linear(one)),
+            cell_number(one->linear_full), cell_number(one->noise), cell_number(one->condition),
+            cell_number(one->jump), cell_number(one->jump_left), cell_number(one->correction_jump),
+            cell_number(one->correction_jump_left), cell_count(one->other_bits),
+            cell_time(&one->once, 1));
+    }
+    return table;
+}
+
+/* What bounds the errors, who can be corrected, and what a solver's author reads from it. */
+static bool draw(const struct stability *stability)
+{
+    static const char *const scripts[] = {"ratios", "ranks", "reading"};
+    const struct settings *settings = &stability->settings;
+    const char *given =
+        table_text("support = '%g'\nmachine = \"%s\"\n", settings->support, machine_cpu());
+    for (int k = 0; k < 3; k++) {
+        const char *script = table_text("stability_%s.gp", scripts[k]);
+        const char *const parts[] = {"stability/stability_common.gp",
+                                     table_text("stability/%s", script), NULL};
+        if (!plot_draw(settings->output, script, given, parts))
+            return false;
+    }
+    return true;
+}
+
+static void print_results(const struct stability *stability)
+{
+    const struct settings *settings = &stability->settings;
+    char count[TEXT_SIZE];
+    const int32_t side = settings_side(settings->particles, 3);
+    printf("particles  %s in the largest block, jitter %g spacings, H = %g spacings, %s, "
+           "eps 1e-2, but\n           for what a sweep changes; %d round%s of random "
+           "numbers, seed %d\n",
+           text_grouped((int64_t)side * side * side, count), settings->jitter, settings->support,
+           kernel_names[settings->kernel], settings->repetitions,
+           settings->repetitions > 1 ? "s" : "", (int)stability->seed);
+    text_print_machine(settings->threads);
+    printf("ratios     largest error of the gradient of a random field over its bound, beside "
+           "brute force in\n           quadruple precision; limits: 10 at full rank, 16 where "
+           "the threshold acts\n");
+    printf("ranks      means over the particles of a case, least and most; decomposed: their "
+           "share in percent\n");
+    print_summaries(stability);
+    if (stability->first == stability->last)
+        print_places(stability);
+}
+
+static void write_results(const struct stability *stability)
+{
+    const struct settings *settings = &stability->settings;
+    const struct table *cases = table_of_cases(stability);
+    const bool all = stability->first == 0 && stability->last == SWEEPS - 1;
+    table_write_csv(cases, settings->output, "stability.csv");
+    const bool drawn = all && draw(stability);
+    printf("\nwritten to %s: stability.csv%s%s\n", settings->output, all ? ", three scripts" : "",
+           drawn ? " and their pictures" : "");
+    struct report *report = report_create(settings->threads);
+    report_number(report, "particles", settings->particles);
+    report_number(report, "support_spacings", settings->support);
+    report_number(report, "jitter", settings->jitter);
+    report_number(report, "rounds", settings->repetitions);
+    report_number(report, "seed", stability->seed);
+    report_table(report, cases);
+    report_write(report, settings->json);
 }
 
 int command_stability(int argc, char **argv)
@@ -65,34 +256,40 @@ int command_stability(int argc, char **argv)
                                                .threads = machine_threads(),
                                                .repetitions = 1,
                                                .support = 2,
-                                               .jitter = 0.2},
-                                  .output = "stability",
+                                               .jitter = 0.2,
+                                               .output = "stability"},
                                   .last = SWEEPS - 1,
                                   .compared = -1};
-    const struct argp_child children[] = {{&settings_argp, 0, NULL, 0}, {NULL, 0, NULL, 0}};
-    const struct argp argp = {
-        .options = option_list,
-        .parser = parse_option,
-        .children = children,
-        .doc = "Sweeps thickness, threshold, distance from the origin, scale, neighbours, "
-               "volumes, disorder and merging layers for every method and precision, beside a "
-               "reference in quadruple precision. A round is another set of random numbers; the "
-               "exit status tells whether every promise held."};
-    options_parse(&argp, argc, argv, &stability);
-    option_folder("output", stability.output);
+    bool one_sweep = false;
+    const struct command_option options[] = {
+        OUTPUT_OPTION(stability.settings, "CSV, scripts and pictures", "stability"),
+        {"quick", 0, NULL, "a few places of each sweep, in seconds", OPTION_FLAG, &stability.quick,
+         0, 0, NULL, NULL},
+        {"sweep", 0, "NAME",
+         "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging; or "
+         "crowds, which only shows how errors grow",
+         OPTION_CHOICE, &stability.first, 0, 0, sweep_names, &one_sweep},
+        KERNEL_OPTION(stability.settings),
+        {"compare", 0, "N",
+         "targets of a case that stand beside the reference (32, quick 2); 0: none", OPTION_WHOLE,
+         &stability.compared, 0, 1 << 20, NULL, NULL},
+        {"seed", 0, "N", "other random numbers (0)", OPTION_WHOLE, &stability.seed, 0, 9999, NULL,
+         NULL},
+        LATTICE_OPTIONS(stability.settings),
+        {0}};
+    settings_read(&stability.settings, options,
+                  "Sweeps thickness, threshold, distance from the origin, scale, neighbours, "
+                  "volumes, disorder and merging layers for every method and precision, beside a "
+                  "reference in quadruple precision. A round is another set of random numbers; "
+                  "the exit status tells whether every promise held.",
+                  argc, argv);
+    if (one_sweep)
+        stability.last = stability.first;
     if (stability.compared < 0)
         stability.compared = stability.quick ? 2 : 32;
     stability_create_cases(&stability);
     stability_measure(&stability);
-    stability_print(&stability);
-    stability_write_csv(&stability);
-    if (stability.settings.json)
-        stability_write_json(&stability, stability.settings.json, "sphgrad-bench");
-    const bool all = stability.first == 0 && stability.last == SWEEPS - 1;
-    const bool drawn = all && stability_draw(&stability);
-    printf("\nwritten to %s: stability.csv%s%s\n", stability.output, all ? ", three scripts" : "",
-           drawn ? " and their pictures" : "");
-    const int broken = stability_check(&stability);
-    free(stability.cases);
-    return broken == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    print_results(&stability);
+    write_results(&stability);
+    return stability_check(&stability) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

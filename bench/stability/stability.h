@@ -1,11 +1,8 @@
 /* How the operators bear degenerate, distant and uneven particles: what is swept and measured. */
 #ifndef SPHGRAD_BENCH_STABILITY_H
 #define SPHGRAD_BENCH_STABILITY_H
-#include "particles/names.h"
-#include "settings.h"
 #include "report/timing.h"
-
-#include <stdbool.h>
+#include "settings.h"
 
 enum stability_sweep {
     SWEEP_SLAB,       /* (spacing / thickness)^2, about the condition number of the moments */
@@ -31,7 +28,8 @@ struct stability_case {
     enum precision precision;
     double at, end; /* scale and merging walk from `at` to `end`, in `steps` steps; else the same */
     int32_t steps;
-    struct moment time; /* of all calls of the library */
+    struct moment time;  /* of all calls of the library */
+    struct samples once; /* of that alone, for tables */
 
     int64_t targets;    /* seen by the library */
     int64_t not_finite; /* numbers among the results */
@@ -56,11 +54,9 @@ struct stability_case {
 
 struct stability {
     struct settings settings;
-    const char *output;
     bool quick;
-    int first, last; /* sweeps */
-    int32_t seed;    /* of all random numbers */
-    sphg_kernel kernel;
+    int first, last;  /* sweeps */
+    int32_t seed;     /* of all random numbers */
     int32_t compared; /* targets of a case that stand beside the reference */
     int case_count;
     struct stability_case *cases; /* those of a sweep stand together */
@@ -82,10 +78,4 @@ double stability_ratio(const struct stability_case *one);
 
 /* Lines on stderr for promises that a case breaks; how many there are. */
 int stability_check(const struct stability *stability);
-
-void stability_print(const struct stability *stability);
-void stability_write_csv(const struct stability *stability);
-void stability_write_json(const struct stability *stability, const char *path,
-                          const char *executable);
-bool stability_draw(const struct stability *stability); /* after the CSV; false: no picture */
 #endif

@@ -1,7 +1,6 @@
 /* The cases of stability: in each sweep one thing changes. */
-#include "particles/numbers.h"
+#include "numbers.h"
 #include "stability.h"
-
 #include <float.h>
 #include <math.h>
 
@@ -144,13 +143,13 @@ static bool makes_sense(const struct stability_case *one)
 
 void stability_create_cases(struct stability *stability)
 {
-    stability->cases = allocate_or_exit(CASES_MOST, sizeof *stability->cases);
+    stability->cases = allocate_to_the_end(CASES_MOST, sizeof *stability->cases);
     for (int sweep = stability->first; sweep <= stability->last; sweep++)
         for (int policy = 0; policy < STABILITY_POLICIES; policy++)
             for (int method = 0; method < STABILITY_METHODS; method++)
                 for (int precision = 0; precision < STABILITY_PRECISIONS; precision++) {
                     struct stability_case one = {.sweep = (enum stability_sweep)sweep,
-                                                 .kernel = stability->kernel,
+                                                 .kernel = stability->settings.kernel,
                                                  .policy = (sphg_policy)policy,
                                                  .method = (sphg_method)method,
                                                  .precision = (enum precision)precision};

@@ -1,7 +1,6 @@
 /* What no case may break. The limits of errors are those of the tests. */
 #include "stability.h"
 #include "support/tolerances.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,7 +1,6 @@
 #include "stability_cloud.h"
-#include "particles/lattice.h"
-#include "particles/numbers.h"
-
+#include "lattice.h"
+#include "numbers.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "report/progress.h"
 #include "stability_reference.h"
 #include "team.h"
-
 #include <math.h>
 #include <stdatomic.h>
 

@@ -1,6 +1,5 @@
 #include "stability_reference.h"
 #include "support/oracle.h"
-
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,12 +1,9 @@
 #include "stability_trial.h"
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "library.h"
-
+#include "particles/linear_field.h"
 #include <math.h>
 #include <stdlib.h>
-
-/* J of (-y, x, 2z) */
-static const double linear[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
 
 static void fill(struct trial *trial, const struct stability_cloud *cloud, int exponent)
 {
@@ -49,7 +46,7 @@ struct trial trial_create(sphg_context *context, const struct stability_case *on
         trial.jacobians[field] = numbers_create(type, targets, 9);
     }
     fill(&trial, cloud, exponent);
-    library_check(context, sphg_neighbors_create(context, &trial.neighbors));
+    trial.neighbors = library_neighbors(context);
     return trial;
 }
 
@@ -71,12 +68,9 @@ void trial_destroy(struct trial *trial)
 
 static void search(struct trial *trial)
 {
-    const sphg_geometry geometry = {.sources = numbers_view(&trial->positions),
-                                    .source_count = trial->count,
-                                    .target_count = trial->target_count,
-                                    .precision = trial->volumes.type};
-    library_check(trial->context, sphg_neighbors_search(trial->context, trial->neighbors,
-                                                        &trial->scheme, &geometry));
+    sphg_geometry geometry = library_geometry(&trial->positions, trial->volumes.type);
+    geometry.target_count = trial->target_count;
+    library_search(trial->context, trial->neighbors, &trial->scheme, &geometry);
 }
 
 static void evaluate(struct trial *trial)
@@ -113,13 +107,11 @@ static int64_t count_not_finite(const struct numbers *numbers)
     return count;
 }
 
-static double norm_of(const struct numbers *tensors, int32_t i, const double *from)
+static double norm_of(const struct numbers *tensors, int32_t i)
 {
     double square = 0;
-    for (int32_t k = 0; k < tensors->width; k++) {
-        const double entry = numbers_get(tensors, i, k) - (from ? from[k] : 0);
-        square += entry * entry;
-    }
+    for (int32_t k = 0; k < tensors->width; k++)
+        square += numbers_get(tensors, i, k) * numbers_get(tensors, i, k);
     return sqrt(square);
 }
 
@@ -137,13 +129,12 @@ static void tally_ranks(const struct trial *trial, struct stability_case *one)
 
 static void tally_results(const struct trial *trial, struct stability_case *one)
 {
-    const double length = sqrt(6); /* |J|_F */
     for (int32_t i = 0; i < trial->target_count; i++) {
-        const double error = norm_of(&trial->jacobians[TRIAL_LINEAR], i, linear) / length;
+        const double error = linear_field_error(&trial->jacobians[TRIAL_LINEAR], i);
         one->linear_sum += error;
         if (!trial->corrected || trial->ranks[i] == 3)
             one->linear_full = fmax(one->linear_full, error);
-        one->noise = fmax(one->noise, norm_of(&trial->jacobians[TRIAL_RANDOM], i, NULL) *
+        one->noise = fmax(one->noise, norm_of(&trial->jacobians[TRIAL_RANDOM], i) *
                                           trial->scheme.support_radius);
     }
 }
@@ -165,9 +156,9 @@ void trial_run(struct trial *trial, struct stability_case *one)
     const struct moment start = now();
     search(trial);
     evaluate(trial);
-    const struct moment end = now();
-    one->time.wall += end.wall - start.wall;
-    one->time.cpu += end.cpu - start.cpu;
+    const struct moment time = since(start);
+    one->time.wall += time.wall;
+    one->time.cpu += time.cpu;
     tally(trial, one);
 }
 

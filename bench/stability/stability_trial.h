@@ -1,7 +1,7 @@
 /* The library's answer for one cloud. */
 #ifndef SPHGRAD_BENCH_STABILITY_TRIAL_H
 #define SPHGRAD_BENCH_STABILITY_TRIAL_H
-#include "particles/numbers.h"
+#include "numbers.h"
 #include "stability_cloud.h"
 
 enum trial_field {

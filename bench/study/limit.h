@@ -30,12 +30,5 @@ struct limit {
     bool probe_only;
 };
 
-extern const char *const limit_work_names[LIMIT_WORKS];
-
 void limit_measure(struct limit *limit);
-void limit_print(const struct limit *limit);
-void limit_write_json(const struct limit *limit, const char *path, const char *executable);
-
-/* The fastest arrangement by its median. */
-int limit_fastest(const struct limit_times *times, int finished);
 #endif

@@ -5,7 +5,6 @@
 #include "particles/names.h"
 #include "report/progress.h"
 #include "team.h"
-
 #include <stdlib.h>
 
 /* The packed loops go through 1/SHARE of the targets, so that a round stays short. */
@@ -30,32 +29,25 @@ static sphg_scheme scheme_of(const struct bench *bench)
 static void search(struct bench *bench)
 {
     const sphg_scheme scheme = scheme_of(bench);
-    const sphg_geometry geometry = {.sources = numbers_view(&bench->particles.positions),
-                                    .source_count = bench->particles.count,
-                                    .target_count = bench->particles.count};
-    library_check(bench->context, sphg_neighbors_create(bench->context, &bench->neighbors));
-    library_check(bench->context,
-                  sphg_neighbors_search(bench->context, bench->neighbors, &scheme, &geometry));
-    library_check(bench->context, sphg_neighbors_get_info(bench->context, bench->neighbors,
-                                                          &bench->limit->neighbors));
+    const sphg_geometry geometry = library_geometry(&bench->particles.positions, SPHG_F32);
+    bench->neighbors = library_neighbors(bench->context);
+    library_search(bench->context, bench->neighbors, &scheme, &geometry);
+    bench->limit->neighbors = library_info(bench->context, bench->neighbors);
 }
 
 static void run_library(struct bench *bench, enum limit_work work)
 {
     const sphg_scheme scheme = scheme_of(bench);
-    const sphg_view field = numbers_view(&bench->particles.velocities),
-                    corrections = numbers_view(&bench->corrections);
+    const sphg_view corrections = numbers_view(&bench->corrections);
     sphg_sources sources = {.neighbors = bench->neighbors,
                             .volume = numbers_view(&bench->particles.volumes)};
-    if (work == LIMIT_MATRICES) {
-        library_check(bench->context, sphg_correction(bench->context, &scheme, &sources, NULL,
-                                                      corrections, sphg_absent()));
-        return;
-    }
     if (work == LIMIT_GRADIENT)
         sources.correction = corrections;
-    library_check(bench->context, sphg_jacobian(bench->context, &scheme, &sources, NULL, field,
-                                                numbers_view(&bench->jacobians)));
+    if (work == LIMIT_MATRICES)
+        library_correct(bench->context, &scheme, &sources, corrections, NULL);
+    else
+        library_jacobian(bench->context, &scheme, &sources, &bench->particles.velocities,
+                         &bench->jacobians);
 }
 
 /* What one thread is to do; its share of items says which packed data are its own. */
@@ -86,9 +78,9 @@ static struct moment time_packed(const struct bench *bench, int set, enum limit_
         bench->packed[set], bench->limit->sets[set], work, arrangement, finished, share};
     const struct moment start = now();
     team_run(threads, run_packed_share, &assignment, threads, 1);
-    const struct moment end = now();
+    const struct moment time = since(start);
     const double scale = (double)bench->limit->count / ((double)share * threads);
-    return (struct moment){scale * (end.wall - start.wall), scale * (end.cpu - start.cpu)};
+    return (struct moment){scale * time.wall, scale * time.cpu};
 }
 
 static void pack(struct bench *bench)
@@ -120,21 +112,8 @@ static void check_arrangements(struct bench *bench)
                 limit->sets[set]->run(&packed->data, (enum limit_work)work, k, true, LIMIT_TARGETS);
                 const double deviation = packed_deviation(packed, (enum limit_work)work);
                 struct limit_times *times = &limit->times[set][work];
-                times->deviation = deviation <= times->deviation ? times->deviation : deviation;
+                times->deviation = numbers_larger(times->deviation, deviation);
             }
-}
-
-static void create_samples(struct limit *limit)
-{
-    const int32_t repetitions = limit->settings.repetitions;
-    for (int work = 0; work < PROBE_WORKS; work++)
-        limit->probe[work] = samples_create(repetitions);
-    for (int work = 0; work < LIMIT_WORKS; work++)
-        limit->library[work] = samples_create(repetitions);
-    for (int set = 0; set < limit->set_count; set++)
-        for (int work = 0; work < LIMIT_WORKS; work++)
-            for (int k = 0; k < 2 * LIMIT_ARRANGEMENTS; k++)
-                limit->times[set][work].arrangements[k % 2][k / 2] = samples_create(repetitions);
 }
 
 static void time_arrangements(struct bench *bench, int set, enum limit_work work)
@@ -152,12 +131,12 @@ static void run_round(struct bench *bench)
     for (int work = 0; work < PROBE_WORKS; work++) {
         const struct moment start = now();
         probe_run(bench->probe, (enum probe_work)work, limit->settings.threads);
-        samples_add_since(&limit->probe[work], start);
+        samples_add(&limit->probe[work], since(start));
     }
     for (int work = 0; work < LIMIT_WORKS && !limit->probe_only; work++) {
         const struct moment start = now();
         run_library(bench, (enum limit_work)work);
-        samples_add_since(&limit->library[work], start);
+        samples_add(&limit->library[work], since(start));
         for (int set = 0; set < limit->set_count; set++)
             time_arrangements(bench, set, (enum limit_work)work);
     }
@@ -205,7 +184,6 @@ void limit_measure(struct limit *limit)
     limit->probe_deviation = probe_matrix_deviation(bench.probe, bench.context);
     if (!limit->probe_only)
         open_library_side(&bench, side);
-    create_samples(limit);
     for (int32_t repetition = 0; repetition < settings->repetitions; repetition++) {
         progress_show("round %d of %d", repetition + 1, settings->repetitions);
         run_round(&bench);

@@ -1,6 +1,5 @@
 #include "limit_pack.h"
-#include "particles/lattice.h"
-
+#include "lattice.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,9 +1,8 @@
 #include "probe.h"
-#include "particles/lattice.h"
+#include "lattice.h"
 #include "probe_passes.h"
 #include "report/processor.h"
 #include "team.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

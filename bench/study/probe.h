@@ -3,7 +3,6 @@
 #ifndef SPHGRAD_BENCH_PROBE_H
 #define SPHGRAD_BENCH_PROBE_H
 #include "library.h"
-
 #include <stdbool.h>
 
 enum probe_work { PROBE_MATRICES, PROBE_GRADIENT, PROBE_WORKS };

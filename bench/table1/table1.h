@@ -2,26 +2,19 @@
 #ifndef SPHGRAD_BENCH_TABLE1_H
 #define SPHGRAD_BENCH_TABLE1_H
 #include "particles/particles.h"
-#include "study/probe.h"
 #include "report/timing.h"
+#include "settings.h"
+#include "study/probe.h"
 
-enum { TABLE1_COLUMNS = 6 };
+enum { TABLE1_METHODS = 6 };
 
-struct table1_options {
-    struct particle_source source;
-    int32_t wanted_particles; /* what the lattice's cube comes nearest to */
-    double support;           /* in spacings; with an input file in its units; 0: not given */
-    sphg_kernel kernel;
-    int32_t threads, repetitions;
-    const char *json; /* file to write, or NULL */
-};
+enum table1_work { TABLE1_MATRIX, TABLE1_GRADIENT, TABLE1_FUSED, TABLE1_WORKS };
 
-struct column {
+struct table1_method {
     sphg_method method;
     double paper_matrix, paper_gradient; /* [ms], 32 cores of a Threadripper PRO 5975WX */
-    struct samples matrix, gradient, fused;
-    /* The same with weights that a sweep before kept; linearised methods only. */
-    struct samples matrix_kept, gradient_kept, fused_kept;
+    /* [kept]: with weights that a sweep before kept; linearised methods only. */
+    struct samples times[2][TABLE1_WORKS];
     /* Untimed: the field v = (-y, x, 2z), in 2D (-y, x), max |J_i - J|_F / |J|_F over particles of
      * full rank (plain SPH, which has no rank: over all); NaN if there are none. */
     double gradient_error, fused_error, kept_error;
@@ -30,7 +23,8 @@ struct column {
 };
 
 struct table1 {
-    struct table1_options options;
+    struct settings settings; /* support: in spacings; with an input file in its units */
+    struct particle_source source;
     struct particles particles;
     double support_radius;
     sphg_neighbors_info neighbors;
@@ -39,15 +33,14 @@ struct table1 {
     struct samples search;
     struct samples probe[PROBE_WORKS]; /* for as many particles as its cube holds */
     int32_t probe_count;
-    struct column columns[TABLE1_COLUMNS];
+    struct table1_method methods[TABLE1_METHODS];
 };
 
 /* Whether a method forms weights that neighbours can keep. */
-int table1_keeps_weights(const struct column *column);
+bool table1_keeps_weights(const struct table1_method *one);
 
 /* Opens the library, warms up, measures, closes. */
 void table1_measure(struct table1 *table);
 
-void table1_print(const struct table1 *table);
-void table1_write_json(const struct table1 *table, const char *path, const char *executable);
+void table1_report(const struct table1 *table);
 #endif

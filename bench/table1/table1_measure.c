@@ -1,10 +1,10 @@
 /* The measurements of table1. Each repetition goes once through everything: the search, then each
  * method's three calls. So a slow second of the machine hits all columns alike. */
 #include "library.h"
+#include "particles/linear_field.h"
 #include "report/progress.h"
 #include "settings.h"
 #include "table1.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,7 +25,7 @@ static sphg_scheme scheme_of(const struct bench *bench, sphg_method method)
 {
     return (sphg_scheme){.dimension = bench->table->particles.dimension,
                          .method = method,
-                         .kernel = bench->table->options.kernel,
+                         .kernel = bench->table->settings.kernel,
                          .support_radius = bench->table->support_radius};
 }
 
@@ -48,21 +48,16 @@ static void search(struct bench *bench, sphg_neighbors *neighbors, int keep_weig
 {
     const struct particles *particles = &bench->table->particles;
     const sphg_scheme scheme = scheme_of(bench, SPHG_KGC);
-    const sphg_geometry geometry = {.sources = numbers_view(&particles->positions),
-                                    .source_count = particles->count,
-                                    .target_count = particles->count,
-                                    .precision = bench->jacobians.type,
-                                    .keep_weights = keep_weights};
-    library_check(bench->context,
-                  sphg_neighbors_search(bench->context, neighbors, &scheme, &geometry));
+    sphg_geometry geometry = library_geometry(&particles->positions, bench->jacobians.type);
+    geometry.keep_weights = keep_weights;
+    library_search(bench->context, neighbors, &scheme, &geometry);
 }
 
 static void compute_matrix(struct bench *bench, sphg_method method)
 {
     const sphg_scheme scheme = scheme_of(bench, method);
     const sphg_sources sources = sources_of(bench);
-    library_check(bench->context, sphg_correction(bench->context, &scheme, &sources, NULL,
-                                                  correction_table(bench, method), sphg_absent()));
+    library_correct(bench->context, &scheme, &sources, correction_table(bench, method), NULL);
 }
 
 static void compute_gradient(struct bench *bench, sphg_method method, const struct numbers *field)
@@ -70,9 +65,7 @@ static void compute_gradient(struct bench *bench, sphg_method method, const stru
     const sphg_scheme scheme = scheme_of(bench, method);
     sphg_sources sources = sources_of(bench);
     sources.correction = correction_table(bench, method);
-    library_check(bench->context,
-                  sphg_jacobian(bench->context, &scheme, &sources, NULL, numbers_view(field),
-                                numbers_view(&bench->jacobians)));
+    library_jacobian(bench->context, &scheme, &sources, field, &bench->jacobians);
 }
 
 /* stats, ranks: wanted where they are not NULL. */
@@ -104,54 +97,32 @@ static int64_t count_not_finite(const struct numbers *numbers)
     return count;
 }
 
-/* |J_i - J|_F / |J|_F of v = (-y, x, 2z), in 2D (-y, x). */
-static double linear_field_error(const struct numbers *jacobians, int32_t i)
-{
-    static const double of_volume[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2}, of_plane[4] = {0, -1, 1, 0};
-    const double *expected = jacobians->width == 9 ? of_volume : of_plane;
-    double difference = 0, size = 0;
-    for (int32_t k = 0; k < jacobians->width; k++) {
-        const double d = numbers_get(jacobians, i, k) - expected[k];
-        difference += d * d;
-        size += expected[k] * expected[k];
-    }
-    return sqrt(difference / size);
-}
-
-/* Plain SPH corrects nothing and has no rank: all particles count. NaN is not overlooked, and is
- * what comes out where no particle counts. */
+/* Plain SPH corrects nothing and has no rank: all particles count. */
 static double largest_error(const struct bench *bench, sphg_method method)
 {
-    double most = -1;
-    for (int32_t i = 0; i < bench->jacobians.count; i++) {
-        if (method != SPHG_PLAIN && bench->ranks[i] < bench->table->particles.dimension)
-            continue;
-        const double error = linear_field_error(&bench->jacobians, i);
-        most = numbers_larger(most, error);
-    }
-    return most < 0 ? NAN : most;
+    return linear_field_worst(&bench->jacobians, method == SPHG_PLAIN ? NULL : bench->ranks);
 }
 
-static void measure_errors(struct bench *bench, struct column *column,
+static void measure_errors(struct bench *bench, struct table1_method *one,
                            const struct numbers *linear_field)
 {
-    const sphg_method method = column->method;
+    const sphg_method method = one->method;
     const int corrected = method != SPHG_PLAIN;
-    compute_fused(bench, method, linear_field, corrected ? &column->stats : NULL,
+    compute_fused(bench, method, linear_field, corrected ? &one->stats : NULL,
                   corrected ? bench->ranks : NULL);
-    column->fused_error = largest_error(bench, method);
-    column->not_finite += count_not_finite(&bench->jacobians);
+    one->fused_error = largest_error(bench, method);
+    one->not_finite += count_not_finite(&bench->jacobians);
     if (corrected)
         compute_matrix(bench, method);
     compute_gradient(bench, method, linear_field);
-    column->gradient_error = largest_error(bench, method);
-    column->not_finite += count_not_finite(&bench->jacobians);
-    if (!table1_keeps_weights(column))
+    one->gradient_error = largest_error(bench, method);
+    one->not_finite += count_not_finite(&bench->jacobians);
+    if (!table1_keeps_weights(one))
         return;
     bench->with_weights = 1;
     compute_matrix(bench, method); /* which keeps them */
     compute_gradient(bench, method, linear_field);
-    column->kept_error = largest_error(bench, method);
+    one->kept_error = largest_error(bench, method);
     bench->with_weights = 0;
 }
 
@@ -160,52 +131,44 @@ static void warm_up(struct bench *bench)
     const struct particles *particles = &bench->table->particles;
     struct numbers linear_field =
         numbers_create(particles->velocities.type, particles->count, particles->dimension);
-    particles_linear_field(particles, &linear_field);
-    for (int k = 0; k < TABLE1_COLUMNS; k++) {
-        struct column *column = &bench->table->columns[k];
-        progress_show("warm-up: %s", method_names[column->method]);
-        measure_errors(bench, column, &linear_field);
+    linear_field_fill(&particles->positions, &linear_field);
+    for (int k = 0; k < TABLE1_METHODS; k++) {
+        struct table1_method *one = &bench->table->methods[k];
+        progress_show("warm-up: %s", method_names[one->method]);
+        measure_errors(bench, one, &linear_field);
         if (particles->own_velocities) {
-            compute_gradient(bench, column->method, &particles->velocities);
-            column->not_finite += count_not_finite(&bench->jacobians);
+            compute_gradient(bench, one->method, &particles->velocities);
+            one->not_finite += count_not_finite(&bench->jacobians);
         }
     }
     numbers_destroy(&linear_field);
 }
 
-static void time_method(struct bench *bench, struct column *column)
+static void run(struct bench *bench, sphg_method method, enum table1_work work)
 {
     const struct numbers *field = &bench->table->particles.velocities;
-    if (column->method != SPHG_PLAIN) {
-        const struct moment matrix_start = now();
-        compute_matrix(bench, column->method);
-        samples_add_since(&column->matrix, matrix_start);
-    }
-    const struct moment gradient_start = now();
-    compute_gradient(bench, column->method, field);
-    samples_add_since(&column->gradient, gradient_start);
-    if (column->method == SPHG_PLAIN)
-        return;
-    const struct moment fused_start = now();
-    compute_fused(bench, column->method, field, NULL, NULL);
-    samples_add_since(&column->fused, fused_start);
+    if (work == TABLE1_MATRIX)
+        compute_matrix(bench, method);
+    else if (work == TABLE1_GRADIENT)
+        compute_gradient(bench, method, field);
+    else
+        compute_fused(bench, method, field, NULL, NULL);
 }
 
-/* Weights of one scheme are kept at a time: those of this method are formed first, untimed. */
-static void time_kept(struct bench *bench, struct column *column)
+/* Plain SPH has no matrix, and nothing to be fused. Weights of one scheme are kept at a time: those
+ * of this method are formed first, untimed. */
+static void time_method(struct bench *bench, struct table1_method *one, int kept)
 {
-    const struct numbers *field = &bench->table->particles.velocities;
-    bench->with_weights = 1;
-    compute_matrix(bench, column->method);
-    const struct moment matrix_start = now();
-    compute_matrix(bench, column->method);
-    samples_add_since(&column->matrix_kept, matrix_start);
-    const struct moment gradient_start = now();
-    compute_gradient(bench, column->method, field);
-    samples_add_since(&column->gradient_kept, gradient_start);
-    const struct moment fused_start = now();
-    compute_fused(bench, column->method, field, NULL, NULL);
-    samples_add_since(&column->fused_kept, fused_start);
+    bench->with_weights = kept;
+    if (kept)
+        compute_matrix(bench, one->method);
+    for (int work = 0; work < TABLE1_WORKS; work++) {
+        if (one->method == SPHG_PLAIN && work != TABLE1_GRADIENT)
+            continue;
+        const struct moment start = now();
+        run(bench, one->method, (enum table1_work)work);
+        samples_add(&one->times[kept][work], since(start));
+    }
     bench->with_weights = 0;
 }
 
@@ -218,40 +181,34 @@ static void prepare_probe(struct bench *bench)
         probe_create(bench->context, settings_side(count < most ? count : most, 3), 2, 0.2);
     bench->table->probe_count = probe_count(bench->probe);
     for (int work = 0; work < PROBE_WORKS; work++)
-        probe_run(bench->probe, (enum probe_work)work, bench->table->options.threads);
+        probe_run(bench->probe, (enum probe_work)work, bench->table->settings.threads);
 }
 
 static void time_probe(struct bench *bench)
 {
     for (int work = 0; work < PROBE_WORKS; work++) {
         const struct moment start = now();
-        probe_run(bench->probe, (enum probe_work)work, bench->table->options.threads);
-        samples_add_since(&bench->table->probe[work], start);
+        probe_run(bench->probe, (enum probe_work)work, bench->table->settings.threads);
+        samples_add(&bench->table->probe[work], since(start));
     }
 }
 
 static void repeat(struct bench *bench)
 {
     struct table1 *table = bench->table;
-    for (int32_t repetition = 0; repetition < table->options.repetitions; repetition++) {
-        progress_show("repetition %d of %d", repetition + 1, table->options.repetitions);
+    for (int32_t repetition = 0; repetition < table->settings.repetitions; repetition++) {
+        progress_show("repetition %d of %d", repetition + 1, table->settings.repetitions);
         const struct moment start = now();
         search(bench, bench->neighbors, 0);
-        samples_add_since(&table->search, start);
-        for (int k = 0; k < TABLE1_COLUMNS; k++)
-            time_method(bench, &table->columns[k]);
-        for (int k = 0; k < TABLE1_COLUMNS; k++)
-            if (table1_keeps_weights(&table->columns[k]))
-                time_kept(bench, &table->columns[k]);
+        samples_add(&table->search, since(start));
+        for (int k = 0; k < TABLE1_METHODS; k++)
+            time_method(bench, &table->methods[k], 0);
+        for (int k = 0; k < TABLE1_METHODS; k++)
+            if (table1_keeps_weights(&table->methods[k]))
+                time_method(bench, &table->methods[k], 1);
         time_probe(bench);
     }
     progress_clear();
-}
-
-static int order_of_numbers(const void *a, const void *b)
-{
-    const double first = *(const double *)a, second = *(const double *)b;
-    return (first > second) - (first < second);
 }
 
 static double median_ratio(const struct numbers *given, const struct numbers *expected)
@@ -259,8 +216,7 @@ static double median_ratio(const struct numbers *given, const struct numbers *ex
     double *ratios = allocate_or_exit((size_t)given->count, sizeof *ratios);
     for (int32_t i = 0; i < given->count; i++)
         ratios[i] = numbers_get(given, i, 0) / numbers_get(expected, i, 0);
-    qsort(ratios, (size_t)given->count, sizeof *ratios, order_of_numbers);
-    const double median = ratios[given->count / 2];
+    const double median = median_of(ratios, given->count);
     free(ratios);
     return median;
 }
@@ -273,13 +229,13 @@ static void complete_volumes(struct bench *bench)
     const sphg_scheme scheme = scheme_of(bench, SPHG_PLAIN);
     struct numbers volumes = numbers_create(bench->jacobians.type, particles->count, 1);
     bench->table->volume_ratio = 1;
-    if (!particles->volumes.data || bench->table->options.source.input)
+    if (!particles->volumes.data || bench->table->source.input)
         library_volumes(bench->context, &scheme, bench->neighbors, &volumes);
     if (!particles->volumes.data) {
         particles->volumes = volumes;
         return;
     }
-    if (bench->table->options.source.input)
+    if (bench->table->source.input)
         bench->table->volume_ratio = median_ratio(&particles->volumes, &volumes);
     numbers_destroy(&volumes);
 }
@@ -290,8 +246,7 @@ static void first_search(struct bench *bench)
     const double start = now().wall;
     search(bench, bench->neighbors, 0);
     bench->table->first_search = now().wall - start;
-    library_check(bench->context, sphg_neighbors_get_info(bench->context, bench->neighbors,
-                                                          &bench->table->neighbors));
+    bench->table->neighbors = library_info(bench->context, bench->neighbors);
     search(bench, bench->keeping, 1);
 }
 
@@ -301,12 +256,12 @@ void table1_measure(struct table1 *table)
     const sphg_scheme widest = {.dimension = dimension, .method = SPHG_CMLS, .support_radius = 1};
     const sphg_type type = table->particles.velocities.type;
     const int32_t count = table->particles.count;
-    struct bench bench = {.table = table, .context = library_open(table->options.threads)};
+    struct bench bench = {.table = table, .context = library_open(table->settings.threads)};
     bench.corrections = numbers_create(type, count, sphg_correction_width(&widest));
     bench.jacobians = numbers_create(type, count, dimension * dimension);
     bench.ranks = allocate_or_exit((size_t)count, 1);
-    library_check(bench.context, sphg_neighbors_create(bench.context, &bench.neighbors));
-    library_check(bench.context, sphg_neighbors_create(bench.context, &bench.keeping));
+    bench.neighbors = library_neighbors(bench.context);
+    bench.keeping = library_neighbors(bench.context);
     first_search(&bench);
     complete_volumes(&bench);
     prepare_probe(&bench);

@@ -4,7 +4,6 @@
 #include "solver/output.h"
 #include "solver/pressure.h"
 #include "solver/viscosity.h"
-
 #include <math.h>
 #include <stdlib.h>
 

@@ -3,7 +3,6 @@
  * whatever slows or tears the cube comes from the viscous force, which should be zero. */
 #include "solver/output.h"
 #include "solver/viscosity.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 #include "solver/output.h"
 #include "solver/pressure.h"
 #include "solver/surface_tension.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

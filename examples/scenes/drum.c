@@ -1,5 +1,4 @@
 #include "drum.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,6 @@
 #include "solver/output.h"
 #include "solver/sampling.h"
 #include "solver/wall.h"
-
 #include <math.h>
 #include <stdlib.h>
 

@@ -4,7 +4,6 @@
 #include "solver/output.h"
 #include "solver/pressure.h"
 #include "solver/sampling.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #include "solver/operators.h"
 #include "solver/output.h"
 #include "solver/pairs.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

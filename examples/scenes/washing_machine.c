@@ -9,7 +9,6 @@
 #include "solver/stopwatch.h"
 #include "solver/time_step.h"
 #include "solver/viscosity.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

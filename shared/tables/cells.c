@@ -1,5 +1,4 @@
 #include "cells.h"
-
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,4 @@
 #include "column_names.h"
-
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>

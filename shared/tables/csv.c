@@ -1,6 +1,5 @@
 #include "csv.h"
 #include "csv_layout.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,5 +1,4 @@
 #include "csv_layout.h"
-
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>

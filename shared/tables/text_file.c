@@ -1,6 +1,5 @@
 #define _POSIX_C_SOURCE 200809L /* strncasecmp */
 #include "text_file.h"
-
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>

@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 takes_at_most() {
-    "$checker" "$work/report.json" ratio "skip/$2" "full/$2" "$1" || status=1
+    "$checker" "$work/report.json" ratio "skip/$2/this" "skip/$2/full" "$1" || status=1
 }
 
 measure() {

@@ -75,7 +75,7 @@ cmake_text = "\n".join(read(path) for path in ("CMakeLists.txt", "src/CMakeLists
                                                "tests/CMakeLists.txt", "src/package/CMakeLists.txt")
                        if os.path.exists(os.path.join(root, path)))
 bench_sources = "\n".join(read(os.path.relpath(path, root)) for path in
-                          glob.glob(os.path.join(root, "bench", "*.c")) + glob.glob(os.path.join(root, "bench/*/*.c")))
+                          glob.glob(os.path.join(root, "bench", "*.[ch]")) + glob.glob(os.path.join(root, "bench/*/*.c")))
 targets = {"sphgrad::sphgrad", "sphgrad::cpp", "sphgrad::fortran"}
 
 

@@ -83,30 +83,9 @@ fixture_array fixture_output(sphg_type type, int count, int width)
 fixture_array fixture_numbers(sphg_type type, int count, int width, const double *numbers)
 {
     fixture_array array = fixture_output(type, count, width);
-    for (int k = 0; k < count * width; k++) {
-        if (type == SPHG_F64)
-            ((double *)array.data)[k] = numbers[k];
-        else
-            ((float *)array.data)[k] = (float)numbers[k];
-    }
+    for (int k = 0; k < count * width; k++)
+        numbers_set(&array, k / width, k % width, numbers[k]);
     return array;
-}
-
-sphg_view fixture_view(const fixture_array *array)
-{
-    sphg_view view = {array->data, NULL, NULL, 0, array->type};
-    view.stride = (ptrdiff_t)((size_t)array->width * size_of(array->type));
-    return view;
-}
-
-double fixture_get(const fixture_array *array, int item, int component)
-{
-    int k = item * array->width + component;
-    if (array->type == SPHG_F64)
-        return ((const double *)array->data)[k];
-    if (array->type == SPHG_F32)
-        return (double)((const float *)array->data)[k];
-    return ((const uint8_t *)array->data)[k];
 }
 
 double *fixture_doubles(const fixture_array *array)
@@ -140,10 +119,7 @@ void fixture_require_close(const fixture_array *a, const fixture_array *b, const
 
 void fixture_put(const fixture_array *array, int number, double value)
 {
-    if (array->type == SPHG_F64)
-        ((double *)array->data)[number] = value;
-    else
-        ((float *)array->data)[number] = (float)value;
+    numbers_set(array, number / array->width, number % array->width, value);
 }
 
 int fixture_is_canary(const fixture_array *array, int item)

@@ -4,6 +4,7 @@
 #define TESTS_SUPPORT_FIXTURE_H
 #include "clouds.h"
 #include "hooks.h"
+#include "numbers.h"
 #include "test.h"
 
 /* Fails the test with the library's message unless the call succeeded. */
@@ -19,18 +20,20 @@ sphg_context *fixture_context_with(const sphg_config *config);
 /* A host to be named in such a config: opened, and closed after the context. */
 hooks *fixture_hooks(void);
 
-/* count items of width numbers, in f32 or f64. */
-typedef struct fixture_array {
-    void *data;
-    sphg_type type;
-    int count, width;
-} fixture_array;
+/* Typed arrays, in memory that ends with the case. */
+typedef struct numbers fixture_array;
 
 /* The numbers rounded to the type; NULL: filled with a canary, for outputs. */
 fixture_array fixture_numbers(sphg_type type, int count, int width, const double *numbers);
 fixture_array fixture_output(sphg_type type, int count, int width);
-sphg_view fixture_view(const fixture_array *array);
-double fixture_get(const fixture_array *array, int item, int component);
+static inline sphg_view fixture_view(const fixture_array *array)
+{
+    return numbers_view(array);
+}
+static inline double fixture_get(const fixture_array *array, int item, int component)
+{
+    return numbers_get(array, item, component);
+}
 /* All numbers as doubles. */
 double *fixture_doubles(const fixture_array *array);
 /* Equal to the bit, NaN included. */

@@ -1,9 +1,8 @@
-/* Seeded random numbers for tests: splitmix64 (Steele, Lea, Flood 2014,
- * doi:10.1145/2660193.2660195). The same seed gives the same cloud on every machine. SPHG_TEST_SEED
- * in the environment draws others everywhere. */
+/* Seeded random numbers for tests. The same seed gives the same cloud on every machine.
+ * SPHG_TEST_SEED in the environment draws others everywhere. */
 #ifndef TESTS_SUPPORT_RANDOM_H
 #define TESTS_SUPPORT_RANDOM_H
-#include <stdint.h>
+#include "splitmix64.h"
 #include <stdlib.h>
 
 typedef struct random_state {
@@ -20,22 +19,19 @@ static inline uint64_t random_chosen(void)
 static inline random_state random_seeded(uint64_t seed)
 {
     seed += random_chosen() * UINT64_C(1000003);
-    random_state state = {seed * UINT64_C(0x9e3779b97f4a7c15) + 1};
+    random_state state = {seed * SPLITMIX64_STEP + 1};
     return state;
 }
 
 static inline uint64_t random_bits(random_state *state)
 {
-    uint64_t z = state->counter += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return z ^ (z >> 31);
+    return splitmix64(&state->counter);
 }
 
 /* Uniform in [low, high); a multiple of 2^-53 (high - low). */
 static inline double random_between(random_state *state, double low, double high)
 {
-    return low + (high - low) * ((double)(random_bits(state) >> 11) * 0x1p-53);
+    return low + (high - low) * splitmix64_share(&state->counter);
 }
 
 /* Uniform in [0, count). */

@@ -1,5 +1,4 @@
 #include "conjugate_gradient.h"
-
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 #include "elasticity.h"
-
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,6 +1,5 @@
 #include "implicit.h"
 #include "conjugate_gradient.h"
-
 #include <stdlib.h>
 
 enum { MOST_ITERATIONS = 500 };

@@ -1,6 +1,5 @@
 #include "library.h"
 #include "stopwatch.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,5 +1,4 @@
 #include "metrics.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 #include "operators.h"
 #include "stopwatch.h"
-
 #include <stdlib.h>
 #include <string.h>
 

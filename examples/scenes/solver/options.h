@@ -8,7 +8,7 @@ enum {
     METHOD_COUNT = 4 /* sph, kgc, mls, rkpm */
 };
 enum method { SPH, KGC, MLS, RKPM };
-extern const char *const method_names[METHOD_COUNT];
+extern const char *const method_names[METHOD_COUNT + 1]; /* NULL-terminated */
 
 struct options {
     const char *scene;

@@ -1,6 +1,5 @@
 #include "output.h"
 #include "vtkhdf.h"
-
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>

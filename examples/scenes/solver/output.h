@@ -4,7 +4,6 @@
 #define SOLVER_OUTPUT_H
 #include "particles.h"
 #include "scene.h"
-
 #include <stdio.h>
 
 /* Says on stderr which kinds of output this build has to skip. */

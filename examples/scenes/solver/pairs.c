@@ -1,5 +1,4 @@
 #include "pairs.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,5 +1,4 @@
 #include "particles.h"
-
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,17 +1,10 @@
-#define _POSIX_C_SOURCE 200809L /* fork, chdir */
 #include "picture.h"
 #include "arrays.h"
-
+#include "gnuplot.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-enum {
-    STATUS_NO_PROGRAM = 127 /* as in the shell */
-};
 
 struct picture picture_open(const struct options *options)
 {
@@ -69,30 +62,13 @@ void picture_series(const struct picture *picture, const char *label)
                 k ? "\n" : ", ");
 }
 
-static void become_gnuplot(const struct picture *picture)
+void picture_close(const struct picture *picture)
 {
     char script[256];
     snprintf(script, sizeof script, "%s.gp", picture->name);
-    if (chdir(picture->directory) == 0)
-        execlp("gnuplot", "gnuplot", script, (char *)NULL);
-    _exit(STATUS_NO_PROGRAM);
-}
-
-void picture_close(const struct picture *picture)
-{
-    int status = -1;
     if (fclose(picture->script) != 0)
-        fprintf(stderr, "cannot write %s.gp: %s\n", picture->name, strerror(errno));
-    fflush(NULL); /* or the child would print buffered text again */
-    const pid_t child = fork();
-    if (child == 0)
-        become_gnuplot(picture);
-    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status))
-        fprintf(stderr, "cannot run gnuplot: %s\n", strerror(errno));
-    else if (WEXITSTATUS(status) == STATUS_NO_PROGRAM)
-        fprintf(stderr, "no gnuplot here, so no picture; the tables are written\n");
-    else if (WEXITSTATUS(status) != 0)
-        fprintf(stderr, "gnuplot failed on %s/%s.gp\n", picture->directory, picture->name);
+        fprintf(stderr, "cannot write %s: %s\n", script, strerror(errno));
+    gnuplot_run(picture->directory, script);
 }
 
 struct seen {

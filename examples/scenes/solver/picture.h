@@ -3,7 +3,6 @@
 #ifndef SOLVER_PICTURE_H
 #define SOLVER_PICTURE_H
 #include "options.h"
-
 #include <stdio.h>
 
 struct picture {

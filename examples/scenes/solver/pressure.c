@@ -1,6 +1,5 @@
 #include "pressure.h"
 #include "stopwatch.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

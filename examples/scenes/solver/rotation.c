@@ -1,5 +1,4 @@
 #include "rotation.h"
-
 #include <stdlib.h>
 
 struct rotations rotations_new(int32_t capacity)

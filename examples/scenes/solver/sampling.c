@@ -1,5 +1,4 @@
 #include "sampling.h"
-
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>

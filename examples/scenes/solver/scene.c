@@ -2,7 +2,6 @@
 #include "scene.h"
 #include "output.h"
 #include "stopwatch.h"
-
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,5 @@
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "stopwatch.h"
-
 #include <time.h>
 
 static double read_clock(clockid_t clock)

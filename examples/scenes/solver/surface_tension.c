@@ -1,5 +1,4 @@
 #include "surface_tension.h"
-
 #include <math.h>
 #include <stdlib.h>
 

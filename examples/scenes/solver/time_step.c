@@ -1,5 +1,4 @@
 #include "time_step.h"
-
 #include <math.h>
 
 double time_step(const struct particles *particles, double spacing, double most)

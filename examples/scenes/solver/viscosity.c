@@ -1,5 +1,4 @@
 #include "viscosity.h"
-
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,5 +1,4 @@
 #include "vtkhdf.h"
-
 #include <hdf5.h>
 #include <stdlib.h>
 #include <string.h>

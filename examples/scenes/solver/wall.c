@@ -1,6 +1,5 @@
 #include "wall.h"
 #include "stopwatch.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

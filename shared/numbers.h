@@ -1,6 +1,6 @@
 /* Tables of numbers whose precision is chosen at run time. */
-#ifndef SPHGRAD_BENCH_NUMBERS_H
-#define SPHGRAD_BENCH_NUMBERS_H
+#ifndef SHARED_NUMBERS_H
+#define SHARED_NUMBERS_H
 #include <sphgrad/sphgrad.h>
 
 struct numbers {
@@ -14,7 +14,7 @@ struct numbers numbers_create(sphg_type type, int32_t count, int32_t width);
 void numbers_destroy(struct numbers *numbers);
 
 double numbers_get(const struct numbers *numbers, int32_t item, int32_t component);
-void numbers_set(struct numbers *numbers, int32_t item, int32_t component, double value);
+void numbers_set(const struct numbers *numbers, int32_t item, int32_t component, double value);
 sphg_view numbers_view(const struct numbers *numbers);
 
 /* The larger; NaN if one is NaN, so that a maximum does not forget it. */
@@ -23,6 +23,8 @@ static inline double numbers_larger(double a, double b)
     return a != a || a > b ? a : b;
 }
 
-/* malloc that ends the program where memory runs out; free() releases it. */
+/* Zeros; ends the program where memory runs out. free() releases the first, the end of the program
+ * the second. */
 void *allocate_or_exit(size_t count, size_t size);
+void *allocate_to_the_end(size_t count, size_t size);
 #endif

@@ -1,8 +1,7 @@
 /* Square and cubic lattices of particles, jittered and shuffled on request. */
-#ifndef SPHGRAD_BENCH_LATTICE_H
-#define SPHGRAD_BENCH_LATTICE_H
+#ifndef SHARED_LATTICE_H
+#define SHARED_LATTICE_H
 #include "numbers.h"
-
 #include <stdbool.h>
 
 struct lattice {

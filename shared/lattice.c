@@ -1,20 +1,11 @@
 #include "lattice.h"
-
+#include "splitmix64.h"
 #include <math.h>
-
-/* splitmix64: Steele, Lea, Flood 2014, doi:10.1145/2714064.2660195 */
-static uint64_t next_random(uint64_t *state)
-{
-    uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return z ^ (z >> 31);
-}
 
 double lattice_random(int64_t number)
 {
-    uint64_t state = (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
-    return (double)(next_random(&state) >> 11) * 0x1p-53;
+    uint64_t state = (uint64_t)number * SPLITMIX64_STEP;
+    return splitmix64_share(&state);
 }
 
 /* Uniform in [-1, 1]. Only 2^12 steps, so that jittered positions on a dyadic lattice, and linear
@@ -22,8 +13,7 @@ double lattice_random(int64_t number)
 static double next_displacement(uint64_t *state)
 {
     const double steps = 4096;
-    const double uniform = (double)(next_random(state) >> 11) * 0x1p-53;
-    return (floor(uniform * (2 * steps + 1)) - steps) / steps;
+    return (floor(splitmix64_share(state) * (2 * steps + 1)) - steps) / steps;
 }
 
 int32_t lattice_count(const struct lattice *lattice)
@@ -63,5 +53,5 @@ void shuffle_rows(struct numbers *table)
 {
     uint64_t state = 2;
     for (int32_t i = table->count - 1; i > 0; i--)
-        swap_rows(table, i, (int32_t)(next_random(&state) % (uint64_t)(i + 1)));
+        swap_rows(table, i, (int32_t)(splitmix64(&state) % (uint64_t)(i + 1)));
 }

@@ -1,8 +1,7 @@
-#include "report_json.h"
+#include "report.h"
 #include "library.h"
 #include "machine.h"
-#include "particles/numbers.h"
-
+#include "numbers.h"
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <stdio.h>
@@ -14,7 +13,18 @@ struct report {
     int32_t threads, families;
 };
 
-struct report *report_create(const char *executable, int32_t threads)
+/* A number of a benchmark. */
+struct counter {
+    const char *name;
+    double value;
+};
+
+struct counters {
+    int count;
+    struct counter list[TABLE_COLUMNS_MOST + 1]; /* and the time in its unit */
+};
+
+struct report *report_create(int32_t threads)
 {
     struct report *report = allocate_or_exit(1, sizeof *report);
     report->threads = threads;
@@ -23,7 +33,7 @@ struct report *report_create(const char *executable, int32_t threads)
     report->benchmarks = cJSON_AddArrayToObject(report->root, "benchmarks");
     report_text(report, "date", machine_date());
     report_text(report, "host_name", machine_host());
-    report_text(report, "executable", executable);
+    report_text(report, "executable", "sphgrad-bench");
     report_number(report, "num_cpus", machine_cpus());
     report_text(report, "library_build_type", machine_build());
     report_text(report, "library_version", library_version());
@@ -44,6 +54,15 @@ void report_number(struct report *report, const char *name, double value)
     cJSON_AddNumberToObject(report->context, name, value);
 }
 
+void report_lattice(struct report *report, const struct settings *settings, int32_t count,
+                    double pairs)
+{
+    report_number(report, "particles", count);
+    report_number(report, "support_spacings", settings->support);
+    report_number(report, "jitter", settings->jitter);
+    report_number(report, "pairs_per_particle", pairs);
+}
+
 static cJSON *add_entry(struct report *report, const char *name, const char *run_name,
                         const char *run_type)
 {
@@ -59,17 +78,17 @@ static cJSON *add_entry(struct report *report, const char *name, const char *run
 }
 
 static void add_measured(cJSON *entry, double real, double cpu, const char *unit,
-                         const struct counter *counters)
+                         const struct counters *counters)
 {
     cJSON_AddNumberToObject(entry, "real_time", real);
     cJSON_AddNumberToObject(entry, "cpu_time", cpu);
     cJSON_AddStringToObject(entry, "time_unit", unit);
-    for (; counters->name; counters++)
-        cJSON_AddNumberToObject(entry, counters->name, counters->value);
+    for (int k = 0; k < counters->count; k++)
+        cJSON_AddNumberToObject(entry, counters->list[k].name, counters->list[k].value);
 }
 
 static void add_repetition(struct report *report, const char *name, const struct samples *samples,
-                           int32_t index, const struct counter *counters)
+                           int32_t index, const struct counters *counters)
 {
     cJSON *entry = add_entry(report, name, name, "iteration");
     cJSON_AddNumberToObject(entry, "repetitions", samples->count);
@@ -80,7 +99,7 @@ static void add_repetition(struct report *report, const char *name, const struct
 
 static void add_aggregate(struct report *report, const char *name, const struct samples *samples,
                           const struct counter *aggregate, double cpu,
-                          const struct counter *counters)
+                          const struct counters *counters)
 {
     char full_name[256];
     const int is_ratio = strcmp(aggregate->name, "cv") == 0;
@@ -93,13 +112,15 @@ static void add_aggregate(struct report *report, const char *name, const struct 
     add_measured(entry, aggregate->value, cpu, "ms", counters);
 }
 
-void report_benchmark(struct report *report, const char *name, const struct samples *samples,
-                      const struct counter *counters)
+static void add_benchmark(struct report *report, const char *name, const struct samples *samples,
+                          const struct counters *counters)
 {
-    if (samples->count == 0)
-        return;
     for (int32_t index = 0; index < samples->count; index++)
         add_repetition(report, name, samples, index, counters);
+    if (samples->count == 1) {
+        report->families++;
+        return;
+    }
     const struct spread wall = samples_wall(samples), cpu = samples_cpu(samples);
     const struct counter aggregates[] = {
         {"mean", wall.mean},        {"median", wall.median},
@@ -113,15 +134,48 @@ void report_benchmark(struct report *report, const char *name, const struct samp
     report->families++;
 }
 
-void report_once(struct report *report, const char *name, struct moment time,
-                 const struct counter *counters)
+static void add_counter(struct counters *counters, const char *name, double value)
 {
-    cJSON *entry = add_entry(report, name, name, "iteration");
-    cJSON_AddNumberToObject(entry, "repetitions", 1);
-    cJSON_AddNumberToObject(entry, "repetition_index", 0);
-    cJSON_AddNumberToObject(entry, "iterations", 1);
-    add_measured(entry, time.wall, time.cpu, "ms", counters);
-    report->families++;
+    counters->list[counters->count++] = (struct counter){name, value};
+}
+
+/* What the times of a row have in common: the start of their names, and counters. */
+static void describe_row(const struct table *table, int32_t row, char *name, size_t size,
+                         struct counters *counters)
+{
+    const struct column *columns = table_columns(table);
+    const struct cell *cells = table_row(table, row);
+    size_t length = (size_t)snprintf(name, size, "%s", table_name(table));
+    for (int c = 0; columns[c].head || columns[c].key; c++) {
+        if (!columns[c].key)
+            continue;
+        if (cells[c].kind == CELL_TEXT && length < size)
+            length += (size_t)snprintf(name + length, size - length, "/%s", cells[c].text);
+        if (cells[c].kind == CELL_NUMBER || cells[c].kind == CELL_COUNT)
+            add_counter(counters, columns[c].key, cells[c].number);
+    }
+}
+
+void report_table(struct report *report, const struct table *table)
+{
+    const struct column *columns = table_columns(table);
+    for (int32_t row = 0; row < table_rows(table); row++) {
+        const struct cell *cells = table_row(table, row);
+        char first[192], name[224];
+        struct counters common = {0};
+        describe_row(table, row, first, sizeof first, &common);
+        for (int c = 0; columns[c].head || columns[c].key; c++) {
+            if (cells[c].kind != CELL_TIME || !columns[c].key)
+                continue;
+            struct counters counters = common;
+            if (columns[c].unit)
+                add_counter(&counters, columns[c].unit,
+                            cells[c].number * samples_median(cells[c].samples));
+            snprintf(name, sizeof name, "%s%s%s", first, *columns[c].key ? "/" : "",
+                     columns[c].key);
+            add_benchmark(report, name, cells[c].samples, &counters);
+        }
+    }
 }
 
 static int write_text(const char *text, const char *path)
@@ -135,8 +189,8 @@ static int write_text(const char *text, const char *path)
 
 void report_write(struct report *report, const char *path)
 {
-    char *text = cJSON_Print(report->root);
-    if (!text || !write_text(text, path)) {
+    char *text = path ? cJSON_Print(report->root) : NULL;
+    if (path && (!text || !write_text(text, path))) {
         fprintf(stderr, "sphgrad-bench: cannot write %s: %s\n", path, strerror(errno));
         exit(EXIT_FAILURE);
     }

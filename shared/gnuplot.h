@@ -1,0 +1,8 @@
+/* Pictures by gnuplot. */
+#ifndef SHARED_GNUPLOT_H
+#define SHARED_GNUPLOT_H
+#include <stdbool.h>
+
+/* Runs folder/script there. false: one line on stderr says why there is no picture. */
+bool gnuplot_run(const char *folder, const char *script);
+#endif
