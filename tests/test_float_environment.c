@@ -235,10 +235,11 @@ static void results_do_not_depend_on_the_float_environment(const test_case *test
     const world own = world_of(test);
     hooks host;
     hooks_open(&host);
-    const sphg_config configs[] = {{.threads = 1, .isa = test_isa()},
-                                   {.threads = 2, .isa = test_isa()},
-                                   {.threads = 3, .isa = test_isa(), .parallel_for = hooks_pthreads, .user = &host},
-                                   {.threads = 3, .isa = test_isa(), .parallel_for = each_in_its_own, .user = &host}};
+    const sphg_config configs[] = {
+        {.threads = 1, .isa = test_isa()},
+        {.threads = 2, .isa = test_isa()},
+        {.threads = 3, .isa = test_isa(), .parallel_for = hooks_pthreads, .user = &host},
+        {.threads = 3, .isa = test_isa(), .parallel_for = each_in_its_own, .user = &host}};
     host.workers = 3;
     const fixture_array expected[] = {
         run_around(&own, &configs[0], environment_of(0), 0, "default"),

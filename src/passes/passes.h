@@ -449,8 +449,8 @@ struct sphgi_passes {
     /* Asks the memory for what load_lanes or store_lanes will touch. */
     void (*ask_for_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                           bool write);
-    /* Lanes with a bit in `kept` stay, one after the other, of `count` numbers of as many lanes as a
-     * vector has. */
+    /* Lanes with a bit in `kept` stay, one after the other, of `count` numbers of as many lanes as
+     * a vector has. */
     void (*pack_lanes)(uint32_t kept, int32_t count, void *numbers);
     void (*load_lanes)(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                        void *out);

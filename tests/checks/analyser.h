@@ -8,6 +8,7 @@
 #define sphgi_fail_memory(context, function)                                                       \
     ((void)(sphgi_fail_memory)(context, function), SPHG_ERROR_MEMORY)
 #define sphgi_check_pointer(checker, pointer, name)                                                \
-    ((pointer) ? SPHG_OK : ((void)(sphgi_check_pointer)(checker, pointer, name), SPHG_ERROR_ARGUMENT))
+    ((pointer) ? SPHG_OK                                                                           \
+               : ((void)(sphgi_check_pointer)(checker, pointer, name), SPHG_ERROR_ARGUMENT))
 #define sphgi_reserve(allocator, buffer, count, item_size)                                         \
     ((sphgi_reserve)(allocator, buffer, count, item_size) && (buffer)->data)

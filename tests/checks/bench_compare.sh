@@ -27,6 +27,15 @@ compare "$work/old.json" "$work/new.json" SVD f32 >"$work/some"
 ! grep -q eigen "$work/some"
 compare --help >"$work/help"
 grep -q '^  bench/compare OLD.json NEW.json ' "$work/help"
+# What is kept says the same in fewer bytes; and what stands in bench/results is that.
+compare --keep "$work/old.json" >"$work/kept.json"
+compare "$work/old.json" "$work/kept.json" | grep -q '^solver/.* 1\.000$'
+[ "$(wc -c <"$work/kept.json")" -lt "$(($(wc -c <"$work/old.json") / 4))" ]
+! grep -q host_name "$work/kept.json"
+for kept in "$root"/bench/results/*/*.json; do
+    compare --keep "$kept" | cmp - "$kept"
+    compare "$kept" "$kept" | grep -q ' 1\.000$'
+done
 code=0
 compare "$work/old.json" /nonexistent.json 2>"$work/errors" || code=$?
 [ "$code" -eq 2 ] && grep -q nonexistent "$work/errors"
