@@ -313,14 +313,20 @@ int test_run(int argc, char **argv, const test_entry *entries, size_t count)
     struct CMUnitTest *tests = required(calloc(total + 1, sizeof *tests));
     for (size_t e = 0; e < count; e++)
         used += expand(&entries[e], e, cases + used);
+    const int only_lists = argc > 1 && strcmp(argv[1], "--list") == 0;
     for (size_t k = 0; k < used; k++) {
+        if (only_lists)
+            puts(cases[k].name);
         struct CMUnitTest unit = {cases[k].name, run_case, NULL, end_case, &cases[k]};
         tests[k] = unit;
     }
     if (argc > 1)
         cmocka_set_test_filter(argv[1]);
-    int failed = _cmocka_run_group_tests(argv[0], tests, used, NULL, NULL);
-    print_worst();
+    int failed = 0;
+    if (!only_lists) {
+        failed = _cmocka_run_group_tests(argv[0], tests, used, NULL, NULL);
+        print_worst();
+    }
     free(tests);
     free(cases);
     return failed != 0;
