@@ -1,6 +1,6 @@
 /* Every way to say no: contexts, neighbours and small matrices refuse bad arguments with the right
  * code and a message that names the argument, write nothing, and work on the next call. */
-#include "support/subject.h"
+#include "support/victim_calls.h"
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
@@ -160,33 +160,19 @@ static void null_handles_are_refused_and_nothing_is_destroyed_twice(const test_c
 
 /* ---- Builds ------------------------------------------------------------------------------- */
 
-static sphg_result search(subject *own)
-{
-    return sphg_neighbors_search(own->context, own->neighbors, own->scheme_given,
-                                 own->geometry_given);
-}
-
-static sphg_result use_lists(subject *own)
-{
-    if (own->neighbors == own->built)
-        own->neighbors = own->lone;
-    return sphg_neighbors_use_lists(own->context, own->neighbors, own->scheme_given,
-                                    own->geometry_given, own->lists_given);
-}
-
-#define REFUSES(call, expected, words, change) SUBJECT_REFUSES(own, call, expected, words, change)
+#define REFUSES(call, expected, words, change) VICTIM_REFUSES(own, call, expected, words, change)
 
 static void *shifted(const void *memory, ptrdiff_t bytes)
 {
     return (void *)((uintptr_t)memory + (uintptr_t)bytes);
 }
 
-typedef sphg_result subject_call(subject *own);
+typedef sphg_result victim_call(victim *own);
 
 /* What search and use_lists have in common. */
-static void refuse_bad_geometry(subject *own, subject_call *call)
+static void refuse_bad_geometry(victim *own, victim_call *call)
 {
-    const sphg_type other = own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     REFUSES(call, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "geometry", own->geometry_given = NULL);
     const int dimensions[] = {1, 4, -1, INT_MAX, INT_MIN};
@@ -197,22 +183,22 @@ static void refuse_bad_geometry(subject *own, subject_call *call)
         REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius", own->scheme.support_radius = radii[k]);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "source_count", own->geometry.source_count = -1);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "target_count", own->geometry.target_count = -1);
-    REFUSES(call, SUBJECT_REFUSED, "target_count", own->geometry.source_count = 10);
+    REFUSES(call, VICTIM_REFUSED, "target_count", own->geometry.source_count = 10);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.x = NULL);
-    REFUSES(call, SUBJECT_REFUSED, "sources", own->geometry.sources.type = SPHG_U8);
-    REFUSES(call, SUBJECT_REFUSED, "sources", own->geometry.sources.type = (sphg_type)0);
-    REFUSES(call, SUBJECT_REFUSED, "sources", own->geometry.sources.type = (sphg_type)17);
+    REFUSES(call, VICTIM_REFUSED, "sources", own->geometry.sources.type = SPHG_U8);
+    REFUSES(call, VICTIM_REFUSED, "sources", own->geometry.sources.type = (sphg_type)0);
+    REFUSES(call, VICTIM_REFUSED, "sources", own->geometry.sources.type = (sphg_type)17);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.stride += 1);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
             own->geometry.sources.x = shifted(own->geometry.sources.x, 1));
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources.stride is 0", own->geometry.sources.stride = 0);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "targets.stride is 0",
-            own->geometry.targets = own->positions;
+            own->geometry.targets = own->position_view;
             own->geometry.targets.stride = 0);
-    REFUSES(call, SPHG_ERROR_TYPE, "targets", own->geometry.targets = own->positions;
+    REFUSES(call, SPHG_ERROR_TYPE, "targets", own->geometry.targets = own->position_view;
             own->geometry.targets.type = other);
-    REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = SPHG_U8);
-    REFUSES(call, SUBJECT_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
+    REFUSES(call, VICTIM_REFUSED, "precision", own->geometry.precision = SPHG_U8);
+    REFUSES(call, VICTIM_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
     const int d = own->test->dimension, single = own->test->precision == TEST_F32;
     /* H and H^2 are in range, H^-d is not */
     REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius",
@@ -220,8 +206,8 @@ static void refuse_bad_geometry(subject *own, subject_call *call)
                 d == 3 ? (single ? 1e-13 : 1e-110) : (single ? 1.5e19 : 1.2e154));
     for (int part = 1; part < 3 && d == 3; part++) /* one component of three is not aligned */
         REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
-                own->geometry.sources.y = (const char *)own->positions.x + (part == 1);
-                own->geometry.sources.z = (const char *)own->positions.x + (part == 2));
+                own->geometry.sources.y = (const char *)own->position_view.x + (part == 1);
+                own->geometry.sources.z = (const char *)own->position_view.x + (part == 2));
     if (single)
         REFUSES(call, SPHG_ERROR_TYPE, "precision", own->geometry.precision = SPHG_F64);
     const double periods[] = {-4, NAN, INFINITY, 1.5};
@@ -231,17 +217,18 @@ static void refuse_bad_geometry(subject *own, subject_call *call)
 
 static void builds_refuse_bad_geometry(const test_case *test)
 {
-    subject *own = subject_create(test);
-    refuse_bad_geometry(own, search);
-    refuse_bad_geometry(own, use_lists);
+    victim *own = victim_create_plain(test);
+    refuse_bad_geometry(own, call_search);
+    refuse_bad_geometry(own, call_use_lists);
     const double skins[] = {-0.25, NAN, INFINITY};
     for (int k = 0; k < 3; k++)
-        REFUSES(search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
-    REFUSES(search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = own->geometry.list_free = 1);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = 0.25);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "list_free", own->geometry.list_free = 1);
-    REFUSES(search, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+        REFUSES(call_search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
+    REFUSES(call_search, SPHG_ERROR_ARGUMENT, "skin",
+            own->geometry.skin = own->geometry.list_free = 1);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = 0.25);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "list_free", own->geometry.list_free = 1);
+    REFUSES(call_search, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
     assert_int_equal(sphg_neighbors_search(NULL, own->built, &own->scheme, &own->geometry),
                      SPHG_ERROR_ARGUMENT);
     assert_int_equal(
@@ -249,52 +236,54 @@ static void builds_refuse_bad_geometry(const test_case *test)
         SPHG_ERROR_ARGUMENT);
 }
 
-static void put(subject *own, int item, double value)
+static void put(victim *own, int item, double value)
 {
     const int k = item * own->test->dimension + item % own->test->dimension;
-    if (own->positions.type == SPHG_F64)
-        ((double *)own->input_memory[0])[k] = value;
+    if (own->position_view.type == SPHG_F64)
+        ((double *)(uintptr_t)own->position_view.x)[k] = value;
     else
-        ((float *)own->input_memory[0])[k] = (float)value;
+        ((float *)(uintptr_t)own->position_view.x)[k] = (float)value;
 }
 
-static double get(const subject *own, int item)
+static double get(const victim *own, int item)
 {
     const int k = item * own->test->dimension + item % own->test->dimension;
-    return own->positions.type == SPHG_F64 ? ((const double *)own->input_memory[0])[k]
-                                           : (double)((const float *)own->input_memory[0])[k];
+    return own->position_view.type == SPHG_F64
+               ? ((const double *)(uintptr_t)own->position_view.x)[k]
+               : (double)((const float *)(uintptr_t)own->position_view.x)[k];
 }
 
 /* The first bad particle is named; targets of their own are looked at as well. */
 static void builds_refuse_positions_that_are_not_finite(const test_case *test)
 {
-    subject *own = subject_create(test);
-    const int items[] = {0, 31, SUBJECT_COUNT - 1};
+    victim *own = victim_create_plain(test);
+    const int items[] = {0, 31, VICTIM_COUNT - 1};
     const double values[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 9; k++) {
         const int item = items[k % 3];
-        const double kept = get(own, item), last = get(own, SUBJECT_COUNT - 1);
+        const double kept = get(own, item), last = get(own, VICTIM_COUNT - 1);
         const char *name = test_text("[%d]", item);
         for (int lists = 0; lists < 2; lists++) {
-            subject_reset(own);
-            put(own, SUBJECT_COUNT - 1, NAN);
+            victim_reset(own);
+            put(own, VICTIM_COUNT - 1, NAN);
             put(own, item, values[k / 3]);
-            subject_require(own, lists ? use_lists(own) : search(own), SPHG_ERROR_NOT_FINITE, name,
-                            "position");
+            victim_require(own, lists ? call_use_lists(own) : call_search(own),
+                           SPHG_ERROR_NOT_FINITE, name, "position");
             put(own, item, kept);
-            put(own, SUBJECT_COUNT - 1, last);
-            assert_int_equal(lists ? use_lists(own) : search(own), SPHG_OK);
+            put(own, VICTIM_COUNT - 1, last);
+            assert_int_equal(lists ? call_use_lists(own) : call_search(own), SPHG_OK);
         }
     }
-    fixture_array bad = fixture_output(own->positions.type, 3, test->dimension);
+    fixture_array bad = fixture_output(own->position_view.type, 3, test->dimension);
     memset(bad.data, 0xff, (size_t)(3 * test->dimension) * (test->precision == TEST_F64 ? 8 : 4));
-    REFUSES(search, SPHG_ERROR_NOT_FINITE, "targets", own->geometry.targets = fixture_view(&bad);
+    REFUSES(call_search, SPHG_ERROR_NOT_FINITE, "targets",
+            own->geometry.targets = fixture_view(&bad);
             own->geometry.target_count = 3);
 }
 
 static void trusted_contexts_still_check_arguments(const test_case *test)
 {
-    subject *own = subject_create(test);
+    victim *own = victim_create_plain(test);
     sphg_config config = {.isa = test_isa()};
     config.trusted = 1;
     sphg_context *context = NULL;
@@ -320,49 +309,39 @@ static int32_t no_row(int32_t target, int32_t worker, const int32_t **indices, v
 
 static void lists_are_refused_unless_one_group_is_whole(const test_case *test)
 {
-    subject *own = subject_create(test);
-    const int32_t *rows[SUBJECT_COUNT] = {0};
-    const int32_t lengths[SUBJECT_COUNT] = {0};
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "lists", own->lists_given = NULL);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "lists", memset(&own->lists, 0, sizeof own->lists));
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "", own->lists.row = no_row);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "", own->lists.rows = rows;
+    victim *own = victim_create_plain(test);
+    const int32_t *rows[VICTIM_COUNT] = {0};
+    const int32_t lengths[VICTIM_COUNT] = {0};
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "lists", own->lists_given = NULL);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "lists",
+            memset(&own->lists, 0, sizeof own->lists));
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "", own->lists.row = no_row);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "", own->lists.rows = rows;
             own->lists.lengths = lengths);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "indices", own->lists.indices = NULL);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->lists.offsets = NULL);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "lengths", memset(&own->lists, 0, sizeof own->lists);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "indices", own->lists.indices = NULL);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->lists.offsets = NULL);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "lengths",
+            memset(&own->lists, 0, sizeof own->lists);
             own->lists.rows = rows);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "rows", memset(&own->lists, 0, sizeof own->lists);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "rows", memset(&own->lists, 0, sizeof own->lists);
             own->lists.lengths = lengths);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = 1);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = -1);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[9] = own->offsets[8] - 1);
-    REFUSES(use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[SUBJECT_COUNT] = 0);
-}
-
-static sphg_result get_info(subject *own)
-{
-    sphg_neighbors_info info;
-    return sphg_neighbors_get_info(own->context, own->neighbors, &info);
-}
-
-static sphg_result get_order(subject *own)
-{
-    int32_t order[SUBJECT_COUNT];
-    return sphg_neighbors_get_order(own->context, own->neighbors, order);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = 1);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = -1);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[9] = own->offsets[8] - 1);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[VICTIM_COUNT] = 0);
 }
 
 static void reports_refuse_bad_handles(const test_case *test)
 {
-    subject *own = subject_create(test);
+    victim *own = victim_create_plain(test);
     sphg_neighbors_info info = {0};
     sphg_context_info context_info = {0};
-    int32_t order[SUBJECT_COUNT];
+    int32_t order[VICTIM_COUNT];
     assert_int_equal(sphg_context_get_info(own->context, NULL), SPHG_ERROR_ARGUMENT);
     assert_int_equal(sphg_context_get_info(NULL, &context_info), SPHG_ERROR_ARGUMENT);
-    REFUSES(get_info, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
-    REFUSES(get_order, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
-    REFUSES(get_order, SPHG_ERROR_STATE, "", own->neighbors = own->blank);
+    REFUSES(call_get_info, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(call_get_order, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(call_get_order, SPHG_ERROR_STATE, "", own->neighbors = own->blank);
     assert_int_equal(sphg_neighbors_get_info(own->context, own->built, NULL), SPHG_ERROR_ARGUMENT);
     assert_int_equal(sphg_neighbors_get_order(own->context, own->built, NULL), SPHG_ERROR_ARGUMENT);
     assert_int_equal(sphg_neighbors_get_info(NULL, own->built, &info), SPHG_ERROR_ARGUMENT);
@@ -371,87 +350,73 @@ static void reports_refuse_bad_handles(const test_case *test)
 
 /* ---- Small matrices ----------------------------------------------------------------------- */
 
-static sphg_result invert(subject *own)
-{
-    return sphg_invert_moments(own->context, own->scheme_given, own->count, own->table,
-                               own->volumes, own->inversion_given);
-}
-
-static sphg_result eigen(subject *own)
-{
-    return sphg_eigen(own->context, own->dimension, own->count, own->table, own->vectors_out,
-                      own->tensors_out);
-}
-
-static sphg_result svd(subject *own)
-{
-    sphg_view sigma = own->vectors_out, u = own->tensors_out, v = own->table_out;
-    const ptrdiff_t size = own->table.type == SPHG_F64 ? 8 : 4;
-    sigma.stride = sigma.stride == 2 * size ? 3 * size : sigma.stride;
-    u.stride = u.stride == 4 * size ? 9 * size : u.stride;
-    v.stride = 9 * size;
-    return sphg_svd(own->context, own->count, own->tensors, u, sigma, v);
-}
-
 static void inversion_refuses_bad_arguments(const test_case *test)
 {
-    subject *own = subject_create(test);
-    const sphg_type other = own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    victim *own = victim_create_plain(test);
+    const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const double thresholds[] = {-0.01, 1, 2, NAN, INFINITY};
     for (int k = 0; k < 5; k++)
-        REFUSES(invert, SPHG_ERROR_ARGUMENT, "threshold", own->scheme.threshold = thresholds[k]);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "", own->inversion_given = NULL);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "moments", own->table.x = NULL);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "moments", own->table.stride += 1);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "correction", own->inversion.correction.stride = 0);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "overlaps", own->inversion.correction = own->table;
-            own->inversion.correction.stride *= 2; own->count /= 2);
-    REFUSES(invert, SPHG_ERROR_TYPE, "correction", own->inversion.correction.type = other);
-    REFUSES(invert, SPHG_ERROR_TYPE, "rank", own->inversion.rank.type = other);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = 4);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "policy", own->scheme.policy = (sphg_policy)4);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "method", own->scheme.method = (sphg_method)6);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "kernel", own->scheme.kernel = (sphg_kernel)7);
-    REFUSES(invert, SPHG_ERROR_ARGUMENT, "support_radius", own->scheme.support_radius = NAN);
-    REFUSES(invert, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_CMLS);
-    REFUSES(invert, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_CRKPM);
-    REFUSES(invert, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_PLAIN);
+        REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "threshold",
+                own->scheme.threshold = thresholds[k]);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "", own->wanted_given = NULL);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "moments", own->symmetric.x = NULL);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "moments", own->symmetric.stride += 1);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "correction",
+            own->wanted.correction.stride = 0);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "overlaps",
+            own->wanted.correction = own->symmetric;
+            own->wanted.correction.stride *= 2; own->count /= 2);
+    REFUSES(call_invert_moments, SPHG_ERROR_TYPE, "correction",
+            own->wanted.correction.type = other);
+    REFUSES(call_invert_moments, SPHG_ERROR_TYPE, "rank", own->wanted.rank.type = other);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = 4);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "policy",
+            own->scheme.policy = (sphg_policy)4);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "method",
+            own->scheme.method = (sphg_method)6);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "kernel",
+            own->scheme.kernel = (sphg_kernel)7);
+    REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "support_radius",
+            own->scheme.support_radius = NAN);
+    REFUSES(call_invert_moments, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_CMLS);
+    REFUSES(call_invert_moments, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_CRKPM);
+    REFUSES(call_invert_moments, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_PLAIN);
     const float bad_single[] = {-1, NAN, INFINITY};
     const double bad[] = {-1, NAN, INFINITY};
     for (int k = 0; k < 3; k++)
-        REFUSES(invert, SPHG_ERROR_VOLUME, "volume", own->scheme.method = SPHG_MLS;
-                own->volumes.stride = 0;
-                own->volumes.x = own->volumes.type == SPHG_F64 ? (const void *)&bad[k]
-                                                               : (const void *)&bad_single[k]);
+        REFUSES(call_invert_moments, SPHG_ERROR_VOLUME, "volume", own->scheme.method = SPHG_MLS;
+                own->volume_view.stride = 0;
+                own->volume_view.x = own->volume_view.type == SPHG_F64
+                                         ? (const void *)&bad[k]
+                                         : (const void *)&bad_single[k]);
 }
 
 static void eigen_and_svd_refuse_bad_arguments(const test_case *test)
 {
-    subject *own = subject_create(test);
-    const sphg_type other = own->positions.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
+    victim *own = victim_create_plain(test);
+    const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const int dimensions[] = {1, 4, -1, INT_MAX};
     for (int k = 0; k < 4; k++)
-        REFUSES(eigen, SPHG_ERROR_ARGUMENT, "dimension", own->dimension = dimensions[k]);
-    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
-    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "matrices", own->table.x = NULL);
-    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "values", own->vectors_out.stride = 0);
-    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "vectors", own->tensors_out.stride -= 1);
-    REFUSES(eigen, SPHG_ERROR_ARGUMENT, "vectors",
-            own->tensors_out.x = shifted(own->tensors_out.x, 2));
-    REFUSES(eigen, SPHG_ERROR_TYPE, "values", own->vectors_out.type = other);
+        REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "dimension", own->dimension = dimensions[k]);
+    REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
+    REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "matrices", own->symmetric.x = NULL);
+    REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "values", own->vector_out.stride = 0);
+    REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "vectors", own->tensor_out.stride -= 1);
+    REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "vectors",
+            own->tensor_out.x = shifted(own->tensor_out.x, 2));
+    REFUSES(call_eigen, SPHG_ERROR_TYPE, "values", own->vector_out.type = other);
     if (test->dimension == 2)
         return;
-    REFUSES(svd, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
-    REFUSES(svd, SPHG_ERROR_ARGUMENT, "matrices", own->tensors.x = NULL);
-    REFUSES(svd, SPHG_ERROR_ARGUMENT, "sigma", own->vectors_out.stride = 0);
-    REFUSES(svd, SPHG_ERROR_TYPE, "u", own->tensors_out.type = other);
-    assert_int_equal(sphg_eigen(NULL, 3, 1, own->table, own->vectors_out, own->tensors_out),
+    REFUSES(call_svd, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
+    REFUSES(call_svd, SPHG_ERROR_ARGUMENT, "matrices", own->squares.x = NULL);
+    REFUSES(call_svd, SPHG_ERROR_ARGUMENT, "sigma", own->sigma.stride = 0);
+    REFUSES(call_svd, SPHG_ERROR_TYPE, "u", own->u.type = other);
+    assert_int_equal(sphg_eigen(NULL, 3, 1, own->symmetric, own->vector_out, own->tensor_out),
                      SPHG_ERROR_ARGUMENT);
-    assert_int_equal(
-        sphg_svd(NULL, 1, own->tensors, own->tensors_out, own->vectors_out, own->table_out),
-        SPHG_ERROR_ARGUMENT);
+    assert_int_equal(sphg_svd(NULL, 1, own->squares, own->u, own->sigma, own->v),
+                     SPHG_ERROR_ARGUMENT);
 }
 
 /* ---- Numbers in messages ------------------------------------------------------------------ */
@@ -468,7 +433,7 @@ static double number_behind(const char *message, const char *words)
     return value;
 }
 
-static void require_number(subject *own, const char *words, double value)
+static void require_number(victim *own, const char *words, double value)
 {
     const char *message = sphg_last_message(own->context);
     TEST_REQUIRE(number_behind(message, words) == value, "not %.17g: %s", value, message);
@@ -476,11 +441,11 @@ static void require_number(subject *own, const char *words, double value)
 
 #define SHOWS(call, name, value)                                                                   \
     do {                                                                                           \
-        REFUSES(call, SUBJECT_REFUSED, "", own->name = value);                                     \
+        REFUSES(call, VICTIM_REFUSED, "", own->name = value);                                      \
         own->name = value;                                                                         \
         assert_int_not_equal(call(own), SPHG_OK);                                                  \
         require_number(own, #name " is ", value);                                                  \
-        subject_reset(own);                                                                        \
+        victim_reset(own);                                                                         \
     } while (0)
 
 /* A value beyond its limit by a rounding is not printed as the limit, in the host's locale either
@@ -492,23 +457,24 @@ static void messages_print_numbers_that_read_back(const test_case *test)
         assert_non_null(setlocale(LC_NUMERIC, locale));
         assert_string_not_equal(localeconv()->decimal_point, ".");
     }
-    subject *own = subject_create(test);
+    victim *own = victim_create_plain(test);
     const double above_one[] = {1, nextafter(1, 2), 1.0000000001, 1.1, 1e300};
     const double below_zero[] = {-5e-324, -1e-9, -0.1, -1.0 / 3, -123456789};
     for (int k = 0; k < 5; k++) {
-        SHOWS(search, scheme.threshold, above_one[k]);
-        SHOWS(search, scheme.threshold, below_zero[k]);
-        SHOWS(search, scheme.support_radius, below_zero[k]);
-        SHOWS(search, geometry.skin, below_zero[k]);
-        SHOWS(search, geometry.period[0], below_zero[k]);
-        SHOWS(use_lists, geometry.skin, -below_zero[k]);
+        SHOWS(call_search, scheme.threshold, above_one[k]);
+        SHOWS(call_search, scheme.threshold, below_zero[k]);
+        SHOWS(call_search, scheme.support_radius, below_zero[k]);
+        SHOWS(call_search, geometry.skin, below_zero[k]);
+        SHOWS(call_search, geometry.period[0], below_zero[k]);
+        SHOWS(call_use_lists, geometry.skin, -below_zero[k]);
     }
-    SHOWS(search, geometry.period[1], 2 * own->scheme.support_radius * (1 - 1e-6));
+    SHOWS(call_search, geometry.period[1], 2 * own->scheme.support_radius * (1 - 1e-6));
     own->geometry.period[1] = 2 * own->scheme.support_radius * (1 - 1e-6);
-    search(own);
+    call_search(own);
     require_number(own, "(H + skin) = ", 2 * own->scheme.support_radius);
-    subject_reset(own);
-    SHOWS(search, scheme.support_radius, test->precision == TEST_F32 ? 1.0000000001e20 : 1.1e200);
+    victim_reset(own);
+    SHOWS(call_search, scheme.support_radius,
+          test->precision == TEST_F32 ? 1.0000000001e20 : 1.1e200);
     setlocale(LC_NUMERIC, "C");
 }
 

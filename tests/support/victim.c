@@ -10,6 +10,8 @@ static void close_victim(void *object)
     sphg_neighbors_destroy(own->blank);
     sphg_neighbors_destroy(own->listed);
     sphg_neighbors_destroy(own->rebuilt);
+    sphg_neighbors_destroy(own->lone);
+    sphg_neighbors_destroy(own->narrow);
     sphg_context_destroy(own->living);
     hooks_close(own->host);
 }
@@ -170,6 +172,13 @@ void victim_reset(victim *own)
     memset(own->outputs, CANARY, VICTIM_SLOTS * VICTIM_SLOT_BYTES);
 }
 
+/* From here on this is the valid call. */
+static void keep(victim *own)
+{
+    *own->valid = *own;
+    victim_reset(own);
+}
+
 int victim_outputs_are_untouched(const victim *own)
 {
     const size_t size = VICTIM_SLOTS * VICTIM_SLOT_BYTES;
@@ -201,8 +210,52 @@ victim *victim_create(const test_case *test, int trusted)
     set_request(own);
     set_rest(own);
     own->valid = test_memory(sizeof *own);
-    *own->valid = *own;
-    own->valid->valid = own->valid;
-    victim_reset(own);
+    keep(own);
     return own;
+}
+
+static sphg_neighbors *search(const victim *own, const sphg_scheme *scheme,
+                              const sphg_geometry *geometry)
+{
+    sphg_neighbors *neighbors = NULL;
+    FIXTURE_OK(own->living, sphg_neighbors_create(own->living, &neighbors));
+    FIXTURE_OK(own->living, sphg_neighbors_search(own->living, neighbors, scheme, geometry));
+    return neighbors;
+}
+
+victim *victim_create_plain(const test_case *test)
+{
+    victim *own = victim_create(test, 0);
+    sphg_geometry apart = own->geometry;
+    sphg_scheme half = own->scheme;
+    apart.targets = own->position_view;
+    half.support_radius /= 2;
+    own->lone = search(own, &own->scheme, &apart);
+    own->narrow = search(own, &half, &own->geometry);
+    own->sources[0].density = own->field.at_targets = sphg_absent();
+    own->request.lambda_min = own->wanted.lambda_min = sphg_absent();
+    own->request.stats = own->wanted.stats = NULL;
+    own->pairs.offsets = NULL;
+    own->pairs.indices = NULL;
+    keep(own);
+    return own;
+}
+
+void victim_require(const victim *own, sphg_result result, int expected, const char *words,
+                    const char *change)
+{
+    const char *message = sphg_last_message(own->context);
+    TEST_REQUIRE(expected == VICTIM_REFUSED ? result > 0 : (int)result == expected,
+                 "%s: %s, not %s (%s)", change, sphg_result_string(result),
+                 expected == VICTIM_REFUSED ? "refused" : sphg_result_string((sphg_result)expected),
+                 message);
+    TEST_REQUIRE(own->host->log_count == 1, "%s: the log heard %d failures", change,
+                 own->host->log_count);
+    TEST_REQUIRE(own->host->log_result == result, "%s: the log heard another code", change);
+    TEST_REQUIRE(strcmp(own->host->log_message, message) == 0, "%s: the log heard '%s', not '%s'",
+                 change, own->host->log_message, message);
+    TEST_REQUIRE(strstr(message, words) != NULL, "%s: '%s' does not name '%s'", change, message,
+                 words);
+    TEST_REQUIRE(result < 0 || victim_outputs_are_untouched(own), "%s: an output was written",
+                 change);
 }

@@ -5,6 +5,7 @@
 #include "fixture.h"
 #include "hooks.h"
 
+enum { VICTIM_REFUSED = 1000 /* any positive code */ };
 enum { VICTIM_COUNT = 60, VICTIM_SLOTS = 14, VICTIM_SLOT_BYTES = VICTIM_COUNT * 16 * 8 };
 
 typedef struct victim {
@@ -14,6 +15,7 @@ typedef struct victim {
     sphg_context *living;
     sphg_neighbors *built, *blank, *listed; /* listed: by lists of the host, indices below */
     sphg_neighbors *rebuilt;                /* by the calls that build */
+    sphg_neighbors *lone, *narrow;          /* plain ones: targets of their own; half of H */
 
     /* Arguments as they are passed. */
     sphg_context *context;
@@ -63,10 +65,28 @@ typedef struct victim {
 } victim;
 
 victim *victim_create(const test_case *test, int trusted);
+/* A request of a gradient, correction and rank alone, and the neighbours of plain ones. */
+victim *victim_create_plain(const test_case *test);
 /* Back to the valid call: arguments, inputs, canaries. */
 void victim_reset(victim *own);
 int victim_outputs_are_untouched(const victim *own);
 /* Sets item `item` (its first number) of an input of floating point numbers. */
 void victim_put(sphg_view view, int item, double value);
+
+/* Fails unless the result is `expected`, the message has `words` in it, the log heard it and, for
+ * positive codes, no output byte was written. */
+void victim_require(const victim *own, sphg_result result, int expected, const char *words,
+                    const char *change);
+
+/* Spoils the valid call by `change`, expects the code, then makes the valid call. */
+#define VICTIM_REFUSES(own, call, expected, words, change)                                         \
+    do {                                                                                           \
+        victim_reset(own);                                                                         \
+        change;                                                                                    \
+        victim_require(own, call(own), expected, words, #change);                                  \
+        victim_reset(own);                                                                         \
+        TEST_REQUIRE(call(own) == SPHG_OK, "after %s: %s", #change,                                \
+                     sphg_last_message((own)->context));                                           \
+    } while (0)
 
 #endif
