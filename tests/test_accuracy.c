@@ -4,32 +4,32 @@
 #include <string.h>
 
 /* Some of the targets, spread evenly: the oracle is slow. */
-static int sampled(const stage *on, int k, int samples)
+static int sampled(const comparison *on, int k, int samples)
 {
     int n = on->points.count;
     return samples >= n ? k : (int)((long)k * n / samples);
 }
 
-static int sample_count(const stage *on, int samples)
+static int sample_count(const comparison *on, int samples)
 {
     return samples < on->points.count ? samples : on->points.count;
 }
 
-static void compare_field(const stage *on, sphg_shape shape, sphg_form form,
-                          const fixture_array *table, int samples)
+static void compare_field(const comparison *on, sphg_shape shape, sphg_form form,
+                          const setup_array *table, int samples)
 {
-    stage_field field = {shape, form, stage_random_field(on, shape, 3)};
-    stage_result found = stage_apply(on, &field, table);
+    comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
+    comparison_result found = comparison_apply(on, &field, table);
     for (int k = 0; k < sample_count(on, samples); k += test_reference_stride())
-        stage_compare(on, &field, &found, sampled(on, k, samples));
+        comparison_compare(on, &field, &found, sampled(on, k, samples));
 }
 
 /* ---- Operators ------------------------------------------------------------------------------- */
 
 static void operators_match_the_oracle(const test_case *test)
 {
-    stage on = stage_of_scene(test, &scenes_hard[0]);
-    fixture_array table = stage_table(&on);
+    comparison on = comparison_of_scene(test, &scenes_hard[0]);
+    setup_array table = comparison_table(&on);
     compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table, 5);
     compare_field(&on, SPHG_SCALAR, SPHG_DIRECT, &table, 5);
     compare_field(&on, SPHG_SCALAR, SPHG_ADJOINT, &table, 1);
@@ -40,8 +40,8 @@ static void every_shape_in_every_form_matches_the_oracle(const test_case *test)
     random_state random = random_seeded(8);
     int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 6 : 3, .125, .3, &random);
-    stage on = stage_of(test, "small block", points, 2.25 * points.spacing);
-    fixture_array table = stage_table(&on);
+    comparison on = comparison_of(test, "small block", points, 2.25 * points.spacing);
+    setup_array table = comparison_table(&on);
     for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
         for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
             compare_field(&on, (sphg_shape)shape, (sphg_form)form, &table, 4);
@@ -50,8 +50,8 @@ static void every_shape_in_every_form_matches_the_oracle(const test_case *test)
 static void hard_scenes_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        stage on = stage_of_scene(test, &scenes_hard[s]);
-        fixture_array table = stage_table(&on);
+        comparison on = comparison_of_scene(test, &scenes_hard[s]);
+        setup_array table = comparison_table(&on);
         compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, NULL, 4);
         compare_field(&on, SPHG_VECTOR, SPHG_DIRECT, &table, 4);
         if (scenes_hard[s].support < 3) /* or it would ask for too many of the oracle's points */
@@ -65,13 +65,13 @@ static void every_instruction_set_matches_the_oracle(const test_case *test)
     int used = 0;
     for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++)
         for (int s = 0; s < 3; s++) {
-            stage on = stage_of_scene(test, &scenes_hard[chosen[s]]);
-            on.context = fixture_context_on((sphg_isa)isa);
+            comparison on = comparison_of_scene(test, &scenes_hard[chosen[s]]);
+            on.context = setup_context_on((sphg_isa)isa);
             if (!on.context)
                 continue;
             used++;
-            on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
-            fixture_array table = stage_table(&on);
+            on.neighbors = setup_neighbors(on.context, test, &on.scheme, &on.points);
+            setup_array table = comparison_table(&on);
             compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, NULL, 3);
             compare_field(&on, SPHG_VECTOR, SPHG_DIRECT, &table, 3);
             compare_field(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, &table, 1);
@@ -82,9 +82,9 @@ static void every_instruction_set_matches_the_oracle(const test_case *test)
 static void every_policy_matches_the_oracle(const test_case *test)
 {
     for (int s = 5; s < scenes_hard_count; s++) {
-        stage made = stage_of_scene(test, &scenes_hard[s]);
+        comparison made = comparison_of_scene(test, &scenes_hard[s]);
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
-            stage on = stage_under(&made, (sphg_policy)policy, .0625);
+            comparison on = comparison_under(&made, (sphg_policy)policy, .0625);
             compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, NULL, 3);
         }
     }
@@ -92,7 +92,7 @@ static void every_policy_matches_the_oracle(const test_case *test)
 
 /* A jittered lattice that repeats with period 1 in all axes but the last; some particles stand a
  * period or two outside. Multiples of 2^-12, so that shifted differences are exact. */
-static stage periodic_stage(const test_case *test)
+static comparison periodic_stage(const test_case *test)
 {
     random_state random = random_seeded(9);
     int d = test->dimension;
@@ -100,27 +100,27 @@ static stage periodic_stage(const test_case *test)
     cloud_snap(&points, 0x1p-12);
     for (int i = 0; i < points.count; i += 3)
         points.x[i * d] += random_index(&random, 5) - 2;
-    stage on = stage_of(test, "periodic block", points, .3125);
-    fixture_array positions = fixture_positions(test, &on.points);
-    sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
+    comparison on = comparison_of(test, "periodic block", points, .3125);
+    setup_array positions = setup_positions(test, &on.points);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &positions);
     for (int k = 0; k < d - 1; k++)
         geometry.period[k] = on.scene.period[k] = 1;
-    on.neighbors = fixture_search(on.context, &on.scheme, &geometry);
+    on.neighbors = setup_search(on.context, &on.scheme, &geometry);
     on.reference = oracle_of(&on.scene);
     return on;
 }
 
 static void periodic_neighbours_match_the_oracle(const test_case *test)
 {
-    stage on = periodic_stage(test);
-    fixture_array table = stage_table(&on);
+    comparison on = periodic_stage(test);
+    setup_array table = comparison_table(&on);
     compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table, 7);
     compare_field(&on, SPHG_VECTOR, SPHG_DIRECT, &table, 7);
 }
 
 /* ---- Corrections ----------------------------------------------------------------------------- */
 
-static void compare_correction(const stage *on, const fixture_array *table, int i)
+static void compare_correction(const comparison *on, const setup_array *table, int i)
 {
     const oracle_point *point = oracle_at(on->reference, i);
     int d = on->points.dimension, k = 0;
@@ -129,7 +129,7 @@ static void compare_correction(const stage *on, const fixture_array *table, int 
         return;
     for (int a = 0; a < d; a++)
         for (int b = a; b < d; b++, k++) {
-            quad error = (quad)fixture_get(table, i, k) - point->correction[a][b];
+            quad error = (quad)setup_get(table, i, k) - point->correction[a][b];
             square += error * error * (a == b ? 1 : 2);
         }
     double ratio = (double)(quad_sqrt(square) / point->correction_bound);
@@ -145,14 +145,14 @@ static void compare_correction(const stage *on, const fixture_array *table, int 
 static void corrections_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        stage on = stage_of_scene(test, &scenes_hard[s]);
-        fixture_array table = stage_table(&on);
+        comparison on = comparison_of_scene(test, &scenes_hard[s]);
+        setup_array table = comparison_table(&on);
         for (int k = 0; k < sample_count(&on, 6); k += test_reference_stride())
             compare_correction(&on, &table, sampled(&on, k, 6));
     }
 }
 
-static void require_rank_and_moment(const stage *on, int i, double rank, double lambda)
+static void require_rank_and_moment(const comparison *on, int i, double rank, double lambda)
 {
     const oracle_point *point = oracle_at(on->reference, i);
     double exact = (double)point->filter.lambda_min, u = on->scene.unit;
@@ -169,25 +169,25 @@ static void require_rank_and_moment(const stage *on, int i, double rank, double 
 static void ranks_and_smallest_moments_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        stage on = stage_of_scene(test, &scenes_hard[s]);
-        fixture_array rank = fixture_output(SPHG_U8, on.points.count, 1);
-        fixture_array lambda = fixture_output(test_field_type(test), on.points.count, 1);
-        sphg_sources sources = stage_sources(&on);
+        comparison on = comparison_of_scene(test, &scenes_hard[s]);
+        setup_array rank = setup_output(SPHG_U8, on.points.count, 1);
+        setup_array lambda = setup_output(test_field_type(test), on.points.count, 1);
+        sphg_sources sources = comparison_sources(&on);
         sphg_request request = {.sources = &sources, .set_count = 1};
         sphg_stats stats = {0};
-        request.rank = fixture_view(&rank);
-        request.lambda_min = fixture_view(&lambda);
+        request.rank = setup_view(&rank);
+        request.lambda_min = setup_view(&lambda);
         request.stats = &stats;
-        FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+        SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
         double smallest = INFINITY;
         int64_t ranks[4] = {0};
         for (int i = 0; i < on.points.count; i++) {
-            ranks[(int)fixture_get(&rank, i, 0) & 3]++;
-            smallest = fmin(smallest, fixture_get(&lambda, i, 0));
+            ranks[(int)setup_get(&rank, i, 0) & 3]++;
+            smallest = fmin(smallest, setup_get(&lambda, i, 0));
         }
         for (int k = 0; k < sample_count(&on, 8); k += test_reference_stride()) {
             int i = sampled(&on, k, 8);
-            require_rank_and_moment(&on, i, fixture_get(&rank, i, 0), fixture_get(&lambda, i, 0));
+            require_rank_and_moment(&on, i, setup_get(&rank, i, 0), setup_get(&lambda, i, 0));
         }
         assert_memory_equal(ranks, stats.rank, sizeof ranks);
         assert_int_equal(stats.certified + stats.decomposed, on.points.count);
@@ -202,24 +202,23 @@ static void ranks_and_smallest_moments_match_the_oracle(const test_case *test)
 typedef struct pair_list {
     int64_t *offsets;
     int32_t *indices;
-    fixture_array gradient;
+    setup_array gradient;
 } pair_list;
 
-static pair_list list_pairs(const stage *on)
+static pair_list list_pairs(const comparison *on)
 {
     pair_list list = {test_memory(((size_t)on->points.count + 1) * sizeof(int64_t)), NULL, {0}};
-    sphg_sources sources = stage_sources(on);
+    sphg_sources sources = comparison_sources(on);
     sphg_pairs pairs = {.offsets = list.offsets};
-    FIXTURE_OK(on->context, sphg_pair_gradients(on->context, &on->scheme, &sources, NULL,
-                                                sphg_absent(), &pairs));
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, NULL, sphg_absent(), &pairs));
     list.indices = test_memory((size_t)pairs.count * sizeof *list.indices);
-    list.gradient =
-        fixture_output(test_field_type(on->test), (int)pairs.count, on->points.dimension);
+    list.gradient = setup_output(test_field_type(on->test), (int)pairs.count, on->points.dimension);
     pairs.indices = list.indices;
-    pairs.gradient = fixture_view(&list.gradient);
+    pairs.gradient = setup_view(&list.gradient);
     pairs.capacity = pairs.count;
-    FIXTURE_OK(on->context, sphg_pair_gradients(on->context, &on->scheme, &sources, NULL,
-                                                sphg_absent(), &pairs));
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, NULL, sphg_absent(), &pairs));
     return list;
 }
 
@@ -238,7 +237,7 @@ static oracle_pair expected_pair(const oracle_point *point, int i, int j)
     return (oracle_pair){0};
 }
 
-static void compare_row(const stage *on, const pair_list *list, int i)
+static void compare_row(const comparison *on, const pair_list *list, int i)
 {
     const oracle_point *point = oracle_at(on->reference, i);
     int64_t length = list->offsets[i + 1] - list->offsets[i];
@@ -247,7 +246,7 @@ static void compare_row(const stage *on, const pair_list *list, int i)
         int j = list->indices[p];
         TEST_REQUIRE(p == list->offsets[i] || list->indices[p - 1] < j, "row %d not ascending", i);
         oracle_pair exact = expected_pair(point, i, j);
-        double ratio = stage_ratio(&list->gradient, (int)p, exact.gradient, exact.bound);
+        double ratio = comparison_ratio(&list->gradient, (int)p, exact.gradient, exact.bound);
         const char *where = test_text("G of pair %d, %d, %s", i, j, on->name);
         if (point->rank < on->points.dimension)
             TEST_WITHIN(oracle_ratio_touched, ratio, where);
@@ -259,7 +258,7 @@ static void compare_row(const stage *on, const pair_list *list, int i)
 static void pair_gradients_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s += 3) {
-        stage on = stage_of_scene(test, &scenes_hard[s]);
+        comparison on = comparison_of_scene(test, &scenes_hard[s]);
         pair_list list = list_pairs(&on);
         for (int k = 0; k < sample_count(&on, 4); k += test_reference_stride())
             compare_row(&on, &list, sampled(&on, k, 4));
@@ -270,7 +269,8 @@ static void pair_gradients_match_the_oracle(const test_case *test)
 static void pair_gradients_of_a_crowd_match_the_oracle(const test_case *test)
 {
     random_state random = random_seeded(58);
-    stage on = stage_of(test, "crowd", cloud_random(test->dimension, 200, .5, &random), 1.);
+    comparison on =
+        comparison_of(test, "crowd", cloud_random(test->dimension, 200, .5, &random), 1.);
     pair_list list = list_pairs(&on);
     for (int i = 0; i < 200; i += 83)
         compare_row(&on, &list, i);
@@ -278,15 +278,15 @@ static void pair_gradients_of_a_crowd_match_the_oracle(const test_case *test)
 
 static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
 {
-    stage on = stage_of_scene(test, &scenes_hard[0]);
-    fixture_array table = stage_table(&on);
+    comparison on = comparison_of_scene(test, &scenes_hard[0]);
+    setup_array table = comparison_table(&on);
     int width = table.width, d = test->dimension;
     for (int k = 0; k < sample_count(&on, 4); k += test_reference_stride()) {
         int i = sampled(&on, k, 4);
         const oracle_point *point = oracle_at(on.reference, i);
         double correction[16];
         for (int c = 0; c < width; c++)
-            correction[c] = fixture_get(&table, i, c);
+            correction[c] = setup_get(&table, i, c);
         for (int p = 0; p < point->pair_count; p++) {
             const oracle_pair *pair = &point->pairs[p];
             double x_ij[3], gradient[3];
@@ -294,8 +294,8 @@ static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
                 x_ij[a] = (double)pair->x[a];
             sphg_pair_gradient(&on.scheme, x_ij, on.scene.volume[pair->j],
                                width ? correction : NULL, gradient);
-            fixture_array found = fixture_numbers(SPHG_F64, 1, d, gradient);
-            TEST_WITHIN(oracle_ratio_full, stage_ratio(&found, 0, pair->gradient, pair->bound),
+            setup_array found = setup_numbers(SPHG_F64, 1, d, gradient);
+            TEST_WITHIN(oracle_ratio_full, comparison_ratio(&found, 0, pair->gradient, pair->bound),
                         test_text("single pair, %s", test_method_name(test->method)));
         }
     }
@@ -308,14 +308,14 @@ static void fused_sweep_equals_table_to_the_bit(const test_case *test)
 {
     static const int chosen[] = {0, 5, 7, 10};
     for (int s = 0; s < 4; s++) {
-        stage on = stage_of_scene(test, &scenes_hard[chosen[s]]);
-        fixture_array table = stage_table(&on);
+        comparison on = comparison_of_scene(test, &scenes_hard[chosen[s]]);
+        setup_array table = comparison_table(&on);
         for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; form++) {
-            stage_field field = {SPHG_VECTOR, (sphg_form)form,
-                                 stage_random_field(&on, SPHG_VECTOR, 4)};
-            stage_result fused = stage_apply(&on, &field, NULL);
-            stage_result stored = stage_apply(&on, &field, &table);
-            TEST_REQUIRE(stage_results_have_same_bits(&fused, &stored), "form %d, %s", form,
+            comparison_field field = {SPHG_VECTOR, (sphg_form)form,
+                                      comparison_random_field(&on, SPHG_VECTOR, 4)};
+            comparison_result fused = comparison_apply(&on, &field, NULL);
+            comparison_result stored = comparison_apply(&on, &field, &table);
+            TEST_REQUIRE(comparison_results_have_same_bits(&fused, &stored), "form %d, %s", form,
                          on.name);
         }
     }

@@ -1,28 +1,30 @@
 /* Curvature that is lent and borrowed: against the oracle, by known errors of lattices, exact where
  * order 2 alone is not, continuous, and without a trace where nobody lends. */
-#include "support/curved.h"
+#include "support/second_order.h"
 #include "support/oracle_borrowed.h"
 #include "support/scenes.h"
 #include <string.h>
 
-static curved apply(const stage *on, sphg_shape shape, const double *numbers, curved_how how)
+static second_order apply(const comparison *on, sphg_shape shape, const double *numbers,
+                          second_order_how how)
 {
     how.lends = 1;
-    return curved_apply(on, shape, numbers, how);
+    return second_order_apply(on, shape, numbers, how);
 }
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
 
-static void compare(const stage *on, sphg_shape shape, const curved *found, const double *numbers,
-                    const double *lent, int i)
+static void compare(const comparison *on, sphg_shape shape, const second_order *found,
+                    const double *numbers, const double *lent, int i)
 {
     const oracle_field field = {shape, SPHG_DIFFERENCE, numbers, NULL};
     const oracle_curved exact = oracle_apply_borrowed(on->reference, &field, lent, i);
-    curved_compare(on, found, &exact, i, TEST_TOLERANCE_borrowed_ratio);
+    second_order_compare(on, found, &exact, i, TEST_TOLERANCE_borrowed_ratio);
 }
 
 /* What is lent, and who would borrow. */
-static void compare_offer(const stage *on, const curved *found, const double *lent, int i)
+static void compare_offer(const comparison *on, const second_order *found, const double *lent,
+                          int i)
 {
     oracle_second second;
     const oracle_point *point = oracle_at(on->reference, i);
@@ -36,22 +38,22 @@ static void compare_offer(const stage *on, const curved *found, const double *le
         exact = oracle_confidence_lent(&on->scene, point, exact, lent, width);
         blur += 256 * on->scene.unit;
     }
-    const double off = fixture_get(&found->curvature, i, 0) - (double)exact;
+    const double off = setup_get(&found->curvature, i, 0) - (double)exact;
     TEST_WITHIN(borrowed_confidence, fabs(off) / ((double)blur + on->scene.unit),
                 test_text("confidence of particle %d, %s", i, on->name));
-    TEST_REQUIRE(!offer.sure || fixture_get(&found->borrows, i, 0) == offer.open,
-                 "particle %d borrows: %g, %s", i, fixture_get(&found->borrows, i, 0), on->name);
+    TEST_REQUIRE(!offer.sure || setup_get(&found->borrows, i, 0) == offer.open,
+                 "particle %d borrows: %g, %s", i, setup_get(&found->borrows, i, 0), on->name);
 }
 
 /* What targets lend is c times their Hessian. */
-static void compare_lent(const stage *on, const curved *found, int i)
+static void compare_lent(const comparison *on, const second_order *found, int i)
 {
-    const double c = fixture_get(&found->curvature, i, 0);
+    const double c = setup_get(&found->curvature, i, 0);
     for (int k = 0; k < found->hessian.width; k++) {
-        double product = c * fixture_get(&found->hessian, i, k);
+        double product = c * setup_get(&found->hessian, i, k);
         if (test_field_type(on->test) == SPHG_F32)
             product = (double)(float)product;
-        TEST_REQUIRE(fixture_get(&found->curvature, i, 1 + k) == (c > 0 ? product : 0),
+        TEST_REQUIRE(setup_get(&found->curvature, i, 1 + k) == (c > 0 ? product : 0),
                      "particle %d lends %g of component %d, %s", i, product, k, on->name);
     }
 }
@@ -60,13 +62,14 @@ static void results_match_the_oracle(const test_case *test)
 {
     int borrowers = 0, lenders = 0;
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
+        const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
         for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
-            const double *numbers = stage_random_field(&on, (sphg_shape)shape, 3);
-            const curved first = apply(&on, (sphg_shape)shape, numbers, (curved_how){0});
-            const curved found =
-                apply(&on, (sphg_shape)shape, numbers, (curved_how){.lent = &first.curvature});
-            const double *lent = fixture_doubles(&first.curvature);
+            const double *numbers = comparison_random_field(&on, (sphg_shape)shape, 3);
+            const second_order first =
+                apply(&on, (sphg_shape)shape, numbers, (second_order_how){0});
+            const second_order found = apply(&on, (sphg_shape)shape, numbers,
+                                             (second_order_how){.lent = &first.curvature});
+            const double *lent = setup_doubles(&first.curvature);
             const int step = on.points.count < 6 ? 1 : on.points.count / 6;
             for (int i = 0; i < on.points.count; i += step) {
                 compare(&on, (sphg_shape)shape, &found, numbers, lent, i);
@@ -74,8 +77,8 @@ static void results_match_the_oracle(const test_case *test)
                 compare_offer(&on, &found, lent, i);
                 compare_lent(&on, &first, i);
                 compare_lent(&on, &found, i);
-                borrowers += fixture_get(&first.borrows, i, 0) == 1;
-                lenders += fixture_get(&first.curvature, i, 0) > 0;
+                borrowers += setup_get(&first.borrows, i, 0) == 1;
+                lenders += setup_get(&first.curvature, i, 0) > 0;
             }
         }
     }
@@ -89,22 +92,24 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
     for (int s = 0; s < 3; s++)
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
             for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
-                const stage made = stage_of_scene(test, &scenes_hard[chosen[s]]);
-                stage on = curved_stage(stage_under(&made, (sphg_policy)policy, .0625));
-                on.context = fixture_context_on((sphg_isa)isa);
+                const comparison made = comparison_of_scene(test, &scenes_hard[chosen[s]]);
+                comparison on =
+                    second_order_comparison(comparison_under(&made, (sphg_policy)policy, .0625));
+                on.context = setup_context_on((sphg_isa)isa);
                 if (!on.context)
                     continue;
-                on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
+                on.neighbors = setup_neighbors(on.context, test, &on.scheme, &on.points);
                 const int n = on.points.count,
-                          width = 1 + test->dimension * curved_pairs(test->dimension);
+                          width = 1 + test->dimension * second_order_pairs(test->dimension);
                 double *lent = test_memory((size_t)(n * width) * sizeof *lent);
                 random_state random = random_seeded(8);
                 for (int k = 0; k < n * width; k++)
                     lent[k] = (double)(float)random_between(&random, k % width ? -9 : 0,
                                                             k % width ? 9 : 1);
-                const fixture_array given = fixture_numbers(test_field_type(test), n, width, lent);
-                const double *numbers = stage_random_field(&on, SPHG_VECTOR, 5);
-                const curved found = apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &given});
+                const setup_array given = setup_numbers(test_field_type(test), n, width, lent);
+                const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 5);
+                const second_order found =
+                    apply(&on, SPHG_VECTOR, numbers, (second_order_how){.lent = &given});
                 for (int i = 0; i < n; i += 1 + n / 4) {
                     compare(&on, SPHG_VECTOR, &found, numbers, lent, i);
                     compare_offer(&on, &found, lent, i);
@@ -115,7 +120,7 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
 /* ---- Lattices -------------------------------------------------------------------------------- */
 
 /* per_axis^d particles on [-1, 1]^d, moved by up to jitter spacings, with V = 1 / sum W. */
-static stage block_of(const test_case *test, int per_axis, double support, double jitter)
+static comparison block_of(const test_case *test, int per_axis, double support, double jitter)
 {
     const int d = test->dimension;
     const double spacing = 2. / per_axis;
@@ -124,7 +129,7 @@ static stage block_of(const test_case *test, int per_axis, double support, doubl
     for (int k = 0; k < points.count * d; k++)
         points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing +
                       (jitter > 0 ? jitter * spacing * random_between(&random, -1, 1) : 0);
-    const stage on = stage_of(test, "block", points, support * spacing * (1 + 1e-6));
+    const comparison on = comparison_of(test, "block", points, support * spacing * (1 + 1e-6));
     sphg_scheme plain = on.scheme;
     plain.method = SPHG_PLAIN;
     const double one = 1;
@@ -135,13 +140,13 @@ static stage block_of(const test_case *test, int per_axis, double support, doubl
     field.value = sphg_view_f64(volumes, sizeof *volumes);
     const sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-    FIXTURE_OK(on.context, sphg_evaluate(on.context, &plain, &request));
+    SETUP_OK(on.context, sphg_evaluate(on.context, &plain, &request));
     for (int i = 0; i < points.count; i++)
         volumes[i] = 1 / volumes[i];
-    return curved_stage(stage_with_volumes(&on, volumes));
+    return second_order_comparison(comparison_with_volumes(&on, volumes));
 }
 
-static int is_boundary(const stage *on, int i)
+static int is_boundary(const comparison *on, int i)
 {
     const int d = on->points.dimension;
     for (int a = 0; a < d; a++)
@@ -169,7 +174,7 @@ typedef struct errors {
     double boundary, inside, laplacian, mean;
 } errors;
 
-static errors errors_of(const stage *on, const curved *found)
+static errors errors_of(const comparison *on, const second_order *found)
 {
     const int d = on->points.dimension, n = on->points.count;
     errors worst = {0};
@@ -177,18 +182,18 @@ static errors errors_of(const stage *on, const curved *found)
         double value[2], slope[4], laplacian[2], square = 0;
         wave(d, on->points.x + i * d, value, slope, laplacian);
         for (int k = 0; k < found->gradient.width; k++)
-            square += pow(fixture_get(&found->gradient, i, k) - slope[k], 2);
+            square += pow(setup_get(&found->gradient, i, k) - slope[k], 2);
         double *most = is_boundary(on, i) ? &worst.boundary : &worst.inside;
         *most = test_larger(*most, sqrt(square));
         worst.mean += sqrt(square) / n;
         for (int c = 0; c < found->laplacian.width && is_boundary(on, i); c++)
-            worst.laplacian = test_larger(
-                worst.laplacian, fabs(fixture_get(&found->laplacian, i, c) - laplacian[c]));
+            worst.laplacian = test_larger(worst.laplacian,
+                                          fabs(setup_get(&found->laplacian, i, c) - laplacian[c]));
     }
     return worst;
 }
 
-static double *waves_on(const stage *on)
+static double *waves_on(const comparison *on)
 {
     const int d = on->points.dimension, width = d == 2 ? 2 : 1;
     double *numbers = test_memory((size_t)(on->points.count * width) * sizeof *numbers);
@@ -200,22 +205,22 @@ static double *waves_on(const stage *on)
 }
 
 /* The first call, and `passes` that borrow: each targets that would, the others keep theirs. */
-static errors errors_after(const stage *on, int passes, sphg_stats *stats)
+static errors errors_after(const comparison *on, int passes, sphg_stats *stats)
 {
     const sphg_shape shape = on->points.dimension == 2 ? SPHG_VECTOR : SPHG_SCALAR;
     const double *numbers = waves_on(on);
-    curved found = apply(on, shape, numbers, (curved_how){0});
+    second_order found = apply(on, shape, numbers, (second_order_how){0});
     const sphg_subset open = sphg_masked(found.borrows.data, on->points.count);
     *stats = found.stats;
     for (int pass = 0; pass < passes; pass++) {
-        curved next =
-            apply(on, shape, numbers, (curved_how){.lent = &found.curvature, .subset = &open});
-        const fixture_array *from[] = {&found.gradient, &found.laplacian, &found.curvature};
-        fixture_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
+        second_order next = apply(on, shape, numbers,
+                                  (second_order_how){.lent = &found.curvature, .subset = &open});
+        const setup_array *from[] = {&found.gradient, &found.laplacian, &found.curvature};
+        setup_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < on->points.count; i++)
-                for (int c = 0; c < to[k]->width && fixture_get(&found.borrows, i, 0) == 0; c++)
-                    fixture_put(to[k], i * to[k]->width + c, fixture_get(from[k], i, c));
+                for (int c = 0; c < to[k]->width && setup_get(&found.borrows, i, 0) == 0; c++)
+                    setup_put(to[k], i * to[k]->width + c, setup_get(from[k], i, c));
         next.borrows = found.borrows;
         found = next;
     }
@@ -238,7 +243,7 @@ static void check_gate(const test_case *test, const gate *known)
 {
     if (known->method != test->method)
         return;
-    const stage on = block_of(test, known->per_axis, known->support, 0);
+    const comparison on = block_of(test, known->per_axis, known->support, 0);
     sphg_stats stats;
     const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
     const errors twice = errors_after(&on, 2, &stats);
@@ -285,7 +290,7 @@ static void jitter_keeps_the_second_order(const test_case *test)
         double alone, borrowed, mean;
     } known[] = {{24, .178, .078, .0209}, {36, .125, .0335, .0093}, {48, .090, .0185, .0052}};
     for (int k = 0; k < (test_is_shared() ? 2 : 3); k++) {
-        const stage on = block_of(test, known[k].per_axis, 2, .2);
+        const comparison on = block_of(test, known[k].per_axis, 2, .2);
         sphg_stats stats;
         const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
         /* The largest of some ten thousand errors: another cloud has another. */
@@ -299,20 +304,21 @@ static void jitter_keeps_the_second_order(const test_case *test)
 
 /* ---- Exactness ------------------------------------------------------------------------------- */
 
-static double distance_from_exact(const stage *on, const curved *found, int i)
+static double distance_from_exact(const comparison *on, const second_order *found, int i)
 {
     const int d = on->points.dimension;
     double slope[3], square = 0;
-    curved_slope_at(&on->points, i, slope);
+    second_order_slope_at(&on->points, i, slope);
     for (int a = 0; a < d; a++)
-        square += pow(fixture_get(&found->gradient, i, a) - slope[a], 2);
-    for (int k = 0; k < curved_pairs(d); k++)
-        square += pow(
-            on->scheme.support_radius * (fixture_get(&found->hessian, i, k) - curved_second[k]), 2);
+        square += pow(setup_get(&found->gradient, i, a) - slope[a], 2);
+    for (int k = 0; k < second_order_pairs(d); k++)
+        square += pow(on->scheme.support_radius *
+                          (setup_get(&found->hessian, i, k) - second_order_second[k]),
+                      2);
     return sqrt(square);
 }
 
-static int exact_ones(const stage *on, const curved *found)
+static int exact_ones(const comparison *on, const second_order *found)
 {
     int count = 0;
     for (int i = 0; i < on->points.count; i++)
@@ -325,11 +331,13 @@ static int exact_ones(const stage *on, const curved *found)
 static void quadratic_fields_are_exact_where_lenders_are(const test_case *test)
 {
     const int d = test->dimension, per_axis = d == 3 ? 12 : 16;
-    const stage on = block_of(test, per_axis, 2, 0);
-    const double *numbers = curved_polynomial(&on.points, 2);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-    const curved second = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &first.curvature});
-    const curved third = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &second.curvature});
+    const comparison on = block_of(test, per_axis, 2, 0);
+    const double *numbers = second_order_polynomial(&on.points, 2);
+    const second_order first = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+    const second_order second =
+        apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &first.curvature});
+    const second_order third =
+        apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &second.curvature});
     const int counts[] = {exact_ones(&on, &first), exact_ones(&on, &second),
                           exact_ones(&on, &third)};
     const int all = on.points.count, before = d == 3 ? 1000 : 196, after = d == 3 ? 1720 : all;
@@ -342,15 +350,15 @@ static void each_pass_makes_more_exact(const test_case *test)
 {
     random_state random = random_seeded(3);
     const int d = test->dimension;
-    const stage on = curved_stage(
-        stage_of(test, "surface", cloud_free_surface(d, d == 2 ? 12 : 7, .25, &random), .5));
-    const double *numbers = curved_polynomial(&on.points, 2);
-    curved found = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const comparison on = second_order_comparison(
+        comparison_of(test, "surface", cloud_free_surface(d, d == 2 ? 12 : 7, .25, &random), .5));
+    const double *numbers = second_order_polynomial(&on.points, 2);
+    second_order found = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
     int before = exact_ones(&on, &found);
     const int first = before;
     for (int pass = 0; pass < 3; pass++) {
-        const curved next =
-            apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &found.curvature});
+        const second_order next =
+            apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &found.curvature});
         const int now = exact_ones(&on, &next);
         TEST_REQUIRE(now >= before, "%d, then %d in pass %d", before, now, pass);
         before = now;
@@ -364,15 +372,17 @@ static void linear_fields_are_left_alone(const test_case *test)
 {
     random_state random = random_seeded(4);
     const int d = test->dimension;
-    const stage on = curved_stage(
-        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 6, .25, .2, &random), .5));
-    const double *numbers = curved_polynomial(&on.points, 1);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-    const curved found = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &first.curvature});
+    const comparison on = second_order_comparison(
+        comparison_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 6, .25, .2, &random), .5));
+    const double *numbers = second_order_polynomial(&on.points, 1);
+    const second_order first = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+    const second_order found =
+        apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &first.curvature});
     for (int i = 0; i < on.points.count; i++)
-        for (int a = 0; a < d && fixture_get(&found.rank, i, 0) >= d; a++)
+        for (int a = 0; a < d && setup_get(&found.rank, i, 0) >= d; a++)
             TEST_WITHIN(linear_with_lenders,
-                        fabs(fixture_get(&found.gradient, i, a) - curved_slopes[a]) / on.scene.unit,
+                        fabs(setup_get(&found.gradient, i, a) - second_order_slopes[a]) /
+                            on.scene.unit,
                         test_text("particle %d", i));
 }
 
@@ -390,20 +400,22 @@ static void who_is_lent_nothing_keeps_every_bit(const test_case *test)
                             cloud_pair(d, .3),
                             cloud_coincident(d, 3, 1, .25)};
     for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
-        const stage on = curved_stage(stage_of(test, test_text("cloud %d", (int)c), clouds[c], .5));
-        const double *numbers = stage_random_field(&on, SPHG_VECTOR, 11);
-        const curved first = apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
+        const comparison on = second_order_comparison(
+            comparison_of(test, test_text("cloud %d", (int)c), clouds[c], .5));
+        const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 11);
+        const second_order first = apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
         const int width = first.curvature.width;
         double *lent = test_memory((size_t)(on.points.count * width) * sizeof *lent);
         for (int k = 0; k < on.points.count * width && c > 0; k++)
-            lent[k] = fixture_get(&first.curvature, k / width, k % width);
-        const fixture_array given =
-            fixture_numbers(test_field_type(test), on.points.count, width, lent);
-        const curved found = apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &given});
-        curved_require_same_bits(&first, &found, on.name);
+            lent[k] = setup_get(&first.curvature, k / width, k % width);
+        const setup_array given =
+            setup_numbers(test_field_type(test), on.points.count, width, lent);
+        const second_order found =
+            apply(&on, SPHG_VECTOR, numbers, (second_order_how){.lent = &given});
+        second_order_require_same_bits(&first, &found, on.name);
         for (int i = 0; i < on.points.count && c > 0; i++)
-            TEST_REQUIRE(fixture_get(&found.curvature, i, 0) == 0 &&
-                             fixture_get(&found.borrows, i, 0) == 1,
+            TEST_REQUIRE(setup_get(&found.curvature, i, 0) == 0 &&
+                             setup_get(&found.borrows, i, 0) == 1,
                          "particle %d, %s", i, on.name);
     }
 }
@@ -413,41 +425,42 @@ static void a_mask_of_borrowers_leaves_nothing_out(const test_case *test)
 {
     random_state random = random_seeded(7);
     const int d = test->dimension;
-    stage on = curved_stage(
-        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 12 : 7, .25, .3, &random), .5));
-    const double *numbers = stage_random_field(&on, SPHG_VECTOR, 12);
-    const curved first = apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
-    const curved all = apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &first.curvature});
+    comparison on = second_order_comparison(
+        comparison_of(test, "jitter", cloud_jittered(d, d == 2 ? 12 : 7, .25, .3, &random), .5));
+    const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 12);
+    const second_order first = apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
+    const second_order all =
+        apply(&on, SPHG_VECTOR, numbers, (second_order_how){.lent = &first.curvature});
     const sphg_subset open = sphg_masked(first.borrows.data, on.points.count);
-    const curved_how some = {.lent = &first.curvature, .subset = &open};
-    const curved masked = apply(&on, SPHG_VECTOR, numbers, some);
-    const fixture_array positions = fixture_positions(test, &on.points);
-    sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
+    const second_order_how some = {.lent = &first.curvature, .subset = &open};
+    const second_order masked = apply(&on, SPHG_VECTOR, numbers, some);
+    const setup_array positions = setup_positions(test, &on.points);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &positions);
     geometry.list_free = 1;
-    on.neighbors = fixture_search(on.context, &on.scheme, &geometry);
-    const curved anew = apply(&on, SPHG_VECTOR, numbers, some);
-    curved_require_same_bits(&masked, &anew, "list-free");
+    on.neighbors = setup_search(on.context, &on.scheme, &geometry);
+    const second_order anew = apply(&on, SPHG_VECTOR, numbers, some);
+    second_order_require_same_bits(&masked, &anew, "list-free");
     const int32_t chosen[] = {0, 7,
                               on.points.count - 1}; /* so few that rows are copied one by one */
     const sphg_subset few = sphg_listed(chosen, 3);
-    const curved apart =
-        apply(&on, SPHG_VECTOR, numbers, (curved_how){.lent = &first.curvature, .subset = &few});
+    const second_order apart = apply(&on, SPHG_VECTOR, numbers,
+                                     (second_order_how){.lent = &first.curvature, .subset = &few});
     for (int k = 0; k < 3; k++)
         for (int c = 0; c < all.hessian.width; c++)
-            TEST_REQUIRE(fixture_get(&apart.hessian, chosen[k], c) ==
-                             fixture_get(&all.hessian, chosen[k], c),
+            TEST_REQUIRE(setup_get(&apart.hessian, chosen[k], c) ==
+                             setup_get(&all.hessian, chosen[k], c),
                          "target %d", chosen[k]);
     int borrowers = 0;
     for (int i = 0; i < on.points.count; i++) {
-        const int borrows = (int)fixture_get(&first.borrows, i, 0);
+        const int borrows = (int)setup_get(&first.borrows, i, 0);
         borrowers += borrows;
-        TEST_REQUIRE(borrows || fixture_is_canary(&masked.gradient, i), "target %d is written", i);
-        const curved *expected = borrows ? &masked : &first;
+        TEST_REQUIRE(borrows || setup_is_canary(&masked.gradient, i), "target %d is written", i);
+        const second_order *expected = borrows ? &masked : &first;
         for (int k = 0; k < all.hessian.width; k++)
-            TEST_REQUIRE(fixture_get(&all.hessian, i, k) == fixture_get(&expected->hessian, i, k),
+            TEST_REQUIRE(setup_get(&all.hessian, i, k) == setup_get(&expected->hessian, i, k),
                          "Hessian of %d", i);
         for (int k = 0; k < all.gradient.width; k++)
-            TEST_REQUIRE(fixture_get(&all.gradient, i, k) == fixture_get(&expected->gradient, i, k),
+            TEST_REQUIRE(setup_get(&all.gradient, i, k) == setup_get(&expected->gradient, i, k),
                          "gradient of %d", i);
     }
     TEST_REQUIRE(borrowers > 10 && borrowers < on.points.count, "%d of %d borrow", borrowers,
@@ -459,34 +472,35 @@ static void fields_borrow_each_for_itself(const test_case *test)
 {
     random_state random = random_seeded(9);
     const int d = test->dimension;
-    const stage on = curved_stage(
-        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .3, &random), .5));
-    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 13);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-    const curved second = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &first.curvature});
-    const curved third = apply(&on, SPHG_SCALAR, numbers, (curved_how){.lent = &second.curvature});
-    const curved *const expected[] = {&second, &first, &third};
-    const fixture_array *const lent[] = {&first.curvature, NULL, &second.curvature};
-    const fixture_array values =
-        fixture_numbers(test_field_type(test), on.points.count, 1, numbers);
-    const sphg_view at_sources = fixture_view(&values);
-    sphg_sources sources = stage_sources(&on);
+    const comparison on = second_order_comparison(
+        comparison_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .3, &random), .5));
+    const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 13);
+    const second_order first = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+    const second_order second =
+        apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &first.curvature});
+    const second_order third =
+        apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &second.curvature});
+    const second_order *const expected[] = {&second, &first, &third};
+    const setup_array *const lent[] = {&first.curvature, NULL, &second.curvature};
+    const setup_array values = setup_numbers(test_field_type(test), on.points.count, 1, numbers);
+    const sphg_view at_sources = setup_view(&values);
+    sphg_sources sources = comparison_sources(&on);
     sphg_field fields[3];
     sphg_view lenders[3];
-    curved found[3];
+    second_order found[3];
     for (int k = 0; k < 3; k++) {
-        found[k] = curved_outputs(&on, SPHG_SCALAR, 1);
+        found[k] = second_order_outputs(&on, SPHG_SCALAR, 1);
         fields[k] = (sphg_field){.shape = SPHG_SCALAR, .at_sources = &at_sources};
-        curved_ask(&found[k], &fields[k]);
+        second_order_ask(&found[k], &fields[k]);
         if (lent[k])
-            lenders[k] = fixture_view(lent[k]);
+            lenders[k] = setup_view(lent[k]);
         fields[k].lenders = lent[k] ? &lenders[k] : NULL;
     }
     const sphg_request request = {
         .sources = &sources, .fields = fields, .set_count = 1, .field_count = 3};
-    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
     for (int k = 0; k < 3; k++)
-        curved_require_same_bits(expected[k], &found[k], test_text("field %d", k));
+        second_order_require_same_bits(expected[k], &found[k], test_text("field %d", k));
 }
 
 /* Particles [first, first + count) as sources of all, which stand apart. */
@@ -501,46 +515,47 @@ static sphg_view from(sphg_view view, int first)
     return view;
 }
 
-static part part_of(const stage *on, const sphg_view *positions, const sphg_view *values,
-                    const fixture_array *lent, int first, int count)
+static part part_of(const comparison *on, const sphg_view *positions, const sphg_view *values,
+                    const setup_array *lent, int first, int count)
 {
     part made = {.at_sources = from(*values, first)};
     sphg_geometry geometry =
         sphg_targets_apart(*positions, on->points.count, from(*positions, first), count);
     geometry.precision = test_field_type(on->test);
-    made.set.neighbors = fixture_search(on->context, &on->scheme, &geometry);
-    made.set.volume = from(fixture_view(&on->volume), first);
-    made.lenders = from(fixture_view(lent), first);
+    made.set.neighbors = setup_search(on->context, &on->scheme, &geometry);
+    made.set.volume = from(setup_view(&on->volume), first);
+    made.lenders = from(setup_view(lent), first);
     return made;
 }
 
-static curved apply_parts(const stage *on, const sphg_view *values, const part *parts, int count)
+static second_order apply_parts(const comparison *on, const sphg_view *values, const part *parts,
+                                int count)
 {
-    const curved found = curved_outputs(on, SPHG_SCALAR, 1);
+    const second_order found = second_order_outputs(on, SPHG_SCALAR, 1);
     sphg_sources sets[2];
     sphg_view at_sources[2], lenders[2];
     for (int s = 0; s < count; s++)
         sets[s] = parts[s].set, at_sources[s] = parts[s].at_sources, lenders[s] = parts[s].lenders;
     sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources, .lenders = lenders};
-    curved_ask(&found, &field);
+    second_order_ask(&found, &field);
     field.at_targets = *values;
     sphg_request request = {
         .sources = sets, .fields = &field, .set_count = count, .field_count = 1};
-    request.target_volume = fixture_view(&on->volume);
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    request.target_volume = setup_view(&on->volume);
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return found;
 }
 
 /* Relative to the largest number. */
-static void require_alike(const fixture_array *a, const fixture_array *b, const char *where)
+static void require_alike(const setup_array *a, const setup_array *b, const char *where)
 {
     double largest = 0;
     for (int k = 0; k < a->count * a->width; k++)
-        largest = fmax(largest, fabs(fixture_get(a, k / a->width, k % a->width)));
+        largest = fmax(largest, fabs(setup_get(a, k / a->width, k % a->width)));
     for (int k = 0; k < a->count * a->width; k++)
         TEST_WITHIN(lent_by_two_sets,
-                    fabs(fixture_get(a, k / a->width, k % a->width) -
-                         fixture_get(b, k / a->width, k % a->width)) /
+                    fabs(setup_get(a, k / a->width, k % a->width) -
+                         setup_get(b, k / a->width, k % a->width)) /
                         (largest * (a->type == SPHG_F64 ? 0x1p-53 : 0x1p-24)),
                     where);
 }
@@ -550,33 +565,33 @@ static void source_sets_lend_each_for_itself(const test_case *test)
 {
     random_state random = random_seeded(10);
     const int d = test->dimension;
-    stage on = curved_stage(
-        stage_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .2, &random), .5));
+    comparison on = second_order_comparison(
+        comparison_of(test, "jitter", cloud_jittered(d, d == 2 ? 9 : 5, .25, .2, &random), .5));
     const int n = on.points.count, half = n / 2;
-    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 14);
-    const curved first = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-    const fixture_array places = fixture_positions(test, &on.points);
-    const fixture_array held = fixture_numbers(test_field_type(test), n, 1, numbers);
-    const sphg_view positions = fixture_view(&places), values = fixture_view(&held);
-    curved all[2];
+    const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 14);
+    const second_order first = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+    const setup_array places = setup_positions(test, &on.points);
+    const setup_array held = setup_numbers(test_field_type(test), n, 1, numbers);
+    const sphg_view positions = setup_view(&places), values = setup_view(&held);
+    second_order all[2];
     for (int lend = 0; lend < 2; lend++) {
-        double *lent = fixture_doubles(&first.curvature);
+        double *lent = setup_doubles(&first.curvature);
         const int width = first.curvature.width;
         for (int k = half * width; k < n * width && !lend; k++)
             lent[k] = 0;
-        const fixture_array given = fixture_numbers(test_field_type(test), n, width, lent);
+        const setup_array given = setup_numbers(test_field_type(test), n, width, lent);
         const part whole = part_of(&on, &positions, &values, &given, 0, n);
         part parts[] = {part_of(&on, &positions, &values, &given, 0, half),
                         part_of(&on, &positions, &values, &given, half, n - half)};
         if (!lend)
             parts[1].lenders = sphg_absent();
         all[lend] = apply_parts(&on, &values, &whole, 1);
-        const curved found = apply_parts(&on, &values, parts, 2);
+        const second_order found = apply_parts(&on, &values, parts, 2);
         require_alike(&all[lend].gradient, &found.gradient, "gradient of two sets");
         require_alike(&all[lend].hessian, &found.hessian, "Hessian of two sets");
         require_alike(&all[lend].curvature, &found.curvature, "what two sets lend");
     }
-    TEST_REQUIRE(!fixture_same_bits(&all[0].gradient, &all[1].gradient),
+    TEST_REQUIRE(!setup_same_bits(&all[0].gradient, &all[1].gradient),
                  "the second set's loans are not read");
 }
 
@@ -596,7 +611,7 @@ static slide slide_of(const test_case *test, int per_axis)
     const int d = test->dimension;
     const cloud block = cloud_jittered(d, per_axis, 1, .15, &random);
     const size_t n = (size_t)block.count + 1;
-    slide made = {.context = fixture_context_of(1), .scheme = fixture_scheme(test, 2)};
+    slide made = {.context = setup_context_of(1), .scheme = setup_scheme(test, 2)};
     made.scheme.order = 2;
     made.points = (cloud){.dimension = d, .count = (int)n, .spacing = 1};
     made.points.x = test_memory(n * (size_t)d * sizeof(double));
@@ -606,7 +621,7 @@ static slide slide_of(const test_case *test, int per_axis)
     made.lent[0] = test_memory(n * sizeof *made.lent[0]);
     made.lent[1] = test_memory(n * sizeof *made.lent[1]);
     made.value = test_memory(n * sizeof *made.value);
-    FIXTURE_OK(made.context, sphg_neighbors_create(made.context, &made.neighbors));
+    SETUP_OK(made.context, sphg_neighbors_create(made.context, &made.neighbors));
     return made;
 }
 
@@ -629,7 +644,7 @@ static void evaluate_slide(slide *on, int passes)
         field.lenders = pass ? &lenders : NULL;
         const sphg_request request = {
             .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     }
 }
 
@@ -638,7 +653,7 @@ static void evaluate_slide(slide *on, int passes)
 static double largest_step(const test_case *test, int per_axis, int along, int passes, int steps)
 {
     slide on = slide_of(test, per_axis);
-    const int d = test->dimension, n = on.points.count, width = d + curved_pairs(d);
+    const int d = test->dimension, n = on.points.count, width = d + second_order_pairs(d);
     double(*before)[9] = test_memory((size_t)n * sizeof *before), worst = 0;
     const double h2 = on.scheme.support_radius * on.scheme.support_radius;
     for (int step = 0; step <= steps; step++) {
@@ -648,8 +663,8 @@ static double largest_step(const test_case *test, int per_axis, int along, int p
         memcpy(on.points.x + (n - 1) * d, x, (size_t)d * sizeof *x);
         sphg_geometry geometry = sphg_all(sphg_view_f64(on.points.x, 8 * d), n);
         geometry.list_free = 1;
-        FIXTURE_OK(on.context,
-                   sphg_neighbors_search(on.context, on.neighbors, &on.scheme, &geometry));
+        SETUP_OK(on.context,
+                 sphg_neighbors_search(on.context, on.neighbors, &on.scheme, &geometry));
         evaluate_slide(&on, passes);
         for (int i = 0; i < n; i++)
             for (int k = 0; k < width; k++) {
@@ -681,8 +696,8 @@ static void a_sliding_neighbour_makes_no_jump(const test_case *test)
 
 /* ---- What is refused ------------------------------------------------------------------------- */
 
-static void require_refused(const stage *on, const sphg_field *field, const sphg_request *asked,
-                            const sphg_scheme *scheme, const char *words)
+static void require_refused(const comparison *on, const sphg_field *field,
+                            const sphg_request *asked, const sphg_scheme *scheme, const char *words)
 {
     sphg_request request = *asked;
     request.fields = field;
@@ -697,33 +712,32 @@ static void what_cannot_be_borrowed_is_refused_by_name(const test_case *test)
 {
     random_state random = random_seeded(15);
     const int d = test->dimension;
-    const stage on =
-        curved_stage(stage_of(test, "block", cloud_jittered(d, 4, .25, .2, &random), .5));
-    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 16);
-    const curved found = apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-    const curved out = curved_outputs(&on, SPHG_SCALAR, 1);
-    const fixture_array values =
-        fixture_numbers(test_field_type(test), on.points.count, 1, numbers);
-    const fixture_array table = stage_table(&on);
-    const sphg_view at_sources = fixture_view(&values), lenders = fixture_view(&found.curvature);
-    const sphg_sources sources = stage_sources(&on);
+    const comparison on = second_order_comparison(
+        comparison_of(test, "block", cloud_jittered(d, 4, .25, .2, &random), .5));
+    const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 16);
+    const second_order found = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+    const second_order out = second_order_outputs(&on, SPHG_SCALAR, 1);
+    const setup_array values = setup_numbers(test_field_type(test), on.points.count, 1, numbers);
+    const setup_array table = comparison_table(&on);
+    const sphg_view at_sources = setup_view(&values), lenders = setup_view(&found.curvature);
+    const sphg_sources sources = comparison_sources(&on);
     sphg_scheme first = on.scheme;
     first.order = 1;
     sphg_request request = {.sources = &sources, .set_count = 1};
     sphg_field lends = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
     sphg_field borrows = lends;
-    lends.curvature = fixture_view(&out.curvature);
-    borrows.gradient = fixture_view(&out.gradient);
+    lends.curvature = setup_view(&out.curvature);
+    borrows.gradient = setup_view(&out.gradient);
     borrows.lenders = &lenders;
     require_refused(&on, &lends, &request, &first, "fields[0].curvature needs scheme.order 2");
     require_refused(&on, &borrows, &request, &first, "fields[0].lenders needs scheme.order 2");
-    request.target_correction = fixture_view(&table);
+    request.target_correction = setup_view(&table);
     require_refused(&on, &lends, &request, &on.scheme, "curvature beside a table");
     require_refused(&on, &borrows, &request, &on.scheme, "lenders beside a table");
     request.target_correction = sphg_absent();
-    const fixture_array wanted_table =
-        fixture_output(test_field_type(test), on.points.count, table.width);
-    request.correction = fixture_view(&wanted_table);
+    const setup_array wanted_table =
+        setup_output(test_field_type(test), on.points.count, table.width);
+    request.correction = setup_view(&wanted_table);
     require_refused(&on, &borrows, &request, &on.scheme, "lenders beside a wanted correction");
     request.correction = sphg_absent();
     for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
@@ -731,7 +745,7 @@ static void what_cannot_be_borrowed_is_refused_by_name(const test_case *test)
         require_refused(&on, &lends, &request, &on.scheme, "difference form");
         require_refused(&on, &borrows, &request, &on.scheme, "difference form");
     }
-    request.borrows = fixture_view(&out.borrows);
+    request.borrows = setup_view(&out.borrows);
     require_refused(&on, NULL, &request, &first, "borrows needs scheme.order 2");
 }
 

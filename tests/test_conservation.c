@@ -1,6 +1,6 @@
 /* What the two-sided forms conserve and what they do not (docs/theory.md, forms). Sums are taken
  * in double over forces that the library stored, relative to the sum of their sizes. */
-#include "support/lacking.h"
+#include "support/incomplete_lists.h"
 
 /* A sum that should vanish, beside the sum of the sizes of its terms. */
 typedef struct balance {
@@ -17,16 +17,16 @@ static double imbalance(const balance *sums)
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
 /* Every particle of full rank; kernel and support as the case has them. */
-static stage full_rank_stage(const test_case *test)
+static comparison full_rank_stage(const test_case *test)
 {
     random_state random = random_seeded(31);
     int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 8 : 5, .25, .15, &random);
-    return stage_of(test, "block", points, .75);
+    return comparison_of(test, "block", points, .75);
 }
 
 /* Two layers so near that their normal is dropped or blended at every particle. */
-static stage thin_stage(const test_case *test)
+static comparison thin_stage(const test_case *test)
 {
     random_state random = random_seeded(32);
     int d = test->dimension;
@@ -34,33 +34,33 @@ static stage thin_stage(const test_case *test)
     for (int k = 0; k < points.count * d; k++)
         if (k % d < d - 1)
             points.x[k] += random_between(&random, -.05, .05);
-    return stage_of(test, "thin sheets", points, .625);
+    return comparison_of(test, "thin sheets", points, .625);
 }
 
-static stage at_equal_density(stage on)
+static comparison at_equal_density(comparison on)
 {
     double *density = test_memory((size_t)on.points.count * sizeof *density);
     for (int i = 0; i < on.points.count; i++)
         density[i] = 1.25;
-    on.density = fixture_numbers(test_field_type(on.test), on.points.count, 1, density);
+    on.density = setup_numbers(test_field_type(on.test), on.points.count, 1, density);
     on.scene.density = density;
     return on;
 }
 
-static int has_full_rank(const stage *on)
+static int has_full_rank(const comparison *on)
 {
-    fixture_array rank = fixture_output(SPHG_U8, on->points.count, 1);
-    fixture_array table = stage_table(on);
-    sphg_sources sources = stage_sources(on);
-    FIXTURE_OK(on->context, sphg_correction(on->context, &on->scheme, &sources, NULL,
-                                            fixture_view(&table), fixture_view(&rank)));
+    setup_array rank = setup_output(SPHG_U8, on->points.count, 1);
+    setup_array table = comparison_table(on);
+    sphg_sources sources = comparison_sources(on);
+    SETUP_OK(on->context, sphg_correction(on->context, &on->scheme, &sources, NULL,
+                                          setup_view(&table), setup_view(&rank)));
     for (int i = 0; i < on->points.count; i++)
-        if (fixture_get(&rank, i, 0) != on->points.dimension)
+        if (setup_get(&rank, i, 0) != on->points.dimension)
             return 0;
     return 1;
 }
 
-static void require_full_rank(const stage *on)
+static void require_full_rank(const comparison *on)
 {
     assert_true(has_full_rank(on));
 }
@@ -70,19 +70,19 @@ static void require_full_rank(const stage *on)
 
 /* V_i^weigh times the vector result of a form; weigh = 1 turns a SYMMETRIC or DIFFERENCE
  * derivative into a force. */
-static double *forces_of(const stage *on, sphg_shape shape, sphg_form form)
+static double *forces_of(const comparison *on, sphg_shape shape, sphg_form form)
 {
     int d = on->points.dimension;
-    fixture_array table = stage_table(on);
-    stage_field field = {shape, form, stage_random_field(on, shape, 17)};
-    stage_result found = stage_apply(on, &field, form == SPHG_DIFFERENCE ? NULL : &table);
-    double *force = fixture_doubles(shape == SPHG_SCALAR ? &found.gradient : &found.divergence);
+    setup_array table = comparison_table(on);
+    comparison_field field = {shape, form, comparison_random_field(on, shape, 17)};
+    comparison_result found = comparison_apply(on, &field, form == SPHG_DIFFERENCE ? NULL : &table);
+    double *force = setup_doubles(shape == SPHG_SCALAR ? &found.gradient : &found.divergence);
     for (int k = 0; k < on->points.count * d && form != SPHG_ADJOINT; k++)
         force[k] *= on->scene.volume[k / d];
     return force;
 }
 
-static double linear_imbalance(const stage *on, const double *force)
+static double linear_imbalance(const comparison *on, const double *force)
 {
     int d = on->points.dimension;
     balance sums = {{0}, 0};
@@ -97,7 +97,7 @@ static double linear_imbalance(const stage *on, const double *force)
     return imbalance(&sums);
 }
 
-static double angular_imbalance(const stage *on, const double *force)
+static double angular_imbalance(const comparison *on, const double *force)
 {
     int d = on->points.dimension;
     balance sums = {{0}, 0};
@@ -118,13 +118,14 @@ static double angular_imbalance(const stage *on, const double *force)
     return imbalance(&sums);
 }
 
-static void require_linear(const stage *on, sphg_shape shape, sphg_form form, const char *what)
+static void require_linear(const comparison *on, sphg_shape shape, sphg_form form, const char *what)
 {
     double error = linear_imbalance(on, forces_of(on, shape, form)) / on->scene.unit;
     TEST_WITHIN(linear_momentum, error, test_text("%s, %s", what, on->name));
 }
 
-static void require_angular(const stage *on, sphg_shape shape, sphg_form form, const char *what)
+static void require_angular(const comparison *on, sphg_shape shape, sphg_form form,
+                            const char *what)
 {
     double error = angular_imbalance(on, forces_of(on, shape, form)) / on->scene.unit;
     TEST_WITHIN(angular_momentum, error, test_text("%s, %s", what, on->name));
@@ -132,7 +133,7 @@ static void require_angular(const stage *on, sphg_shape shape, sphg_form form, c
 
 static const double visible = 2e-5; /* far above rounding in f32, far below what is lost */
 
-static void require_angular_lost(const stage *on, sphg_shape shape, sphg_form form)
+static void require_angular_lost(const comparison *on, sphg_shape shape, sphg_form form)
 {
     double error = angular_imbalance(on, forces_of(on, shape, form));
     TEST_REQUIRE(error > visible, "angular momentum off by %g only: %s", error, on->name);
@@ -140,7 +141,7 @@ static void require_angular_lost(const stage *on, sphg_shape shape, sphg_form fo
 
 static void adjoint_conserves_linear_momentum(const test_case *test)
 {
-    stage stages[] = {full_rank_stage(test), thin_stage(test)};
+    comparison stages[] = {full_rank_stage(test), thin_stage(test)};
     for (int s = 0; s < 2; s++) {
         require_linear(&stages[s], SPHG_SCALAR, SPHG_ADJOINT, "scalar");
         require_linear(&stages[s], SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric");
@@ -150,7 +151,7 @@ static void adjoint_conserves_linear_momentum(const test_case *test)
 
 static void symmetric_conserves_linear_momentum(const test_case *test)
 {
-    stage stages[] = {full_rank_stage(test), thin_stage(test)};
+    comparison stages[] = {full_rank_stage(test), thin_stage(test)};
     for (int s = 0; s < 2; s++) {
         require_linear(&stages[s], SPHG_SCALAR, SPHG_SYMMETRIC, "scalar");
         require_linear(&stages[s], SPHG_TENSOR, SPHG_SYMMETRIC, "tensor");
@@ -159,7 +160,7 @@ static void symmetric_conserves_linear_momentum(const test_case *test)
 
 static void difference_conserves_nothing(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     double *force = forces_of(&on, SPHG_SCALAR, SPHG_DIFFERENCE);
     TEST_REQUIRE(linear_imbalance(&on, force) > 1e-3, "linear momentum kept");
     TEST_REQUIRE(angular_imbalance(&on, force) > 1e-3, "angular momentum kept");
@@ -170,7 +171,7 @@ static void difference_conserves_nothing(const test_case *test)
 
 static void adjoint_of_scalars_conserves_angular_momentum(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     require_angular(&on, SPHG_SCALAR, SPHG_ADJOINT, "scalar");
     if (test_is_classic(test))
         return;
@@ -181,7 +182,7 @@ static void adjoint_of_scalars_conserves_angular_momentum(const test_case *test)
 static void
 adjoint_of_symmetric_tensors_conserves_angular_momentum_at_full_rank(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     require_full_rank(&on);
     require_angular(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric tensor");
     on = thin_stage(test);
@@ -190,32 +191,32 @@ adjoint_of_symmetric_tensors_conserves_angular_momentum_at_full_rank(const test_
 
 static void plain_adjoint_of_symmetric_tensors_loses_angular_momentum(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     require_angular_lost(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT);
 }
 
 static void unsymmetric_tensors_lose_angular_momentum(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     require_angular_lost(&on, SPHG_TENSOR, SPHG_ADJOINT);
 }
 
 static void symmetric_form_loses_angular_momentum_at_unequal_density(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     require_angular_lost(&on, SPHG_SCALAR, SPHG_SYMMETRIC);
 }
 
 static void plain_symmetric_form_of_scalars_conserves_angular_momentum(const test_case *test)
 {
-    stage on = full_rank_stage(test);
+    comparison on = full_rank_stage(test);
     require_angular(&on, SPHG_SCALAR, SPHG_SYMMETRIC, "scalar");
 }
 
 /* At equal density V_i times the symmetric form is the adjoint form. */
 static void symmetric_is_adjoint_at_equal_density(const test_case *test)
 {
-    stage on = at_equal_density(full_rank_stage(test));
+    comparison on = at_equal_density(full_rank_stage(test));
     double *symmetric = forces_of(&on, SPHG_SCALAR, SPHG_SYMMETRIC);
     double *adjoint = forces_of(&on, SPHG_SCALAR, SPHG_ADJOINT);
     require_angular(&on, SPHG_SCALAR, SPHG_SYMMETRIC, "scalar, equal density");
@@ -231,32 +232,34 @@ static void symmetric_is_adjoint_at_equal_density(const test_case *test)
  */
 
 /* <S, grad w> with volumes, and <w, f>: their sum vanishes for every S and w. */
-static double work_imbalance(const stage *on, sphg_shape shape)
+static double work_imbalance(const comparison *on, sphg_shape shape)
 {
     int n = on->points.count, d = on->points.dimension;
-    fixture_array table = stage_table(on);
-    stage_field motion = {SPHG_VECTOR, SPHG_DIFFERENCE, stage_random_field(on, SPHG_VECTOR, 41)};
-    stage_field stress = {shape, SPHG_ADJOINT, stage_random_field(on, shape, 42)};
-    stage_result rate = stage_apply(on, &motion, &table), push = stage_apply(on, &stress, &table);
-    const fixture_array *force = shape == SPHG_SCALAR ? &push.gradient : &push.divergence;
+    setup_array table = comparison_table(on);
+    comparison_field motion = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                               comparison_random_field(on, SPHG_VECTOR, 41)};
+    comparison_field stress = {shape, SPHG_ADJOINT, comparison_random_field(on, shape, 42)};
+    comparison_result rate = comparison_apply(on, &motion, &table),
+                      push = comparison_apply(on, &stress, &table);
+    const setup_array *force = shape == SPHG_SCALAR ? &push.gradient : &push.divergence;
     double work = 0, size = 0;
     for (int i = 0; i < n; i++) {
-        const double *s = stress.numbers + i * fixture_width(shape, d);
+        const double *s = stress.numbers + i * setup_width(shape, d);
         for (int k = 0; k < d * d; k++) {
             double share = shape == SPHG_TENSOR ? s[k] : k % (d + 1) == 0 ? s[0] : 0;
-            double term = on->scene.volume[i] * share * fixture_get(&rate.gradient, i, k);
+            double term = on->scene.volume[i] * share * setup_get(&rate.gradient, i, k);
             work += term;
             size += fabs(term);
         }
         for (int k = 0; k < d; k++)
-            work += motion.numbers[i * d + k] * fixture_get(force, i, k);
+            work += motion.numbers[i * d + k] * setup_get(force, i, k);
     }
     return fabs(work) / size;
 }
 
 static void adjoint_is_the_negative_adjoint_of_difference(const test_case *test)
 {
-    stage stages[] = {full_rank_stage(test), thin_stage(test)};
+    comparison stages[] = {full_rank_stage(test), thin_stage(test)};
     for (int s = 0; s < 2; s++) {
         double u = stages[s].scene.unit;
         TEST_WITHIN(adjointness, work_imbalance(&stages[s], SPHG_SCALAR) / u, stages[s].name);
@@ -267,21 +270,24 @@ static void adjoint_is_the_negative_adjoint_of_difference(const test_case *test)
 /* The same for the gradient of a scalar and the adjoint divergence of a vector. */
 static void adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient(const test_case *test)
 {
-    stage on = thin_stage(test);
+    comparison on = thin_stage(test);
     int d = test->dimension;
-    fixture_array table = stage_table(&on);
-    stage_field phi = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 43)};
-    stage_field flux = {SPHG_VECTOR, SPHG_ADJOINT, stage_random_field(&on, SPHG_VECTOR, 44)};
-    stage_result slope = stage_apply(&on, &phi, &table), outflow = stage_apply(&on, &flux, &table);
+    setup_array table = comparison_table(&on);
+    comparison_field phi = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                            comparison_random_field(&on, SPHG_SCALAR, 43)};
+    comparison_field flux = {SPHG_VECTOR, SPHG_ADJOINT,
+                             comparison_random_field(&on, SPHG_VECTOR, 44)};
+    comparison_result slope = comparison_apply(&on, &phi, &table),
+                      outflow = comparison_apply(&on, &flux, &table);
     double work = 0, size = 0;
     for (int i = 0; i < on.points.count; i++) {
         for (int k = 0; k < d; k++) {
             double term =
-                on.scene.volume[i] * flux.numbers[i * d + k] * fixture_get(&slope.gradient, i, k);
+                on.scene.volume[i] * flux.numbers[i * d + k] * setup_get(&slope.gradient, i, k);
             work += term;
             size += fabs(term);
         }
-        work += phi.numbers[i] * fixture_get(&outflow.divergence, i, 0);
+        work += phi.numbers[i] * setup_get(&outflow.divergence, i, 0);
     }
     TEST_WITHIN(adjointness, fabs(work) / size / on.scene.unit, "flux");
 }
@@ -292,10 +298,11 @@ static void adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient(const t
 /* Its tables are symmetric, and M2 P + M3 Q^T = M2 C: what order 1 conserves, it does. */
 static void order_2_conserves_what_order_1_does(const test_case *test)
 {
-    const stage whole = full_rank_stage(test);
-    stage stages[] = {whole, thin_stage(test), stage_lacking(&whole, STAGE_CUT_AT_BOTH_ENDS)};
+    const comparison whole = full_rank_stage(test);
+    comparison stages[] = {whole, thin_stage(test),
+                           comparison_lacking(&whole, COMPARISON_CUT_AT_BOTH_ENDS)};
     for (int s = 0; s < 3; s++) {
-        stage *on = &stages[s];
+        comparison *on = &stages[s];
         on->scheme.order = 2;
         for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
             require_linear(on, SPHG_SCALAR, (sphg_form)form, "scalar");
@@ -315,8 +322,8 @@ static void order_2_conserves_what_order_1_does(const test_case *test)
 
 static void lists_cut_at_both_ends_conserve(const test_case *test)
 {
-    const stage whole = full_rank_stage(test);
-    const stage on = stage_lacking(&whole, STAGE_CUT_AT_BOTH_ENDS);
+    const comparison whole = full_rank_stage(test);
+    const comparison on = comparison_lacking(&whole, COMPARISON_CUT_AT_BOTH_ENDS);
     for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
         require_linear(&on, SPHG_SCALAR, (sphg_form)form, "scalar");
         require_linear(&on, SPHG_TENSOR, (sphg_form)form, "tensor");
@@ -334,9 +341,9 @@ static void lists_cut_at_both_ends_conserve(const test_case *test)
 /* Half lists, and lists that are cut at one end. */
 static void one_sided_lists_conserve_nothing(const test_case *test)
 {
-    const stage whole = full_rank_stage(test);
-    for (int lack = STAGE_HALF; lack <= STAGE_CUT; lack++) {
-        const stage on = stage_lacking(&whole, (stage_lack)lack);
+    const comparison whole = full_rank_stage(test);
+    for (int lack = COMPARISON_HALF; lack <= COMPARISON_CUT; lack++) {
+        const comparison on = comparison_lacking(&whole, (comparison_lack)lack);
         for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
             const double *force = forces_of(&on, SPHG_SCALAR, (sphg_form)form);
             const double linear = linear_imbalance(&on, force);

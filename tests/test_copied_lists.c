@@ -1,7 +1,7 @@
 /* Lists of the host that are copied: the bits of borrowed ones, whatever is asked of them, and
  * nothing of the host's is read after the build. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <string.h>
 
 enum { COUNT = 420, BIG = 270, OWN = 390, CHANCES = 2 };
@@ -16,7 +16,7 @@ typedef struct world {
     sphg_scheme scheme;
     scene particles;
     sphg_geometry geometry;
-    fixture_array volume, density, scalar, vector;
+    setup_array volume, density, scalar, vector;
     int64_t *offsets; /* of a superset, flagged, shuffled, many with the target itself */
     int32_t *indices;
     const int32_t **rows;
@@ -107,11 +107,11 @@ static sphg_lists lists_of(world *own, int supply)
 
 static world world_of(const test_case *test, sphg_isa isa, int kind)
 {
-    world own = {.test = test, .context = fixture_context_on(isa)};
+    world own = {.test = test, .context = setup_context_on(isa)};
     random_state random = random_seeded(571 + (uint64_t)kind);
     const int d = test->dimension;
     cloud points = crowds(d, &random);
-    own.scheme = fixture_scheme(test, 1);
+    own.scheme = setup_scheme(test, 1);
     own.particles = scene_of_cloud(test, &points);
     if (kind == OWN_AND_GHOSTS)
         own.particles.target_count = OWN;
@@ -130,12 +130,12 @@ static world world_of(const test_case *test, sphg_isa isa, int kind)
     double numbers[3 * COUNT];
     for (int k = 0; k < 3 * COUNT; k++)
         numbers[k] = random_between(&random, .5, 1.5);
-    own.volume = fixture_numbers(type, COUNT, 1, numbers);
-    own.density = fixture_numbers(type, COUNT, 1, numbers + COUNT);
+    own.volume = setup_numbers(type, COUNT, 1, numbers);
+    own.density = setup_numbers(type, COUNT, 1, numbers + COUNT);
     for (int k = 0; k < 3 * COUNT; k++)
         numbers[k] = random_between(&random, -1, 1);
-    own.scalar = fixture_numbers(type, COUNT, 1, numbers + COUNT);
-    own.vector = fixture_numbers(type, COUNT, d, numbers);
+    own.scalar = setup_numbers(type, COUNT, 1, numbers + COUNT);
+    own.vector = setup_numbers(type, COUNT, d, numbers);
     list_pairs(&own, &random);
     return own;
 }
@@ -145,7 +145,7 @@ static world world_of(const test_case *test, sphg_isa isa, int kind)
 enum { CORRECTION, RANK, GRADIENT, VALUE, SQUARE, DIVERGENCE, CURL, FORCE, SYMMETRIC, OUTPUTS };
 
 typedef struct results {
-    fixture_array of[OUTPUTS];
+    setup_array of[OUTPUTS];
 } results;
 
 static results outputs_for(const world *own)
@@ -154,7 +154,7 @@ static results outputs_for(const world *own)
     const int width[OUTPUTS] = {table ? table : 1, 1, d, 1, 1, 1, d == 2 ? 1 : 3, d, 1};
     results made;
     for (int k = 0; k < OUTPUTS; k++)
-        made.of[k] = fixture_output(k == RANK ? SPHG_U8 : own->volume.type, COUNT, width[k]);
+        made.of[k] = setup_output(k == RANK ? SPHG_U8 : own->volume.type, COUNT, width[k]);
     return made;
 }
 
@@ -164,93 +164,93 @@ static results evaluate(const world *own, const sphg_neighbors *const *neighbors
                         const sphg_subset *subset)
 {
     results found = outputs_for(own);
-    const sphg_view scalar = fixture_view(&own->scalar), vector = fixture_view(&own->vector);
+    const sphg_view scalar = setup_view(&own->scalar), vector = setup_view(&own->vector);
     const sphg_view scalars[2] = {scalar, scalar}, vectors[2] = {vector, vector};
     sphg_sources sources[2] = {{.neighbors = neighbors[0]}, {.neighbors = neighbors[sets - 1]}};
-    const fixture_array *of = found.of;
+    const setup_array *of = found.of;
     sphg_field fields[] = {{.shape = SPHG_SCALAR,
                             .at_sources = scalars,
                             .at_targets = scalar,
-                            .gradient = fixture_view(&of[GRADIENT])},
+                            .gradient = setup_view(&of[GRADIENT])},
                            {.shape = SPHG_SCALAR,
                             .form = SPHG_DIRECT,
                             .at_sources = scalars,
-                            .value = fixture_view(&of[VALUE]),
-                            .square = fixture_view(&of[SQUARE])},
+                            .value = setup_view(&of[VALUE]),
+                            .square = setup_view(&of[SQUARE])},
                            {.shape = SPHG_VECTOR,
                             .at_sources = vectors,
                             .at_targets = vector,
-                            .divergence = fixture_view(&of[DIVERGENCE]),
-                            .curl = fixture_view(&of[CURL])}};
+                            .divergence = setup_view(&of[DIVERGENCE]),
+                            .curl = setup_view(&of[CURL])}};
     sphg_request request = {.sources = sources,
                             .fields = fields,
                             .set_count = sets,
                             .field_count = 3,
                             .subset = subset,
-                            .target_volume = fixture_view(&own->volume),
-                            .target_density = fixture_view(&own->density)};
+                            .target_volume = setup_view(&own->volume),
+                            .target_density = setup_view(&own->density)};
     const int corrects = own->scheme.method != SPHG_PLAIN;
     if (corrects) {
-        request.correction = fixture_view(&of[CORRECTION]);
-        request.rank = fixture_view(&of[RANK]);
+        request.correction = setup_view(&of[CORRECTION]);
+        request.rank = setup_view(&of[RANK]);
     }
     for (int k = 0; k < 2; k++) {
-        sources[k].volume = fixture_view(&own->volume);
-        sources[k].density = fixture_view(&own->density);
+        sources[k].volume = setup_view(&own->volume);
+        sources[k].density = setup_view(&own->density);
     }
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
     const sphg_field forces[] = {{.shape = SPHG_SCALAR,
                                   .form = SPHG_ADJOINT,
                                   .at_sources = scalars,
                                   .at_targets = scalar,
-                                  .gradient = fixture_view(&of[FORCE])},
+                                  .gradient = setup_view(&of[FORCE])},
                                  {.shape = SPHG_VECTOR,
                                   .form = SPHG_SYMMETRIC,
                                   .at_sources = vectors,
                                   .at_targets = vector,
-                                  .divergence = fixture_view(&of[SYMMETRIC])}};
-    const fixture_array table = fixture_output(own->volume.type, COUNT, of[CORRECTION].width);
+                                  .divergence = setup_view(&of[SYMMETRIC])}};
+    const setup_array table = setup_output(own->volume.type, COUNT, of[CORRECTION].width);
     for (int k = 0; k < COUNT * table.width; k++) /* any: only bits are compared */
-        fixture_put(&table, k, .5 + .01 * (k % 17));
+        setup_put(&table, k, .5 + .01 * (k % 17));
     request.fields = forces;
     request.field_count = 2;
     request.correction = request.rank = sphg_absent();
     for (int k = 0; k < 2 && corrects; k++)
-        sources[k].correction = fixture_view(&table);
-    request.target_correction = corrects ? fixture_view(&table) : sphg_absent();
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+        sources[k].correction = setup_view(&table);
+    request.target_correction = corrects ? setup_view(&table) : sphg_absent();
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
     return found;
 }
 
 static void require_same(const results *a, const results *b, const char *how)
 {
     for (int k = 0; k < OUTPUTS; k++)
-        TEST_REQUIRE(fixture_same_bits(&a->of[k], &b->of[k]), "%s: result %d", how, k);
+        TEST_REQUIRE(setup_same_bits(&a->of[k], &b->of[k]), "%s: result %d", how, k);
 }
 
 typedef struct exported {
     int64_t count;
     int64_t *offsets;
     int32_t *indices;
-    fixture_array gradients;
+    setup_array gradients;
 } exported;
 
 static exported pairs_of(const world *own, const sphg_neighbors *neighbors)
 {
-    const sphg_sources sources = {.neighbors = neighbors, .volume = fixture_view(&own->volume)};
+    const sphg_sources sources = {.neighbors = neighbors, .volume = setup_view(&own->volume)};
     exported found = {.offsets = test_memory((COUNT + 1) * sizeof *found.offsets)};
     const sphg_scheme plain = {.dimension = own->test->dimension,
                                .method = SPHG_PLAIN,
                                .support_radius = own->scheme.support_radius};
     sphg_pairs pairs = {.offsets = found.offsets, .any_order = 1};
-    FIXTURE_OK(own->context,
-               sphg_pair_gradients(own->context, &plain, &sources, NULL, sphg_absent(), &pairs));
+    SETUP_OK(own->context,
+             sphg_pair_gradients(own->context, &plain, &sources, NULL, sphg_absent(), &pairs));
     found.count = pairs.capacity = pairs.count;
     pairs.indices = found.indices = test_memory((size_t)(pairs.count + 1) * sizeof(int32_t));
-    found.gradients = fixture_output(own->volume.type, (int)pairs.count, own->test->dimension);
-    pairs.gradient = fixture_view(&found.gradients);
-    FIXTURE_OK(own->context,
-               sphg_pair_gradients(own->context, &plain, &sources, NULL, sphg_absent(), &pairs));
+    found.gradients = setup_output(own->volume.type, (int)pairs.count, own->test->dimension);
+    pairs.gradient = setup_view(&found.gradients);
+    SETUP_OK(own->context,
+             sphg_pair_gradients(own->context, &plain, &sources, NULL, sphg_absent(), &pairs));
     return found;
 }
 
@@ -262,7 +262,7 @@ static void require_same_pairs(const exported *a, const exported *b, int targets
         TEST_REQUIRE(a->offsets[i] == b->offsets[i], "%s: list of target %d", how, i);
     for (int64_t k = 0; k < a->count; k++)
         TEST_REQUIRE(a->indices[k] == b->indices[k], "%s: pair %lld", how, (long long)k);
-    TEST_REQUIRE(fixture_same_bits(&a->gradients, &b->gradients), "%s: gradients", how);
+    TEST_REQUIRE(setup_same_bits(&a->gradients, &b->gradients), "%s: gradients", how);
 }
 
 /* ---- Properties ----------------------------------------------------------------------------- */
@@ -295,10 +295,10 @@ static void try_scene(const test_case *test, sphg_isa isa, int kind, int supply)
     world own = world_of(test, isa, kind);
     const char *how = test_text("path %d, scene %d, supply %d", (int)isa, kind, supply);
     sphg_lists given = lists_of(&own, supply);
-    const sphg_neighbors *borrowed = fixture_lists(own.context, &own.scheme, &own.geometry, &given);
+    const sphg_neighbors *borrowed = setup_lists(own.context, &own.scheme, &own.geometry, &given);
     const answers expected = ask(&own, borrowed);
     given.copy = 1;
-    const sphg_neighbors *copied = fixture_lists(own.context, &own.scheme, &own.geometry, &given);
+    const sphg_neighbors *copied = setup_lists(own.context, &own.scheme, &own.geometry, &given);
     const int targets = own.particles.target_count;
     memset(own.indices, 0x7f, (size_t)own.offsets[targets] * sizeof *own.indices);
     memset(own.offsets, 0x7f, ((size_t)targets + 1) * sizeof *own.offsets);
@@ -316,7 +316,7 @@ static void copies_give_the_bits_of_borrowed_lists(const test_case *test)
 {
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
         const int turn = (int)isa + (int)test->method; /* every second scene */
-        for (int kind = turn % 2; kind < SCENES && fixture_context_on(isa); kind += 2)
+        for (int kind = turn % 2; kind < SCENES && setup_context_on(isa); kind += 2)
             try_scene(test, isa, kind, (kind + turn) % SUPPLIES);
     }
 }
@@ -325,18 +325,18 @@ static void copies_give_the_bits_of_borrowed_lists(const test_case *test)
 static void copies_take_their_turn(const test_case *test)
 {
     world own = world_of(test, test_isa(), WHOLE);
-    sphg_neighbors *turns = pairs_neighbors(own.context);
+    sphg_neighbors *turns = brute_force_neighbors(own.context);
     sphg_lists given = lists_of(&own, CSR);
     own.scheme.support_radius = .8;
     for (int k = 0; k < 9; k++) {
-        sphg_neighbors *alone = pairs_neighbors(own.context);
+        sphg_neighbors *alone = brute_force_neighbors(own.context);
         sphg_scheme wide = own.scheme;
         const sphg_neighbors *one[1] = {turns}, *other[1] = {alone};
         wide.support_radius = k % 2 ? 1 : .9;
         given.copy = k % 3 != 1;
         for (int n = 0; n < 2; n++) {
             sphg_neighbors *built = n ? alone : turns;
-            FIXTURE_OK(
+            SETUP_OK(
                 own.context,
                 k % 3 ? sphg_neighbors_use_lists(own.context, built, &wide, &own.geometry, &given)
                       : sphg_neighbors_search(own.context, built, &wide, &own.geometry));
@@ -351,12 +351,13 @@ static void copies_take_their_turn(const test_case *test)
 static void copies_are_counted_and_grow_with_counts_alone(const test_case *test)
 {
     enum { EACH = 100 };
-    hooks *host = fixture_hooks();
-    const sphg_config config = hooks_config(host, 2);
+    fake_host *host = setup_hooks();
+    const sphg_config config = fake_host_config(host, 2);
     world own = world_of(test, test_isa(), WHOLE);
-    own.context = fixture_context_with(&config);
+    own.context = setup_context_with(&config);
     own.scheme.support_radius = 100; /* nobody is left out */
-    sphg_neighbors *copied = pairs_neighbors(own.context), *borrowed = pairs_neighbors(own.context);
+    sphg_neighbors *copied = brute_force_neighbors(own.context),
+                   *borrowed = brute_force_neighbors(own.context);
     sphg_neighbors_info info;
     int64_t *offsets = test_memory((COUNT + 1) * sizeof *offsets);
     sphg_lists given = lists_of(&own, CSR);
@@ -368,15 +369,15 @@ static void copies_are_counted_and_grow_with_counts_alone(const test_case *test)
             offsets[i] = EACH * (i >> k << k);
         offsets[COUNT] = EACH * COUNT;
         given.copy = 1;
-        FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, copied, &own.scheme,
-                                                         &own.geometry, &given));
+        SETUP_OK(own.context,
+                 sphg_neighbors_use_lists(own.context, copied, &own.scheme, &own.geometry, &given));
         TEST_REQUIRE(!k || host->allocations == before, "build %d asks for memory", k);
-        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, copied, &info));
+        SETUP_OK(own.context, sphg_neighbors_get_info(own.context, copied, &info));
         assert_int_equal(info.pairs, EACH * COUNT);
         assert_true(info.bytes > (EACH + 10) * COUNT * 4);
         given.copy = 0;
-        FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, borrowed, &own.scheme,
-                                                         &own.geometry, &given));
+        SETUP_OK(own.context, sphg_neighbors_use_lists(own.context, borrowed, &own.scheme,
+                                                       &own.geometry, &given));
         const sphg_neighbors *one[1] = {copied}, *other[1] = {borrowed};
         const results a = evaluate(&own, one, 1, NULL), b = evaluate(&own, other, 1, NULL);
         require_same(&a, &b, test_text("build %d", k));
@@ -390,7 +391,7 @@ static void wrong_lists_are_refused_when_they_are_copied(const test_case *test)
 {
     for (int supply = 0; supply < SUPPLIES; supply++) {
         world own = world_of(test, test_isa(), WHOLE);
-        sphg_neighbors *neighbors = pairs_neighbors(own.context);
+        sphg_neighbors *neighbors = brute_force_neighbors(own.context);
         sphg_lists given = lists_of(&own, supply);
         given.copy = 1;
         own.indices[own.offsets[401]] = COUNT;
@@ -408,10 +409,10 @@ static void wrong_lists_are_refused_when_they_are_copied(const test_case *test)
         assert_string_equal(sphg_last_message(own.context),
                             "sphg_neighbors_use_lists: the list of target 90 holds -2147483648, "
                             "which is no source");
-        const sphg_sources sources = {.neighbors = neighbors, .volume = fixture_view(&own.volume)};
-        const fixture_array out = fixture_output(own.volume.type, COUNT, test->dimension);
+        const sphg_sources sources = {.neighbors = neighbors, .volume = setup_view(&own.volume)};
+        const setup_array out = setup_output(own.volume.type, COUNT, test->dimension);
         assert_int_equal(sphg_gradient(own.context, &own.scheme, &sources, NULL,
-                                       fixture_view(&own.scalar), fixture_view(&out)),
+                                       setup_view(&own.scalar), setup_view(&out)),
                          SPHG_ERROR_STATE);
         if (supply == CSR)
             continue;
@@ -431,13 +432,13 @@ static void copies_can_be_checked(const test_case *test)
     world own = world_of(test, test_isa(), WHOLE);
     sphg_lists given = lists_of(&own, CSR);
     given.copy = 1;
-    sphg_neighbors *neighbors = fixture_lists(own.context, &own.scheme, &own.geometry, &given);
-    FIXTURE_OK(own.context, sphg_neighbors_check(own.context, &own.scheme, neighbors, NULL));
+    sphg_neighbors *neighbors = setup_lists(own.context, &own.scheme, &own.geometry, &given);
+    SETUP_OK(own.context, sphg_neighbors_check(own.context, &own.scheme, neighbors, NULL));
     const int64_t end = own.offsets[350];
     for (int i = 350; i < 360; i++) /* lists of nobody */
         own.offsets[i] = end;
-    FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
-                                                     &own.geometry, &given));
+    SETUP_OK(own.context,
+             sphg_neighbors_use_lists(own.context, neighbors, &own.scheme, &own.geometry, &given));
     sphg_list_fault fault;
     assert_int_equal(sphg_neighbors_check(own.context, &own.scheme, neighbors, &fault),
                      SPHG_ERROR_LISTS);

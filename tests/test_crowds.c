@@ -1,6 +1,6 @@
 /* More sources around a target than are searched at once, and many times the pairs that are summed
  * at once: kept or found on the way, with corrections of the same sweep or of a table. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include <math.h>
 
 enum { SOURCES = 33000, TARGETS = 6, STEPS = 256 };
@@ -9,42 +9,42 @@ typedef struct crowd {
     const test_case *test;
     sphg_context *context;
     sphg_scheme scheme;
-    fixture_array sources, targets, volume, linear, at_targets;
+    setup_array sources, targets, volume, linear, at_targets;
     double slope[3];
 } crowd;
 
 /* On a lattice of so few digits that the linear field has no rounding. */
-static fixture_array places(const test_case *test, int count, random_state *random)
+static setup_array places(const test_case *test, int count, random_state *random)
 {
     const int d = test->dimension;
     double *x = test_memory((size_t)(count * d) * sizeof *x);
     for (int k = 0; k < count * d; k++)
         x[k] = random_index(random, STEPS) / (4. * STEPS);
-    return fixture_numbers(test_position_type(test), count, d, x);
+    return setup_numbers(test_position_type(test), count, d, x);
 }
 
-static fixture_array linear_field(const crowd *on, const fixture_array *at)
+static setup_array linear_field(const crowd *on, const setup_array *at)
 {
     double *values = test_memory((size_t)at->count * sizeof *values);
     for (int i = 0; i < at->count; i++)
         for (int c = 0; c < at->width; c++)
-            values[i] += on->slope[c] * fixture_get(at, i, c);
-    return fixture_numbers(test_field_type(on->test), at->count, 1, values);
+            values[i] += on->slope[c] * setup_get(at, i, c);
+    return setup_numbers(test_field_type(on->test), at->count, 1, values);
 }
 
 static crowd crowd_of(const test_case *test)
 {
-    crowd made = {.test = test, .context = fixture_context(), .slope = {.5, -1.25, 2}};
+    crowd made = {.test = test, .context = setup_context(), .slope = {.5, -1.25, 2}};
     random_state random = random_seeded(977);
     double *volume = test_memory(SOURCES * sizeof *volume);
     for (int k = 0; k < SOURCES; k++)
         volume[k] = random_between(&random, .5, 1.5) / SOURCES;
-    made.scheme = fixture_scheme(test, 1);
+    made.scheme = setup_scheme(test, 1);
     made.sources = places(test, SOURCES, &random);
     made.targets = places(test, TARGETS, &random);
-    fixture_put(&made.targets, (TARGETS - 1) * test->dimension,
-                1.5); /* near the crowd, and sees nobody */
-    made.volume = fixture_numbers(test_field_type(test), SOURCES, 1, volume);
+    setup_put(&made.targets, (TARGETS - 1) * test->dimension,
+              1.5); /* near the crowd, and sees nobody */
+    made.volume = setup_numbers(test_field_type(test), SOURCES, 1, volume);
     made.linear = linear_field(&made, &made.sources);
     made.at_targets = linear_field(&made, &made.targets);
     return made;
@@ -52,49 +52,48 @@ static crowd crowd_of(const test_case *test)
 
 static const sphg_neighbors *neighbors_of(const crowd *on, int own_targets, int list_free)
 {
-    sphg_geometry geometry = {.sources = fixture_view(&on->sources),
+    sphg_geometry geometry = {.sources = setup_view(&on->sources),
                               .source_count = SOURCES,
                               .target_count = own_targets ? TARGETS : SOURCES,
                               .precision = test_field_type(on->test),
                               .list_free = list_free};
     if (own_targets)
-        geometry.targets = fixture_view(&on->targets);
-    return fixture_search(on->context, &on->scheme, &geometry);
+        geometry.targets = setup_view(&on->targets);
+    return setup_search(on->context, &on->scheme, &geometry);
 }
 
 typedef struct sums {
-    fixture_array gradient, correction, lambda, rank;
+    setup_array gradient, correction, lambda, rank;
 } sums;
 
 /* Of the first TARGETS targets. table: NULL: corrections are computed on the way. */
 static sums sum_up(const crowd *on, const sphg_neighbors *neighbors, int own_targets,
-                   const fixture_array *table)
+                   const setup_array *table)
 {
     const sphg_type type = test_field_type(on->test);
     const int width = sphg_correction_width(&on->scheme);
     const int count = own_targets ? TARGETS : SOURCES;
-    sums found = {fixture_output(type, count, on->test->dimension),
-                  fixture_output(type, count, width), fixture_output(type, count, 1),
-                  fixture_output(SPHG_U8, count, 1)};
-    const sphg_view field = fixture_view(&on->linear);
-    const sphg_sources sources = {.neighbors = neighbors, .volume = fixture_view(&on->volume)};
+    sums found = {setup_output(type, count, on->test->dimension), setup_output(type, count, width),
+                  setup_output(type, count, 1), setup_output(SPHG_U8, count, 1)};
+    const sphg_view field = setup_view(&on->linear);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = setup_view(&on->volume)};
     const sphg_subset first = {0, TARGETS, NULL, NULL};
     sphg_field asked = {
-        .shape = SPHG_SCALAR, .at_sources = &field, .gradient = fixture_view(&found.gradient)};
+        .shape = SPHG_SCALAR, .at_sources = &field, .gradient = setup_view(&found.gradient)};
     sphg_request request = {
         .sources = &sources, .fields = &asked, .set_count = 1, .field_count = 1, .subset = &first};
     if (own_targets) {
-        asked.at_targets = fixture_view(&on->at_targets);
-        request.target_volume = fixture_view(&on->volume);
+        asked.at_targets = setup_view(&on->at_targets);
+        request.target_volume = setup_view(&on->volume);
     }
     if (table) {
-        request.target_correction = fixture_view(table);
+        request.target_correction = setup_view(table);
     } else {
-        request.correction = fixture_view(&found.correction);
-        request.lambda_min = fixture_view(&found.lambda);
-        request.rank = fixture_view(&found.rank);
+        request.correction = setup_view(&found.correction);
+        request.lambda_min = setup_view(&found.lambda);
+        request.rank = setup_view(&found.rank);
     }
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return found;
 }
 
@@ -105,13 +104,13 @@ static void require_linear(const crowd *on, const sums *found, int count, const 
     const int d = on->test->dimension;
     for (int i = 0; i < count; i++) {
         double error = 0, scale = 0;
-        assert_int_equal((int)fixture_get(&found->rank, i, 0), d);
+        assert_int_equal((int)setup_get(&found->rank, i, 0), d);
         for (int c = 0; c < d; c++) {
-            error += pow(fixture_get(&found->gradient, i, c) - slope[c], 2);
+            error += pow(setup_get(&found->gradient, i, c) - slope[c], 2);
             scale += slope[c] * slope[c];
         }
         TEST_WITHIN(linear_exactness,
-                    sqrt(error / scale) * fixture_get(&found->lambda, i, 0) /
+                    sqrt(error / scale) * setup_get(&found->lambda, i, 0) /
                         test_unit_roundoff(on->test),
                     where);
     }
@@ -123,10 +122,10 @@ static sums require_exact(const crowd *on, const sphg_neighbors *neighbors, int 
 {
     const sums fused = sum_up(on, neighbors, own_targets, NULL);
     const sums given = sum_up(on, neighbors, own_targets, &fused.correction);
-    TEST_REQUIRE(fixture_same_bits(&fused.gradient, &given.gradient), "%s: table", where);
+    TEST_REQUIRE(setup_same_bits(&fused.gradient, &given.gradient), "%s: table", where);
     require_linear(on, &fused, TARGETS - own_targets, where);
     for (int c = 0; c < on->test->dimension && own_targets; c++)
-        assert_true(fixture_get(&fused.gradient, TARGETS - 1, c) == 0);
+        assert_true(setup_get(&fused.gradient, TARGETS - 1, c) == 0);
     return fused;
 }
 
@@ -135,8 +134,8 @@ static void gradient_at_targets_in_a_crowd_is_exact(const test_case *test)
     const crowd on = crowd_of(test);
     const sums kept = require_exact(&on, neighbors_of(&on, 1, 0), 1, "targets, kept lists");
     const sums found = require_exact(&on, neighbors_of(&on, 1, 1), 1, "targets, list-free");
-    assert_true(fixture_same_bits(&kept.gradient, &found.gradient));
-    assert_true(fixture_same_bits(&kept.correction, &found.correction));
+    assert_true(setup_same_bits(&kept.gradient, &found.gradient));
+    assert_true(setup_same_bits(&kept.correction, &found.correction));
 }
 
 /* Lists of all would not fit. */

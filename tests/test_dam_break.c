@@ -2,7 +2,7 @@
  * corrected how far, and that nothing else comes out than finite numbers and exact derivatives.
  * Needs dam_break_splash.csv in the folder that the environment variable SPHG_TEST_DATA names, or
  * in ../shared/data beside the checkout; skips where there is none. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include "tables/csv.h"
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +14,7 @@ static const double particle_mass = 0.0125; /* [kg] */
 typedef struct splash {
     sphg_context *context;
     sphg_neighbors *neighbors;
-    fixture_array positions, velocities, volumes;
+    setup_array positions, velocities, volumes;
     int count;
 } splash;
 
@@ -45,8 +45,8 @@ static const struct csv *read_table(void)
 }
 
 /* Columns of the file as an array of the type; mass / value for volumes. */
-static fixture_array columns(const struct csv *table, sphg_type type, int width,
-                             enum quantity first, int invert)
+static setup_array columns(const struct csv *table, sphg_type type, int width, enum quantity first,
+                           int invert)
 {
     double *numbers = test_memory((size_t)(table->row_count * width) * sizeof *numbers);
     for (int k = 0; k < width; k++) {
@@ -55,49 +55,49 @@ static fixture_array columns(const struct csv *table, sphg_type type, int width,
             numbers[i * width + k] = invert ? particle_mass / value : value;
         }
     }
-    return fixture_numbers(type, table->row_count, width, numbers);
+    return setup_numbers(type, table->row_count, width, numbers);
 }
 
 static splash open_splash(const test_case *test)
 {
     const struct csv *table = read_table();
-    splash data = {.context = fixture_context(), .count = table->row_count};
+    splash data = {.context = setup_context(), .count = table->row_count};
     data.positions = columns(table, test_position_type(test), 3, QUANTITY_X, 0);
     data.velocities = columns(table, test_field_type(test), 3, QUANTITY_VX, 0);
     data.volumes = columns(table, test_field_type(test), 1, QUANTITY_DENSITY, 1);
-    const sphg_scheme scheme = fixture_scheme(test, support_radius);
-    const sphg_geometry geometry = {.sources = fixture_view(&data.positions),
+    const sphg_scheme scheme = setup_scheme(test, support_radius);
+    const sphg_geometry geometry = {.sources = setup_view(&data.positions),
                                     .source_count = data.count,
                                     .target_count = data.count,
                                     .precision = test_field_type(test)};
-    data.neighbors = fixture_search(data.context, &scheme, &geometry);
+    data.neighbors = setup_search(data.context, &scheme, &geometry);
     return data;
 }
 
 /* What is asked for beside the Jacobians; NULL: not. */
 typedef struct wanted {
     uint8_t *ranks;
-    const fixture_array *lambdas;
+    const setup_array *lambdas;
     sphg_stats *stats;
 } wanted;
 
-static void evaluate(const splash *data, const sphg_scheme *scheme, const fixture_array *field,
-                     const fixture_array *jacobians, wanted beside)
+static void evaluate(const splash *data, const sphg_scheme *scheme, const setup_array *field,
+                     const setup_array *jacobians, wanted beside)
 {
-    const sphg_view at_sources = fixture_view(field);
+    const sphg_view at_sources = setup_view(field);
     const sphg_sources sources = {.neighbors = data->neighbors,
-                                  .volume = fixture_view(&data->volumes)};
+                                  .volume = setup_view(&data->volumes)};
     const sphg_field jacobian = {
-        .shape = SPHG_VECTOR, .at_sources = &at_sources, .gradient = fixture_view(jacobians)};
+        .shape = SPHG_VECTOR, .at_sources = &at_sources, .gradient = setup_view(jacobians)};
     const sphg_request request = {
         .sources = &sources,
         .set_count = 1,
         .fields = &jacobian,
         .field_count = 1,
         .rank = beside.ranks ? sphg_view_u8(beside.ranks, 1) : sphg_absent(),
-        .lambda_min = beside.lambdas ? fixture_view(beside.lambdas) : sphg_absent(),
+        .lambda_min = beside.lambdas ? setup_view(beside.lambdas) : sphg_absent(),
         .stats = beside.stats};
-    FIXTURE_OK(data->context, sphg_evaluate(data->context, scheme, &request));
+    SETUP_OK(data->context, sphg_evaluate(data->context, scheme, &request));
 }
 
 /* Positions in f32 may decide a few particles beside a threshold otherwise. */
@@ -105,12 +105,12 @@ static void ranks_are(const test_case *test, sphg_policy policy, const int64_t e
 {
     const splash data = open_splash(test);
     const int64_t allowed = test->precision == TEST_F64 ? 0 : 5;
-    sphg_scheme scheme = fixture_scheme(test, support_radius);
+    sphg_scheme scheme = setup_scheme(test, support_radius);
     scheme.policy = policy;
     sphg_stats stats = {0};
     int64_t counted[4] = {0};
     uint8_t *ranks = test_memory((size_t)data.count);
-    const fixture_array jacobians = fixture_output(test_field_type(test), data.count, 9);
+    const setup_array jacobians = setup_output(test_field_type(test), data.count, 9);
     evaluate(&data, &scheme, &data.velocities, &jacobians, (wanted){ranks, NULL, &stats});
     for (int i = 0; i < data.count; i++)
         counted[ranks[i] < 4 ? ranks[i] : 0]++;
@@ -137,53 +137,53 @@ static void nothing_is_nan_or_infinite(const test_case *test)
 {
     const splash data = open_splash(test);
     for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
-        sphg_scheme scheme = fixture_scheme(test, support_radius);
+        sphg_scheme scheme = setup_scheme(test, support_radius);
         scheme.policy = (sphg_policy)policy;
-        const fixture_array jacobians = fixture_output(test_field_type(test), data.count, 9);
+        const setup_array jacobians = setup_output(test_field_type(test), data.count, 9);
         evaluate(&data, &scheme, &data.velocities, &jacobians, (wanted){NULL, NULL, NULL});
         for (int i = 0; i < data.count; i++)
             for (int k = 0; k < 9; k++)
-                TEST_REQUIRE(isfinite(fixture_get(&jacobians, i, k)),
+                TEST_REQUIRE(isfinite(setup_get(&jacobians, i, k)),
                              "policy %d, particle %d, component %d", policy, i, k);
     }
 }
 
 /* v = (-y, x, 2z) of the positions as stored: exact in f32 too. In mixed precision the field is
  * rounded, and its rounding would be what is measured. */
-static fixture_array linear_field(const test_case *test, const splash *data)
+static setup_array linear_field(const test_case *test, const splash *data)
 {
     double *numbers = test_memory((size_t)(data->count * 3) * sizeof *numbers);
     for (int i = 0; i < data->count; i++) {
-        numbers[3 * i] = -fixture_get(&data->positions, i, 1);
-        numbers[3 * i + 1] = fixture_get(&data->positions, i, 0);
-        numbers[3 * i + 2] = 2 * fixture_get(&data->positions, i, 2);
+        numbers[3 * i] = -setup_get(&data->positions, i, 1);
+        numbers[3 * i + 1] = setup_get(&data->positions, i, 0);
+        numbers[3 * i + 2] = 2 * setup_get(&data->positions, i, 2);
     }
-    return fixture_numbers(test_field_type(test), data->count, 3, numbers);
+    return setup_numbers(test_field_type(test), data->count, 3, numbers);
 }
 
 /* |J_i - J|_F / |J|_F of that field. */
-static double relative_error(const fixture_array *jacobians, int i)
+static double relative_error(const setup_array *jacobians, int i)
 {
     static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
     double sum = 0;
     for (int k = 0; k < 9; k++)
-        sum += pow(fixture_get(jacobians, i, k) - expected[k], 2);
+        sum += pow(setup_get(jacobians, i, k) - expected[k], 2);
     return sqrt(sum / 6);
 }
 
 static void linear_fields_are_exact_where_rank_is_full(const test_case *test)
 {
     const splash data = open_splash(test);
-    const sphg_scheme scheme = fixture_scheme(test, support_radius);
-    const fixture_array field = linear_field(test, &data);
-    const fixture_array jacobians = fixture_output(test_field_type(test), data.count, 9);
-    const fixture_array lambdas = fixture_output(test_field_type(test), data.count, 1);
+    const sphg_scheme scheme = setup_scheme(test, support_radius);
+    const setup_array field = linear_field(test, &data);
+    const setup_array jacobians = setup_output(test_field_type(test), data.count, 9);
+    const setup_array lambdas = setup_output(test_field_type(test), data.count, 1);
     uint8_t *ranks = test_memory((size_t)data.count);
     evaluate(&data, &scheme, &field, &jacobians, (wanted){ranks, &lambdas, NULL});
     double worst = 0;
     int where = 0, full = 0;
     for (int i = 0; i < data.count; i++) {
-        const double scaled = relative_error(&jacobians, i) * fixture_get(&lambdas, i, 0);
+        const double scaled = relative_error(&jacobians, i) * setup_get(&lambdas, i, 0);
         full += ranks[i] == 3;
         if (ranks[i] == 3 && !(scaled <= worst)) {
             worst = scaled;

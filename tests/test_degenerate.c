@@ -1,6 +1,6 @@
 /* Planes, lines, pairs, loners, coincident particles and closing sheets are ordinary input: never
  * NaN, ranks as geometry has them, each policy as it is defined, and no jump under blend. */
-#include "support/stage.h"
+#include "support/comparison.h"
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -26,28 +26,28 @@ static void make_scenes(int d, flat_scene *scenes)
     scenes[7] = (flat_scene){"closed sheets", cloud_sheets(d, wide, .25, .002), d - 1};
 }
 
-static stage stage_at(const test_case *test, const flat_scene *scene)
+static comparison stage_at(const test_case *test, const flat_scene *scene)
 {
-    return stage_of(test, scene->name, scene->points, .625);
+    return comparison_of(test, scene->name, scene->points, .625);
 }
 
-static fixture_array table_and_ranks(const stage *on, fixture_array *rank)
+static setup_array table_and_ranks(const comparison *on, setup_array *rank)
 {
-    fixture_array table = stage_table(on);
-    sphg_sources sources = stage_sources(on);
-    *rank = fixture_output(SPHG_U8, on->points.count, 1);
-    FIXTURE_OK(on->context, sphg_correction(on->context, &on->scheme, &sources, NULL,
-                                            fixture_view(&table), fixture_view(rank)));
+    setup_array table = comparison_table(on);
+    sphg_sources sources = comparison_sources(on);
+    *rank = setup_output(SPHG_U8, on->points.count, 1);
+    SETUP_OK(on->context, sphg_correction(on->context, &on->scheme, &sources, NULL,
+                                          setup_view(&table), setup_view(rank)));
     return table;
 }
 
 /* ---- Finite and of the right rank
  * ------------------------------------------------------------------ */
 
-static void require_finite(const fixture_array *found, const char *what, const char *scene)
+static void require_finite(const setup_array *found, const char *what, const char *scene)
 {
     for (int k = 0; k < found->count * found->width; k++)
-        TEST_REQUIRE(isfinite(fixture_get(found, k / found->width, k % found->width)),
+        TEST_REQUIRE(isfinite(setup_get(found, k / found->width, k % found->width)),
                      "%s of particle %d, %s", what, k / found->width, scene);
 }
 
@@ -56,22 +56,22 @@ static void nothing_is_ever_infinite(const test_case *test)
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
     for (int s = 0; s < flat_scene_count; s++) {
-        stage made = stage_at(test, &scenes[s]);
+        comparison made = stage_at(test, &scenes[s]);
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
-            stage on = stage_under(&made, (sphg_policy)policy, 0);
-            fixture_array table = stage_table(&on);
+            comparison on = comparison_under(&made, (sphg_policy)policy, 0);
+            setup_array table = comparison_table(&on);
             require_finite(&table, "C", on.name);
             for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
-                stage_field field = {SPHG_VECTOR, (sphg_form)form,
-                                     stage_random_field(&on, SPHG_VECTOR, 11)};
-                stage_result found = stage_apply(&on, &field, &table);
+                comparison_field field = {SPHG_VECTOR, (sphg_form)form,
+                                          comparison_random_field(&on, SPHG_VECTOR, 11)};
+                comparison_result found = comparison_apply(&on, &field, &table);
                 require_finite(&found.gradient, "gradient", on.name);
                 require_finite(&found.curl, "curl", on.name);
                 if (form == SPHG_DIRECT)
                     require_finite(&found.value, "value", on.name);
-                stage_field scalar = {SPHG_SCALAR, (sphg_form)form,
-                                      stage_random_field(&on, SPHG_SCALAR, 12)};
-                found = stage_apply(&on, &scalar, &table);
+                comparison_field scalar = {SPHG_SCALAR, (sphg_form)form,
+                                           comparison_random_field(&on, SPHG_SCALAR, 12)};
+                found = comparison_apply(&on, &scalar, &table);
                 require_finite(&found.square, "square", on.name);
             }
         }
@@ -84,13 +84,13 @@ static void rank_is_the_dimension_spanned(const test_case *test)
     make_scenes(test->dimension, scenes);
     for (int s = 0; s < flat_scene_count; s++)
         for (int policy = SPHG_BLEND; policy <= SPHG_TRUNCATE; policy++) {
-            stage made = stage_at(test, &scenes[s]);
-            stage on = stage_under(&made, (sphg_policy)policy, 0);
-            fixture_array rank;
+            comparison made = stage_at(test, &scenes[s]);
+            comparison on = comparison_under(&made, (sphg_policy)policy, 0);
+            setup_array rank;
             table_and_ranks(&on, &rank);
             for (int i = 0; i < on.points.count; i++)
-                TEST_REQUIRE((int)fixture_get(&rank, i, 0) == scenes[s].extent,
-                             "rank %g of particle %d, %s, policy %d", fixture_get(&rank, i, 0), i,
+                TEST_REQUIRE((int)setup_get(&rank, i, 0) == scenes[s].extent,
+                             "rank %g of particle %d, %s, policy %d", setup_get(&rank, i, 0), i,
                              on.name, policy);
         }
 }
@@ -101,12 +101,12 @@ static void identity_leaves_flat_particles_alone(const test_case *test)
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
     for (int s = 0; s < flat_scene_count; s++) {
-        stage made = stage_at(test, &scenes[s]);
-        stage on = stage_under(&made, SPHG_IDENTITY, 0);
-        fixture_array rank;
+        comparison made = stage_at(test, &scenes[s]);
+        comparison on = comparison_under(&made, SPHG_IDENTITY, 0);
+        setup_array rank;
         table_and_ranks(&on, &rank);
         for (int i = 0; i < on.points.count; i++)
-            assert_int_equal(fixture_get(&rank, i, 0), 0);
+            assert_int_equal(setup_get(&rank, i, 0), 0);
     }
 }
 
@@ -116,25 +116,25 @@ static void noise_is_never_inverted(const test_case *test)
     random_state random = random_seeded(72);
     int d = test->dimension;
     cloud points = cloud_tilted_plane(d, d == 2 ? 24 : 6, .01, &random);
-    stage made = stage_of(test, "plane of large volumes", points, .03);
+    comparison made = comparison_of(test, "plane of large volumes", points, .03);
     double *volume = test_memory((size_t)points.count * sizeof *volume);
     for (int i = 0; i < points.count; i++) /* so that u tr Mhat is far above the threshold */
         volume[i] = cloud_rounded(64 * pow(points.spacing, d) / test_unit_roundoff(test));
-    stage on = stage_with_volumes(&made, volume);
-    fixture_array rank;
+    comparison on = comparison_with_volumes(&made, volume);
+    setup_array rank;
     table_and_ranks(&on, &rank);
     for (int i = 0; i < points.count; i++)
-        TEST_REQUIRE(fixture_get(&rank, i, 0) < d, "particle %d has full rank", i);
+        TEST_REQUIRE(setup_get(&rank, i, 0) < d, "particle %d has full rank", i);
 }
 
 /* ---- Policies on an exact plane
  * ---------------------------------------------------------------------- */
 
 /* C along the normal of a plane, in units of 1 / m_ref. */
-static double normal_correction(const stage *on, const fixture_array *table, int i)
+static double normal_correction(const comparison *on, const setup_array *table, int i)
 {
     double scale = (double)oracle_at(on->reference, i)->scale;
-    return fixture_get(table, i, table->width - 1) * scale;
+    return setup_get(table, i, table->width - 1) * scale;
 }
 
 static void policies_are_what_they_say_on_a_plane(const test_case *test)
@@ -142,10 +142,10 @@ static void policies_are_what_they_say_on_a_plane(const test_case *test)
     static const double normal[] = {1, 1, 0, 1}; /* blend, replace, truncate, identity */
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
-    stage made = stage_at(test, &scenes[0]);
+    comparison made = stage_at(test, &scenes[0]);
     for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
-        stage on = stage_under(&made, (sphg_policy)policy, 0);
-        fixture_array table = stage_table(&on);
+        comparison on = comparison_under(&made, (sphg_policy)policy, 0);
+        setup_array table = comparison_table(&on);
         for (int i = 0; i < on.points.count; i++) {
             double c = normal_correction(&on, &table, i);
             double error = fabs(c - normal[policy]) / on.scene.unit;
@@ -159,18 +159,18 @@ static void gradients_within_a_plane_are_exact(const test_case *test)
     int d = test->dimension;
     flat_scene scenes[flat_scene_count];
     make_scenes(d, scenes);
-    stage made = stage_at(test, &scenes[0]);
+    comparison made = stage_at(test, &scenes[0]);
     double *numbers = test_memory((size_t)made.points.count * sizeof *numbers);
     for (int i = 0; i < made.points.count; i++)
         numbers[i] = 3 * made.points.x[i * d] - (d == 3 ? made.points.x[i * d + 1] : 0);
     double slope[3] = {3, d == 3 ? -1 : 0, 0};
     for (int policy = SPHG_BLEND; policy <= SPHG_TRUNCATE; policy++) {
-        stage on = stage_under(&made, (sphg_policy)policy, 0);
-        stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
-        stage_result found = stage_apply(&on, &field, NULL);
+        comparison on = comparison_under(&made, (sphg_policy)policy, 0);
+        comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
+        comparison_result found = comparison_apply(&on, &field, NULL);
         for (int i = 0; i < on.points.count; i++)
             for (int k = 0; k < d; k++) {
-                double error = fabs(fixture_get(&found.gradient, i, k) - slope[k]);
+                double error = fabs(setup_get(&found.gradient, i, k) - slope[k]);
                 TEST_WITHIN(flat_exactness, error / (3 * on.scene.unit), on.name);
             }
     }
@@ -187,16 +187,16 @@ static closing_step step_at(const test_case *test, sphg_policy policy, double ga
 {
     int d = test->dimension, k = 0;
     cloud points = cloud_sheets(d, 7, .25, gap);
-    stage made = stage_of(test, "closing sheets", points, .5);
-    stage on = stage_under(&made, policy, 0);
+    comparison made = comparison_of(test, "closing sheets", points, .5);
+    comparison on = comparison_under(&made, policy, 0);
     int i = points.count / 4; /* within the lower sheet */
-    fixture_array table = stage_table(&on);
+    setup_array table = comparison_table(&on);
     const oracle_point *point = oracle_at(on.reference, i);
     closing_step step = {{0}, {0}};
     for (int a = 0; a < d; a++)
         for (int b = a; b < d; b++, k++) {
             double scale = (double)point->scale;
-            step.c[a * 3 + b] = step.c[b * 3 + a] = fixture_get(&table, i, k) * scale;
+            step.c[a * 3 + b] = step.c[b * 3 + a] = setup_get(&table, i, k) * scale;
             step.m[a * 3 + b] = step.m[b * 3 + a] = (double)(point->moment[a][b] / point->scale);
         }
     return step;
@@ -251,18 +251,18 @@ static void fields_beyond_the_support_do_not_leak(const test_case *test)
     cloud points = cloud_line(d, n, .25);
     for (int k = 0; k < d; k++)
         points.x[3 * d + k] = 50;
-    stage on = stage_of(test, "line and a far one", points, .625);
+    comparison on = comparison_of(test, "line and a far one", points, .625);
     static const int64_t offsets[] = {0, 3, 6, 9, 12};
     static const int32_t indices[] = {1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2};
     sphg_lists lists = {.offsets = offsets, .indices = indices};
-    fixture_array positions = fixture_positions(test, &on.points);
-    sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
-    on.neighbors = fixture_lists(on.context, &on.scheme, &geometry, &lists);
+    setup_array positions = setup_positions(test, &on.points);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &positions);
+    on.neighbors = setup_lists(on.context, &on.scheme, &geometry, &lists);
     double numbers[] = {1, 2, 3, NAN};
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
-    stage_result found = stage_apply(&on, &field, NULL);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
+    comparison_result found = comparison_apply(&on, &field, NULL);
     for (int k = 0; k < 3 * d; k++)
-        assert_true(isfinite(fixture_get(&found.gradient, k / d, k % d)));
+        assert_true(isfinite(setup_get(&found.gradient, k / d, k % d)));
 }
 
 static void sources_without_volume_add_nothing(const test_case *test)
@@ -270,15 +270,16 @@ static void sources_without_volume_add_nothing(const test_case *test)
     random_state random = random_seeded(73);
     int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 6 : 4, .25, .2, &random);
-    stage made = stage_of(test, "block with holes", points, .625);
+    comparison made = comparison_of(test, "block with holes", points, .625);
     double *volume = cloud_volumes(&points, .2, &random);
     for (int i = 0; i < points.count; i += 4)
         volume[i] = 0;
-    stage on = stage_with_volumes(&made, volume);
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 12)};
-    stage_result found = stage_apply(&on, &field, NULL);
+    comparison on = comparison_with_volumes(&made, volume);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_SCALAR, 12)};
+    comparison_result found = comparison_apply(&on, &field, NULL);
     for (int i = 0; i < points.count; i += 5)
-        stage_compare(&on, &field, &found, i);
+        comparison_compare(&on, &field, &found, i);
 }
 
 /* KGC, RKPM, plain and CRKPM weigh by V_j; in MLS and CMLS volume does not matter. */

@@ -1,7 +1,7 @@
 /* Domains of any extent: periodic axes, and open ones that reach as far as numbers do while memory
  * stays linear in the number of particles. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <float.h>
 #include <math.h>
 #include <stdbool.h>
@@ -30,8 +30,8 @@ static void scatter_in_box(const scene *particles, double H, double periods_out,
  * faces and corners of the box occupied. */
 static void check_periods(const test_case *test, double periods_out, int list_free)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(61);
     int64_t pairs = 0;
     for (int axes = 1; axes < 1 << test->dimension; axes++)
@@ -67,8 +67,8 @@ static void positions_may_lie_outside_the_box(const test_case *test)
 /* Periods with all their bits: images one period away, so that shifting rounds once. */
 static void lengths_of_any_bits_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(67);
     for (int k = 0; k < 40; k++) {
         scene particles = scene_empty(test, 110);
@@ -84,8 +84,8 @@ static void lengths_of_any_bits_have_the_pairs_of_brute_force(const test_case *t
  * a tie. */
 static void halves_of_the_smallest_box_meet_through_its_side(const test_case *test)
 {
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     for (int k = 0; k < 200; k++) {
         scene particles = scene_empty(test, 2);
         const double given = 1.5 + 0.5 * k / 200 + 0x1p-30;
@@ -102,8 +102,8 @@ static void halves_of_the_smallest_box_meet_through_its_side(const test_case *te
  * cell there. */
 static void positions_just_outside_the_box_have_a_cell(const test_case *test)
 {
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(71);
     for (int k = 0; k < 8; k++) {
         scene particles = scene_empty(test, 110);
@@ -120,7 +120,7 @@ static void positions_just_outside_the_box_have_a_cell(const test_case *test)
 /* A lattice that fills the box looks the same from each of its points. */
 static void periodic_lattice_has_no_boundary(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
+    sphg_context *context = setup_context_of(1);
     cloud points = cloud_lattice(test->dimension, 6, 0.5);
     scene particles = scene_of_cloud(test, &points);
     for (int axis = 0; axis < test->dimension; axis++)
@@ -129,7 +129,7 @@ static void periodic_lattice_has_no_boundary(const test_case *test)
     scheme.dimension = test->dimension;
     scheme.support_radius = 1;
     const sphg_geometry geometry = scene_geometry(&particles);
-    const sphg_neighbors *neighbors = fixture_search(context, &scheme, &geometry);
+    const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
     for (int32_t i = 0; i < found.count; i++)
         assert_int_equal(found.offsets[i + 1] - found.offsets[i], test->dimension == 2 ? 8 : 26);
@@ -138,7 +138,7 @@ static void periodic_lattice_has_no_boundary(const test_case *test)
 /* Targets of their own, also across the faces. */
 static void periodic_targets_need_not_be_sources(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(71);
     scene particles = scene_empty(test, 200), others = scene_empty(test, 90);
     for (int axis = 0; axis < test->dimension; axis++)
@@ -147,19 +147,19 @@ static void periodic_targets_need_not_be_sources(const test_case *test)
     scatter_in_box(&others, 1, 2, &random);
     particles.targets = others.sources;
     particles.target_count = 90;
-    assert_true(rows_require_search_exact(context, pairs_neighbors(context), &particles, 1,
+    assert_true(rows_require_search_exact(context, brute_force_neighbors(context), &particles, 1,
                                           "own targets") > 90);
 }
 
 static void periods_shorter_than_twice_the_reach_are_refused(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     scene particles = scene_empty(test, 4);
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
     scheme.support_radius = 1;
     for (int k = 0; k < 4; k++) {
-        sphg_neighbors *neighbors = pairs_neighbors(context);
+        sphg_neighbors *neighbors = brute_force_neighbors(context);
         const double unit = test->precision == TEST_F32 ? 0x1p-24 : 0x1p-53;
         const double shorter[] = {2 * (1 - 16 * unit), 1, -5, NAN};
         sphg_geometry geometry = scene_geometry(&particles);
@@ -179,8 +179,8 @@ static void periods_shorter_than_twice_the_reach_are_refused(const test_case *te
  * one that is shorter is refused with digits that say so. */
 static void periods_of_twice_the_reach_may_be_rounded(const test_case *test)
 {
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(73);
     const bool narrow = test->precision == TEST_F32;
     const double H = narrow ? (double)nextafterf(0.1f * 3, 1) : 0.1 * 3;
@@ -214,19 +214,20 @@ static void periods_of_twice_the_reach_may_be_rounded(const test_case *test)
 enum { FIXED_BYTES = 4096, BYTES_PER_PARTICLE = 768 };
 
 /* A context whose memory is counted; one thread, so that nothing is per worker. */
-static sphg_context *counted_context(hooks **host)
+static sphg_context *counted_context(fake_host **host)
 {
-    *host = fixture_hooks();
-    const sphg_config config = hooks_config(*host, 1);
-    return fixture_context_with(&config);
+    *host = setup_hooks();
+    const sphg_config config = fake_host_config(*host, 1);
+    return setup_context_with(&config);
 }
 
 /* The most memory that was live during a search in a fresh context, and after it. */
 static int64_t peak_of(const scene *particles, double support_radius)
 {
-    hooks *host = NULL;
+    fake_host *host = NULL;
     sphg_context *context = counted_context(&host);
-    rows_require_search_exact(context, pairs_neighbors(context), particles, support_radius, "far");
+    rows_require_search_exact(context, brute_force_neighbors(context), particles, support_radius,
+                              "far");
     assert_int_equal(host->faults, 0);
     return host->peak_bytes;
 }
@@ -288,8 +289,8 @@ static void scattered_magnitudes_take_linear_memory(const test_case *test)
 /* Where floats are further apart than H, neighbours are those that coincide, whoever is next. */
 static void coincident_particles_are_neighbours_at_any_distance(const test_case *test)
 {
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     const int top = test->precision == TEST_F32 ? 38 : 308;
     for (int decade = 1; decade <= top; decade++) {
         scene particles = scene_empty(test, 12);
@@ -323,8 +324,8 @@ static void escapee_disturbs_nobody(const test_case *test)
 static void crowds_have_the_pairs_of_brute_force(const test_case *test)
 {
     enum { CROWD = 70000, TARGETS = 25 };
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(83);
     scene particles = scene_empty(test, CROWD), others = scene_empty(test, TARGETS);
     for (int k = 0; k < CROWD * test->dimension; k++)

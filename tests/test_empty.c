@@ -1,5 +1,5 @@
 /* Nothing is ordinary: an empty std::vector hands over NULL and 0, and no call minds. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include <math.h>
 #include <string.h>
 
@@ -36,23 +36,23 @@ static sphg_geometry empty_geometry(const test_case *test)
 static nobody nobody_of(const test_case *test)
 {
     const sphg_geometry geometry = empty_geometry(test);
-    nobody own = {fixture_context(), fixture_scheme(test, 1), type_of(test), NULL};
-    own.neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    nobody own = {setup_context(), setup_scheme(test, 1), type_of(test), NULL};
+    own.neighbors = setup_search(own.context, &own.scheme, &geometry);
     return own;
 }
 
 /* Fields of one particle that lies alone, a table and results for it. */
 typedef struct single {
-    fixture_array numbers, table, result;
+    setup_array numbers, table, result;
 } single;
 
 static single single_of(const nobody *own)
 {
     const double ones[16] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     const int width = sphg_correction_width(&own->scheme);
-    return (single){fixture_numbers(own->type, 1, 9, ones),
-                    fixture_numbers(own->type, 1, width ? width : 1, ones),
-                    fixture_output(own->type, 1, 9)};
+    return (single){setup_numbers(own->type, 1, 9, ones),
+                    setup_numbers(own->type, 1, width ? width : 1, ones),
+                    setup_output(own->type, 1, 9)};
 }
 
 static void every_form(const nobody *own, const sphg_sources *sources, int sets,
@@ -70,7 +70,7 @@ static void every_form(const nobody *own, const sphg_sources *sources, int sets,
                 field.divergence = gradient;
             const sphg_request request = {
                 .sources = sources, .set_count = sets, .fields = &field, .field_count = 1};
-            FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+            SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
         }
 }
 
@@ -80,29 +80,29 @@ static void every_operator_takes_an_empty_set(const test_case *test)
     const sphg_view none = sphg_absent();
     const sphg_sources sources = {.neighbors = own.neighbors};
     const single one = single_of(&own);
-    const sphg_view out = fixture_view(&one.result);
+    const sphg_view out = setup_view(&one.result);
     const sphg_view outs[] = {none, out};
     for (int k = 0; k < 2; k++) {
         every_form(&own, &sources, 1, &none, none, outs[k]);
-        FIXTURE_OK(own.context,
-                   sphg_gradient(own.context, &own.scheme, &sources, NULL, none, outs[k]));
-        FIXTURE_OK(own.context,
-                   sphg_jacobian(own.context, &own.scheme, &sources, NULL, none, outs[k]));
-        FIXTURE_OK(own.context,
-                   sphg_divergence(own.context, &own.scheme, &sources, NULL, none, outs[k]));
-        FIXTURE_OK(own.context, sphg_curl(own.context, &own.scheme, &sources, NULL, none, outs[k]));
-        FIXTURE_OK(own.context, sphg_force(own.context, &own.scheme, &sources, NULL, SPHG_SCALAR,
-                                           none, outs[k]));
+        SETUP_OK(own.context,
+                 sphg_gradient(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        SETUP_OK(own.context,
+                 sphg_jacobian(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        SETUP_OK(own.context,
+                 sphg_divergence(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        SETUP_OK(own.context, sphg_curl(own.context, &own.scheme, &sources, NULL, none, outs[k]));
+        SETUP_OK(own.context,
+                 sphg_force(own.context, &own.scheme, &sources, NULL, SPHG_SCALAR, none, outs[k]));
     }
     if (test->method != SPHG_PLAIN)
-        FIXTURE_OK(own.context,
-                   sphg_correction(own.context, &own.scheme, &sources, NULL, none, none));
+        SETUP_OK(own.context,
+                 sphg_correction(own.context, &own.scheme, &sources, NULL, none, none));
     sphg_pairs pairs = {.count = 7};
-    FIXTURE_OK(own.context,
-               sphg_pair_gradients(own.context, &own.scheme, &sources, NULL, none, &pairs));
+    SETUP_OK(own.context,
+             sphg_pair_gradients(own.context, &own.scheme, &sources, NULL, none, &pairs));
     assert_int_equal(pairs.count, 0);
-    FIXTURE_OK(own.context, sphg_neighbors_get_order(own.context, own.neighbors, NULL));
-    assert_true(fixture_is_canary(&one.result, 0));
+    SETUP_OK(own.context, sphg_neighbors_get_order(own.context, own.neighbors, NULL));
+    assert_true(setup_is_canary(&one.result, 0));
 }
 
 /* Its views are the precision that the geometry named: others are refused, as for any set. */
@@ -111,17 +111,17 @@ static void an_empty_set_has_the_type_of_its_views(const test_case *test)
     const nobody own = nobody_of(test);
     const single one = single_of(&own);
     const sphg_view none = sphg_absent();
-    sphg_sources sources = {.neighbors = own.neighbors, .volume = fixture_view(&one.numbers)};
-    every_form(&own, &sources, 1, &none, none, fixture_view(&one.result));
+    sphg_sources sources = {.neighbors = own.neighbors, .volume = setup_view(&one.numbers)};
+    every_form(&own, &sources, 1, &none, none, setup_view(&one.result));
     sources.volume.type = own.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &none};
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
     assert_int_equal(sphg_evaluate(own.context, &own.scheme, &request), SPHG_ERROR_TYPE);
     const sphg_geometry named = {.precision = own.type};
-    sources.neighbors = fixture_search(own.context, &own.scheme, &named);
+    sources.neighbors = setup_search(own.context, &own.scheme, &named);
     sources.volume.type = own.type;
-    FIXTURE_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+    SETUP_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
 }
 
 /* One particle alone, and as the target of nobody. */
@@ -129,9 +129,9 @@ static void place_one(const test_case *test, sphg_geometry *alone, sphg_geometry
 {
     const double origin[3] = {0};
     const sphg_type at = test->precision == TEST_F32 ? SPHG_F32 : SPHG_F64;
-    const fixture_array place = fixture_numbers(at, 1, test->dimension, origin);
+    const setup_array place = setup_numbers(at, 1, test->dimension, origin);
     *alone = *beside = empty_geometry(test);
-    alone->sources = beside->targets = fixture_view(&place);
+    alone->sources = beside->targets = setup_view(&place);
     alone->source_count = alone->target_count = beside->target_count = 1;
 }
 
@@ -142,17 +142,16 @@ static void an_empty_set_beside_another_adds_nothing(const test_case *test)
     const single one = single_of(&own);
     sphg_geometry alone, beside;
     place_one(test, &alone, &beside);
-    const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
+    const sphg_view ones = setup_view(&one.numbers), none = sphg_absent();
     const sphg_view of_nobody[] = {ones, none};
-    const sphg_sources sources[] = {
-        {.neighbors = fixture_search(own.context, &own.scheme, &alone),
-         .volume = ones,
-         .density = ones,
-         .correction = fixture_view(&one.table)},
-        {.neighbors = fixture_search(own.context, &own.scheme, &beside)}};
-    every_form(&own, sources, 2, of_nobody, none, fixture_view(&one.result));
+    const sphg_sources sources[] = {{.neighbors = setup_search(own.context, &own.scheme, &alone),
+                                     .volume = ones,
+                                     .density = ones,
+                                     .correction = setup_view(&one.table)},
+                                    {.neighbors = setup_search(own.context, &own.scheme, &beside)}};
+    every_form(&own, sources, 2, of_nobody, none, setup_view(&one.result));
     for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
-        assert_false(fixture_get(&one.result, 0, c) != fixture_get(&one.result, 0, c));
+        assert_false(setup_get(&one.result, 0, c) != setup_get(&one.result, 0, c));
 }
 
 /* A second and a third set beside one particle, nobody in either. */
@@ -162,18 +161,17 @@ static void a_third_set_of_nobody_adds_nothing(const test_case *test)
     const single one = single_of(&own);
     sphg_geometry alone, beside;
     place_one(test, &alone, &beside);
-    const sphg_view ones = fixture_view(&one.numbers), none = sphg_absent();
+    const sphg_view ones = setup_view(&one.numbers), none = sphg_absent();
     const sphg_view fields[] = {none, ones, none};
-    const sphg_sources sources[] = {
-        {.neighbors = fixture_search(own.context, &own.scheme, &beside)},
-        {.neighbors = fixture_search(own.context, &own.scheme, &alone),
-         .volume = ones,
-         .density = ones,
-         .correction = fixture_view(&one.table)},
-        {.neighbors = fixture_search(own.context, &own.scheme, &beside)}};
-    every_form(&own, sources, 3, fields, none, fixture_view(&one.result));
+    const sphg_sources sources[] = {{.neighbors = setup_search(own.context, &own.scheme, &beside)},
+                                    {.neighbors = setup_search(own.context, &own.scheme, &alone),
+                                     .volume = ones,
+                                     .density = ones,
+                                     .correction = setup_view(&one.table)},
+                                    {.neighbors = setup_search(own.context, &own.scheme, &beside)}};
+    every_form(&own, sources, 3, fields, none, setup_view(&one.result));
     for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
-        assert_true(isfinite(fixture_get(&one.result, 0, c)));
+        assert_true(isfinite(setup_get(&one.result, 0, c)));
 }
 
 /* Without lists, and with a skin, again and again. */
@@ -188,20 +186,20 @@ static void every_search_finds_nobody(const test_case *test)
     geometries[2].precision = own.type;
     const sphg_view none = sphg_absent();
     for (int k = 0; k < 3; k++) {
-        sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometries[k]);
+        sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &geometries[k]);
         const sphg_sources sources = {.neighbors = neighbors};
         for (int round = 0; round < 2; round++) {
-            FIXTURE_OK(own.context,
-                       sphg_neighbors_search(own.context, neighbors, &own.scheme, &geometries[k]));
+            SETUP_OK(own.context,
+                     sphg_neighbors_search(own.context, neighbors, &own.scheme, &geometries[k]));
             every_form(&own, &sources, 1, &none, none, none);
         }
         sphg_sources typed = sources;
         const single one = single_of(&own);
-        typed.volume = fixture_view(&one.numbers); /* of the precision that was asked for */
-        every_form(&own, &typed, 1, &none, none, fixture_view(&one.result));
-        assert_true(fixture_is_canary(&one.result, 0));
+        typed.volume = setup_view(&one.numbers); /* of the precision that was asked for */
+        every_form(&own, &typed, 1, &none, none, setup_view(&one.result));
+        assert_true(setup_is_canary(&one.result, 0));
         sphg_neighbors_info info;
-        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
+        SETUP_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
         assert_int_equal(info.pairs, 0);
     }
 }
@@ -219,13 +217,13 @@ static void lists_of_nobody_are_lists(const test_case *test)
                                 {.rows = &row},
                                 {.lengths = &unused}};
     for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
-        own.neighbors = fixture_lists(own.context, &own.scheme, &geometry, &lists[k]);
+        own.neighbors = setup_lists(own.context, &own.scheme, &geometry, &lists[k]);
         const sphg_sources sources = {.neighbors = own.neighbors};
         const sphg_view none = sphg_absent();
         every_form(&own, &sources, 1, &none, none, none);
-        FIXTURE_OK(own.context, sphg_neighbors_get_order(own.context, own.neighbors, NULL));
+        SETUP_OK(own.context, sphg_neighbors_get_order(own.context, own.neighbors, NULL));
         sphg_neighbors_info info;
-        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, own.neighbors, &info));
+        SETUP_OK(own.context, sphg_neighbors_get_info(own.context, own.neighbors, &info));
         assert_int_equal(info.pairs, 0);
     }
 }
@@ -235,9 +233,9 @@ static void batches_of_no_matrices_are_done(const test_case *test)
     const nobody own = nobody_of(test);
     const sphg_view none = sphg_absent();
     const sphg_inversion wanted = {.stats = NULL};
-    FIXTURE_OK(own.context, sphg_eigen(own.context, test->dimension, 0, none, none, none));
-    FIXTURE_OK(own.context, sphg_svd(own.context, 0, none, none, none, none));
-    FIXTURE_OK(own.context, sphg_invert_moments(own.context, &own.scheme, 0, none, none, &wanted));
+    SETUP_OK(own.context, sphg_eigen(own.context, test->dimension, 0, none, none, none));
+    SETUP_OK(own.context, sphg_svd(own.context, 0, none, none, none, none));
+    SETUP_OK(own.context, sphg_invert_moments(own.context, &own.scheme, 0, none, none, &wanted));
 }
 
 static const test_entry entries[] = {

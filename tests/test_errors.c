@@ -1,6 +1,6 @@
 /* Every way to say no: contexts, neighbours and small matrices refuse bad arguments with the right
  * code and a message that names the argument, write nothing, and work on the next call. */
-#include "support/victim_calls.h"
+#include "support/public_calls.h"
 #include <limits.h>
 #include <locale.h>
 #include <math.h>
@@ -93,7 +93,7 @@ static void context_refuses_bad_configurations(const test_case *test)
 #ifdef __x86_64__
 static void require_path(sphg_isa isa, int expected, const char *name)
 {
-    TEST_REQUIRE((fixture_context_on(isa) != NULL) == expected, "%s is %s", name,
+    TEST_REQUIRE((setup_context_on(isa) != NULL) == expected, "%s is %s", name,
                  expected ? "refused" : "accepted");
 }
 #endif
@@ -102,7 +102,7 @@ static void require_path(sphg_isa isa, int expected, const char *name)
 static void each_path_of_the_processor_can_be_asked_for(const test_case *test)
 {
     (void)test;
-    assert_non_null(fixture_context_on(SPHG_ISA_BEST));
+    assert_non_null(setup_context_on(SPHG_ISA_BEST));
 #ifdef __x86_64__
     const int built = !getenv("SPHG_TEST_BASELINE_ALONE"); /* another library in its place */
     const int v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
@@ -121,11 +121,11 @@ static void no_configuration_is_the_default(const test_case *test)
 {
     (void)test;
     sphg_context *context = NULL;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, NULL, &context));
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, NULL, &context));
     const double matrix[6] = {2, 0, 0, 1, 0, 3}, sorted[3] = {3, 2, 1};
     double values[3];
-    FIXTURE_OK(context, sphg_eigen(context, 3, 1, sphg_view_f64(matrix, sizeof matrix),
-                                   sphg_view_f64(values, sizeof values), sphg_absent()));
+    SETUP_OK(context, sphg_eigen(context, 3, 1, sphg_view_f64(matrix, sizeof matrix),
+                                 sphg_view_f64(values, sizeof values), sphg_absent()));
     assert_memory_equal(values, sorted, sizeof sorted);
     sphg_context_destroy(context);
 }
@@ -146,7 +146,7 @@ static void context_refuses_the_instruction_set_of_another_machine(const test_ca
 static void null_handles_are_refused_and_nothing_is_destroyed_twice(const test_case *test)
 {
     (void)test;
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     sphg_neighbors *neighbors = NULL;
     sphg_context_destroy(NULL);
     sphg_neighbors_destroy(NULL);
@@ -160,17 +160,18 @@ static void null_handles_are_refused_and_nothing_is_destroyed_twice(const test_c
 
 /* ---- Builds ------------------------------------------------------------------------------- */
 
-#define REFUSES(call, expected, words, change) VICTIM_REFUSES(own, call, expected, words, change)
+#define REFUSES(call, expected, words, change)                                                     \
+    VALID_CALL_REFUSES(own, call, expected, words, change)
 
 static void *shifted(const void *memory, ptrdiff_t bytes)
 {
     return (void *)((uintptr_t)memory + (uintptr_t)bytes);
 }
 
-typedef sphg_result victim_call(victim *own);
+typedef sphg_result victim_call(valid_call *own);
 
 /* What search and use_lists have in common. */
-static void refuse_bad_geometry(victim *own, victim_call *call)
+static void refuse_bad_geometry(valid_call *own, victim_call *call)
 {
     const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     REFUSES(call, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
@@ -183,11 +184,11 @@ static void refuse_bad_geometry(victim *own, victim_call *call)
         REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius", own->scheme.support_radius = radii[k]);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "source_count", own->geometry.source_count = -1);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "target_count", own->geometry.target_count = -1);
-    REFUSES(call, VICTIM_REFUSED, "target_count", own->geometry.source_count = 10);
+    REFUSES(call, VALID_CALL_REFUSED, "target_count", own->geometry.source_count = 10);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.x = NULL);
-    REFUSES(call, VICTIM_REFUSED, "sources", own->geometry.sources.type = SPHG_U8);
-    REFUSES(call, VICTIM_REFUSED, "sources", own->geometry.sources.type = (sphg_type)0);
-    REFUSES(call, VICTIM_REFUSED, "sources", own->geometry.sources.type = (sphg_type)17);
+    REFUSES(call, VALID_CALL_REFUSED, "sources", own->geometry.sources.type = SPHG_U8);
+    REFUSES(call, VALID_CALL_REFUSED, "sources", own->geometry.sources.type = (sphg_type)0);
+    REFUSES(call, VALID_CALL_REFUSED, "sources", own->geometry.sources.type = (sphg_type)17);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources", own->geometry.sources.stride += 1);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
             own->geometry.sources.x = shifted(own->geometry.sources.x, 1));
@@ -197,8 +198,8 @@ static void refuse_bad_geometry(victim *own, victim_call *call)
             own->geometry.targets.stride = 0);
     REFUSES(call, SPHG_ERROR_TYPE, "targets", own->geometry.targets = own->position_view;
             own->geometry.targets.type = other);
-    REFUSES(call, VICTIM_REFUSED, "precision", own->geometry.precision = SPHG_U8);
-    REFUSES(call, VICTIM_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
+    REFUSES(call, VALID_CALL_REFUSED, "precision", own->geometry.precision = SPHG_U8);
+    REFUSES(call, VALID_CALL_REFUSED, "precision", own->geometry.precision = (sphg_type)-1);
     const int d = own->test->dimension, single = own->test->precision == TEST_F32;
     /* H and H^2 are in range, H^-d is not */
     REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius",
@@ -217,7 +218,7 @@ static void refuse_bad_geometry(victim *own, victim_call *call)
 
 static void builds_refuse_bad_geometry(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     refuse_bad_geometry(own, call_search);
     refuse_bad_geometry(own, call_use_lists);
     const double skins[] = {-0.25, NAN, INFINITY};
@@ -236,7 +237,7 @@ static void builds_refuse_bad_geometry(const test_case *test)
         SPHG_ERROR_ARGUMENT);
 }
 
-static void put(victim *own, int item, double value)
+static void put(valid_call *own, int item, double value)
 {
     const int k = item * own->test->dimension + item % own->test->dimension;
     if (own->position_view.type == SPHG_F64)
@@ -245,7 +246,7 @@ static void put(victim *own, int item, double value)
         ((float *)(uintptr_t)own->position_view.x)[k] = (float)value;
 }
 
-static double get(const victim *own, int item)
+static double get(const valid_call *own, int item)
 {
     const int k = item * own->test->dimension + item % own->test->dimension;
     return own->position_view.type == SPHG_F64
@@ -256,34 +257,33 @@ static double get(const victim *own, int item)
 /* The first bad particle is named; targets of their own are looked at as well. */
 static void builds_refuse_positions_that_are_not_finite(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    const int items[] = {0, 31, VICTIM_COUNT - 1};
+    valid_call *own = valid_call_create_plain(test);
+    const int items[] = {0, 31, VALID_CALL_COUNT - 1};
     const double values[] = {NAN, INFINITY, -INFINITY};
     for (int k = 0; k < 9; k++) {
         const int item = items[k % 3];
-        const double kept = get(own, item), last = get(own, VICTIM_COUNT - 1);
+        const double kept = get(own, item), last = get(own, VALID_CALL_COUNT - 1);
         const char *name = test_text("[%d]", item);
         for (int lists = 0; lists < 2; lists++) {
-            victim_reset(own);
-            put(own, VICTIM_COUNT - 1, NAN);
+            valid_call_reset(own);
+            put(own, VALID_CALL_COUNT - 1, NAN);
             put(own, item, values[k / 3]);
-            victim_require(own, lists ? call_use_lists(own) : call_search(own),
-                           SPHG_ERROR_NOT_FINITE, name, "position");
+            valid_call_require(own, lists ? call_use_lists(own) : call_search(own),
+                               SPHG_ERROR_NOT_FINITE, name, "position");
             put(own, item, kept);
-            put(own, VICTIM_COUNT - 1, last);
+            put(own, VALID_CALL_COUNT - 1, last);
             assert_int_equal(lists ? call_use_lists(own) : call_search(own), SPHG_OK);
         }
     }
-    fixture_array bad = fixture_output(own->position_view.type, 3, test->dimension);
+    setup_array bad = setup_output(own->position_view.type, 3, test->dimension);
     memset(bad.data, 0xff, (size_t)(3 * test->dimension) * (test->precision == TEST_F64 ? 8 : 4));
-    REFUSES(call_search, SPHG_ERROR_NOT_FINITE, "targets",
-            own->geometry.targets = fixture_view(&bad);
+    REFUSES(call_search, SPHG_ERROR_NOT_FINITE, "targets", own->geometry.targets = setup_view(&bad);
             own->geometry.target_count = 3);
 }
 
 static void trusted_contexts_still_check_arguments(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     sphg_config config = {.isa = test_isa()};
     config.trusted = 1;
     sphg_context *context = NULL;
@@ -309,9 +309,9 @@ static int32_t no_row(int32_t target, int32_t worker, const int32_t **indices, v
 
 static void lists_are_refused_unless_one_group_is_whole(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    const int32_t *rows[VICTIM_COUNT] = {0};
-    const int32_t lengths[VICTIM_COUNT] = {0};
+    valid_call *own = valid_call_create_plain(test);
+    const int32_t *rows[VALID_CALL_COUNT] = {0};
+    const int32_t lengths[VALID_CALL_COUNT] = {0};
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "lists", own->lists_given = NULL);
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "lists",
             memset(&own->lists, 0, sizeof own->lists));
@@ -328,15 +328,15 @@ static void lists_are_refused_unless_one_group_is_whole(const test_case *test)
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = 1);
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[0] = -1);
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[9] = own->offsets[8] - 1);
-    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[VICTIM_COUNT] = 0);
+    REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "offsets", own->offsets[VALID_CALL_COUNT] = 0);
 }
 
 static void reports_refuse_bad_handles(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     sphg_neighbors_info info = {0};
     sphg_context_info context_info = {0};
-    int32_t order[VICTIM_COUNT];
+    int32_t order[VALID_CALL_COUNT];
     assert_int_equal(sphg_context_get_info(own->context, NULL), SPHG_ERROR_ARGUMENT);
     assert_int_equal(sphg_context_get_info(NULL, &context_info), SPHG_ERROR_ARGUMENT);
     REFUSES(call_get_info, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
@@ -352,7 +352,7 @@ static void reports_refuse_bad_handles(const test_case *test)
 
 static void inversion_refuses_bad_arguments(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const double thresholds[] = {-0.01, 1, 2, NAN, INFINITY};
     for (int k = 0; k < 5; k++)
@@ -395,7 +395,7 @@ static void inversion_refuses_bad_arguments(const test_case *test)
 
 static void eigen_and_svd_refuse_bad_arguments(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const int dimensions[] = {1, 4, -1, INT_MAX};
     for (int k = 0; k < 4; k++)
@@ -433,7 +433,7 @@ static double number_behind(const char *message, const char *words)
     return value;
 }
 
-static void require_number(victim *own, const char *words, double value)
+static void require_number(valid_call *own, const char *words, double value)
 {
     const char *message = sphg_last_message(own->context);
     TEST_REQUIRE(number_behind(message, words) == value, "not %.17g: %s", value, message);
@@ -441,11 +441,11 @@ static void require_number(victim *own, const char *words, double value)
 
 #define SHOWS(call, name, value)                                                                   \
     do {                                                                                           \
-        REFUSES(call, VICTIM_REFUSED, "", own->name = value);                                      \
+        REFUSES(call, VALID_CALL_REFUSED, "", own->name = value);                                  \
         own->name = value;                                                                         \
         assert_int_not_equal(call(own), SPHG_OK);                                                  \
         require_number(own, #name " is ", value);                                                  \
-        victim_reset(own);                                                                         \
+        valid_call_reset(own);                                                                     \
     } while (0)
 
 /* A value beyond its limit by a rounding is not printed as the limit, in the host's locale either
@@ -457,7 +457,7 @@ static void messages_print_numbers_that_read_back(const test_case *test)
         assert_non_null(setlocale(LC_NUMERIC, locale));
         assert_string_not_equal(localeconv()->decimal_point, ".");
     }
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const double above_one[] = {1, nextafter(1, 2), 1.0000000001, 1.1, 1e300};
     const double below_zero[] = {-5e-324, -1e-9, -0.1, -1.0 / 3, -123456789};
     for (int k = 0; k < 5; k++) {
@@ -472,7 +472,7 @@ static void messages_print_numbers_that_read_back(const test_case *test)
     own->geometry.period[1] = 2 * own->scheme.support_radius * (1 - 1e-6);
     call_search(own);
     require_number(own, "(H + skin) = ", 2 * own->scheme.support_radius);
-    victim_reset(own);
+    valid_call_reset(own);
     SHOWS(call_search, scheme.support_radius,
           test->precision == TEST_F32 ? 1.0000000001e20 : 1.1e200);
     setlocale(LC_NUMERIC, "C");
@@ -485,7 +485,7 @@ static void correction_width_is_that_of_the_method(const test_case *test)
 {
     const int32_t classic = test->dimension == 2 ? 9 : 16, linear = test->dimension == 2 ? 3 : 6;
     for (int method = 0; method < 6; method++) {
-        sphg_scheme scheme = fixture_scheme(test, 1);
+        sphg_scheme scheme = setup_scheme(test, 1);
         scheme.method = (sphg_method)method;
         const int32_t expected = method == SPHG_PLAIN                          ? 0
                                  : method == SPHG_CMLS || method == SPHG_CRKPM ? classic

@@ -1,7 +1,7 @@
 /* First-order exactness: linear fields have their exact gradient at every particle of full rank,
  * wherever it lies. Positions are multiples of 2^-10 and fields have small integer slopes, so
  * that fields are exact in f32 too and all error is the library's own. */
-#include "support/lacking.h"
+#include "support/incomplete_lists.h"
 
 /* ---- Scenes ---------------------------------------------------------------------------------- */
 
@@ -40,11 +40,11 @@ static cloud make_cloud(const exact_scene *scene, int d)
     }
 }
 
-static stage make_stage(const test_case *test, const exact_scene *scene)
+static comparison make_stage(const test_case *test, const exact_scene *scene)
 {
     cloud points = make_cloud(scene, test->dimension);
     cloud_snap(&points, 0x1p-10);
-    return stage_of(test, scene->name, points, scene->support * .25);
+    return comparison_of(test, scene->name, points, scene->support * .25);
 }
 
 /* v(x) = v0 + J x. */
@@ -73,38 +73,37 @@ static double size_of(const double *numbers, int count)
  */
 
 typedef struct quality {
-    fixture_array rank, lambda;
+    setup_array rank, lambda;
     int full; /* how many */
 } quality;
 
-static quality judge(const stage *on)
+static quality judge(const comparison *on)
 {
-    quality found = {fixture_output(SPHG_U8, on->points.count, 1),
-                     fixture_output(test_field_type(on->test), on->points.count, 1), 0};
-    sphg_sources sources = stage_sources(on);
+    quality found = {setup_output(SPHG_U8, on->points.count, 1),
+                     setup_output(test_field_type(on->test), on->points.count, 1), 0};
+    sphg_sources sources = comparison_sources(on);
     sphg_request request = {.sources = &sources, .set_count = 1};
-    request.rank = fixture_view(&found.rank);
-    request.lambda_min = fixture_view(&found.lambda);
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    request.rank = setup_view(&found.rank);
+    request.lambda_min = setup_view(&found.lambda);
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     for (int i = 0; i < on->points.count; i++)
-        found.full += fixture_get(&found.rank, i, 0) == on->points.dimension;
+        found.full += setup_get(&found.rank, i, 0) == on->points.dimension;
     return found;
 }
 
 /* |found - exact| in units of u |scale| / lambda_min; negative where the rank is not full. */
-static double error_of(const stage *on, const quality *good, const fixture_array *found, int i,
+static double error_of(const comparison *on, const quality *good, const setup_array *found, int i,
                        const double *exact, double scale)
 {
-    if (fixture_get(&good->rank, i, 0) != on->points.dimension)
+    if (setup_get(&good->rank, i, 0) != on->points.dimension)
         return -1;
     double error[9];
     for (int k = 0; k < found->width; k++)
-        error[k] = fixture_get(found, i, k) - exact[k];
-    return size_of(error, found->width) * fixture_get(&good->lambda, i, 0) /
-           (scale * on->scene.unit);
+        error[k] = setup_get(found, i, k) - exact[k];
+    return size_of(error, found->width) * setup_get(&good->lambda, i, 0) / (scale * on->scene.unit);
 }
 
-static void require_exact(const stage *on, const quality *good, const fixture_array *found,
+static void require_exact(const comparison *on, const quality *good, const setup_array *found,
                           const double *exact, double scale, const char *what)
 {
     const char *where = test_text("%s, %s, %s", what, on->name, test_method_name(on->test->method));
@@ -118,7 +117,7 @@ static int is_smooth(sphg_kernel kernel)
            kernel == SPHG_WENDLAND_C6;
 }
 
-static void require_full_ranks(const stage *on, const quality *good, const exact_scene *scene)
+static void require_full_ranks(const comparison *on, const quality *good, const exact_scene *scene)
 {
     double least = scene->full_rank * (is_smooth(on->test->kernel) ? .3 : 1);
     TEST_REQUIRE(good->full >= least * on->points.count, "only %d of %d have full rank: %s",
@@ -131,7 +130,7 @@ static void require_full_ranks(const stage *on, const quality *good, const exact
 static const double jacobians[2][9] = {{2, -1, 3, -2}, {2, -1, 0, 3, -2, 1, 1, 0, 3}};
 static const double start[] = {1, -2, .5};
 
-static void check_linear(const stage *on, const quality *good, sphg_form form)
+static void check_linear(const comparison *on, const quality *good, sphg_form form)
 {
     int d = on->points.dimension;
     const double *j = jacobians[d - 2];
@@ -139,8 +138,8 @@ static void check_linear(const stage *on, const quality *good, sphg_form form)
     double curl[3] = {j[2] - j[1], 0, 0};
     if (d == 3)
         curl[0] = j[7] - j[5], curl[1] = j[2] - j[6], curl[2] = j[3] - j[1];
-    stage_field field = {SPHG_VECTOR, form, linear_vectors(&on->points, start, j)};
-    stage_result found = stage_apply(on, &field, NULL);
+    comparison_field field = {SPHG_VECTOR, form, linear_vectors(&on->points, start, j)};
+    comparison_result found = comparison_apply(on, &field, NULL);
     /* The direct form cancels the constant part: sum |A_j| / H instead of |J|. */
     double scale = form == SPHG_DIRECT ? 16 * size : size;
     require_exact(on, good, &found.gradient, j, scale, "gradient");
@@ -151,7 +150,7 @@ static void check_linear(const stage *on, const quality *good, sphg_form form)
 static void linear_fields_are_exact(const test_case *test)
 {
     for (int s = 0; s < exact_scene_count; s++) {
-        stage on = make_stage(test, &exact_scenes[s]);
+        comparison on = make_stage(test, &exact_scenes[s]);
         quality good = judge(&on);
         require_full_ranks(&on, &good, &exact_scenes[s]);
         check_linear(&on, &good, SPHG_DIFFERENCE);
@@ -163,9 +162,9 @@ static void linear_fields_are_exact(const test_case *test)
 /* Corrections come from the lists that are summed: what is missing costs rank, not exactness. */
 static void linear_fields_are_exact_on_lists_that_lack_pairs(const test_case *test)
 {
-    const stage whole = make_stage(test, &exact_scenes[jittered]);
-    for (int lack = 0; lack < STAGE_LACKS; lack++) {
-        const stage on = stage_lacking(&whole, (stage_lack)lack);
+    const comparison whole = make_stage(test, &exact_scenes[jittered]);
+    for (int lack = 0; lack < COMPARISON_LACKS; lack++) {
+        const comparison on = comparison_lacking(&whole, (comparison_lack)lack);
         const quality good = judge(&on);
         TEST_REQUIRE(good.full >= .7 * on.points.count, "only %d: %s", good.full, on.name);
         check_linear(&on, &good, SPHG_DIFFERENCE);
@@ -176,17 +175,17 @@ static void linear_fields_are_exact_on_lists_that_lack_pairs(const test_case *te
 
 static void corrections_of_other_lists_are_far_from_exact(const test_case *test)
 {
-    const stage whole = make_stage(test, &exact_scenes[jittered]);
+    const comparison whole = make_stage(test, &exact_scenes[jittered]);
     const double *j = jacobians[test->dimension - 2];
-    const fixture_array table = stage_table(&whole);
-    const stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
-                               linear_vectors(&whole.points, start, j)};
-    for (int lack = 0; lack < STAGE_LACKS; lack++) {
-        const stage on = stage_lacking(&whole, (stage_lack)lack);
-        const stage_result found = stage_apply(&on, &field, &table);
+    const setup_array table = comparison_table(&whole);
+    const comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                                    linear_vectors(&whole.points, start, j)};
+    for (int lack = 0; lack < COMPARISON_LACKS; lack++) {
+        const comparison on = comparison_lacking(&whole, (comparison_lack)lack);
+        const comparison_result found = comparison_apply(&on, &field, &table);
         double worst = 0;
         for (int i = 0; i < on.points.count; i++)
-            worst = test_larger(worst, fabs(fixture_get(&found.gradient, i, 0) - j[0]));
+            worst = test_larger(worst, fabs(setup_get(&found.gradient, i, 0) - j[0]));
         TEST_REQUIRE(worst > .2, "off by %g only: %s", worst, on.name);
     }
 }
@@ -196,7 +195,7 @@ static void linear_scalars_and_tensors_are_exact(const test_case *test)
     int d = test->dimension;
     static const double slope[] = {3, -2, 1};
     for (int s = 0; s < exact_scene_count; s++) {
-        stage on = make_stage(test, &exact_scenes[s]);
+        comparison on = make_stage(test, &exact_scenes[s]);
         quality good = judge(&on);
         double *scalars = test_memory((size_t)on.points.count * sizeof *scalars);
         double *tensors = test_memory((size_t)(on.points.count * d * d) * sizeof *tensors);
@@ -206,14 +205,14 @@ static void linear_scalars_and_tensors_are_exact(const test_case *test)
             for (int k = 0; k < d * d; k++)
                 tensors[i * d * d + k] = (k + 1) * scalars[i];
         }
-        stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, scalars};
-        stage_result found = stage_apply(&on, &field, NULL);
+        comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, scalars};
+        comparison_result found = comparison_apply(&on, &field, NULL);
         require_exact(&on, &good, &found.gradient, slope, size_of(slope, d), "scalar gradient");
         double divergence[3] = {0};
         for (int k = 0; k < d * d; k++)
             divergence[k / d] += (k + 1) * slope[k % d];
-        field = (stage_field){SPHG_TENSOR, SPHG_DIFFERENCE, tensors};
-        found = stage_apply(&on, &field, NULL);
+        field = (comparison_field){SPHG_TENSOR, SPHG_DIFFERENCE, tensors};
+        found = comparison_apply(&on, &field, NULL);
         require_exact(&on, &good, &found.divergence, divergence, 20 * size_of(slope, d),
                       "tensor divergence");
     }
@@ -229,11 +228,12 @@ static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_c
     const double *spin = spins[d - 2], none = 0;
     double curl[3] = {4, 2, 6}, size = size_of(spin, d * d);
     for (int s = 0; s < exact_scene_count; s++) {
-        stage on = make_stage(test, &exact_scenes[s]);
+        comparison on = make_stage(test, &exact_scenes[s]);
         quality good = judge(&on);
-        stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, linear_vectors(&on.points, NULL, spin)};
-        stage_result found = stage_apply(&on, &field, NULL);
-        double *numbers = fixture_doubles(&found.gradient), zeros[9] = {0};
+        comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                                  linear_vectors(&on.points, NULL, spin)};
+        comparison_result found = comparison_apply(&on, &field, NULL);
+        double *numbers = setup_doubles(&found.gradient), zeros[9] = {0};
         for (int i = 0; i < on.points.count; i++)
             for (int a = 0; a < d; a++)
                 for (int b = a; b < d; b++) {
@@ -241,7 +241,7 @@ static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_c
                     double *right = &numbers[i * d * d + b * d + a];
                     *left = *right = (*left + *right) / 2;
                 }
-        fixture_array strain = fixture_numbers(SPHG_F64, on.points.count, d * d, numbers);
+        setup_array strain = setup_numbers(SPHG_F64, on.points.count, d * d, numbers);
         require_exact(&on, &good, &strain, zeros, size, "strain");
         require_exact(&on, &good, &found.divergence, &none, size, "divergence");
         require_exact(&on, &good, &found.curl, curl, size, "curl");
@@ -251,23 +251,23 @@ static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_c
 /* ---- Constants ----------------------------------------------------------------------------------
  */
 
-static void require_zero(const fixture_array *found, const char *what)
+static void require_zero(const setup_array *found, const char *what)
 {
     for (int k = 0; k < found->count * found->width; k++)
-        TEST_REQUIRE(fixture_get(found, k / found->width, k % found->width) == 0, "%s, number %d",
+        TEST_REQUIRE(setup_get(found, k / found->width, k % found->width) == 0, "%s, number %d",
                      what, k);
 }
 
 static void constants_have_exactly_no_derivative(const test_case *test)
 {
     for (int s = 0; s < exact_scene_count; s++) {
-        stage on = make_stage(test, &exact_scenes[s]);
+        comparison on = make_stage(test, &exact_scenes[s]);
         int total = on.points.count * on.points.dimension;
         double *field = test_memory((size_t)total * sizeof *field);
         for (int k = 0; k < total; k++)
             field[k] = .1 + k % on.points.dimension;
-        stage_field constant = {SPHG_VECTOR, SPHG_DIFFERENCE, field};
-        stage_result found = stage_apply(&on, &constant, NULL);
+        comparison_field constant = {SPHG_VECTOR, SPHG_DIFFERENCE, field};
+        comparison_result found = comparison_apply(&on, &constant, NULL);
         require_zero(&found.gradient, "gradient");
         require_zero(&found.divergence, "divergence");
         require_zero(&found.curl, "curl");
@@ -279,16 +279,16 @@ static void constants_have_exactly_no_derivative(const test_case *test)
 
 static void plain_sph_is_far_from_exact(const test_case *test)
 {
-    stage on = make_stage(test, &exact_scenes[lattice]);
+    comparison on = make_stage(test, &exact_scenes[lattice]);
     int d = test->dimension;
     const double *j = jacobians[d - 2];
-    stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, linear_vectors(&on.points, start, j)};
-    stage_result found = stage_apply(&on, &field, NULL);
+    comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, linear_vectors(&on.points, start, j)};
+    comparison_result found = comparison_apply(&on, &field, NULL);
     double worst = 0;
     for (int i = 0; i < on.points.count; i++) {
         double error[9];
         for (int k = 0; k < d * d; k++)
-            error[k] = fixture_get(&found.gradient, i, k) - j[k];
+            error[k] = setup_get(&found.gradient, i, k) - j[k];
         worst = test_larger(worst, size_of(error, d * d) / size_of(j, d * d));
     }
     TEST_REQUIRE(worst > .3, "the error at corners is only %g", worst);

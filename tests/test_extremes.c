@@ -1,9 +1,9 @@
 /* Sizes and distances that break grids and 32-bit counts: an escapee, everybody in one cell, more
  * than 2^31 pairs. SPHG_TEST_LONG=1 takes a million particles. */
-#include "support/fixture.h"
-#include "support/hooks.h"
-#include "support/long.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/fake_host.h"
+#include "support/long_counts.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -52,9 +52,9 @@ static host *host_of(size_t most)
                                 .allocate = allocate_limited,
                                 .release = release_limited,
                                 .user = &own->limit};
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->context));
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->context));
     test_at_end(close_host, own);
-    FIXTURE_OK(own->context, sphg_neighbors_create(own->context, &own->neighbors));
+    SETUP_OK(own->context, sphg_neighbors_create(own->context, &own->neighbors));
     return own;
 }
 
@@ -75,31 +75,31 @@ typedef struct cost {
 } cost;
 
 /* A search in a fresh context, at its peak. */
-static cost cost_of_search(const test_case *test, const fixture_array *positions)
+static cost cost_of_search(const test_case *test, const setup_array *positions)
 {
     cost found = {0, 0, INFINITY};
-    const sphg_scheme scheme = fixture_scheme(test, 1);
-    sphg_geometry geometry = {.sources = fixture_view(positions)};
+    const sphg_scheme scheme = setup_scheme(test, 1);
+    sphg_geometry geometry = {.sources = setup_view(positions)};
     geometry.source_count = geometry.target_count = positions->count;
     for (int repeat = 0; repeat < 3; repeat++) {
-        hooks own;
+        fake_host own;
         sphg_context *context = NULL;
         sphg_neighbors *neighbors = NULL;
         sphg_neighbors_info info;
-        hooks_open(&own);
-        const sphg_config config = hooks_config(&own, 2);
-        FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
-        FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
-        FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+        fake_host_open(&own);
+        const sphg_config config = fake_host_config(&own, 2);
+        SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+        SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
+        SETUP_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
         const double start = long_seconds();
-        FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+        SETUP_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
         found.seconds = fmin(found.seconds, long_seconds() - start);
-        FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+        SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
         found.bytes = own.peak_bytes;
         found.pairs = info.pairs;
         sphg_neighbors_destroy(neighbors);
         sphg_context_destroy(context);
-        hooks_close(&own);
+        fake_host_close(&own);
     }
     return found;
 }
@@ -109,9 +109,9 @@ static void escapee_costs_next_to_nothing(const test_case *test)
     const int count = long_or(1000000, 40000), d = test->dimension;
     const double side = d == 2 ? sqrt(count / 6.) : cbrt(count / 8.);
     double *x = positions_in_cube(count, d, side);
-    const fixture_array before = fixture_numbers(test_position_type(test), count, d, x);
+    const setup_array before = setup_numbers(test_position_type(test), count, d, x);
     x[count / 2 * d] = 1e30;
-    const fixture_array after = fixture_numbers(test_position_type(test), count, d, x);
+    const setup_array after = setup_numbers(test_position_type(test), count, d, x);
     const cost home = cost_of_search(test, &before), away = cost_of_search(test, &after);
     const double memory = (double)away.bytes / (double)home.bytes;
     print_message("%d particles, one at 1e30: memory x %.4f, time x %.3f\n", count, memory,
@@ -123,17 +123,17 @@ static void escapee_costs_next_to_nothing(const test_case *test)
 /* ---- Everybody in one cell ---------------------------------------------------------------- */
 
 /* All within reach of each other; a tenth of them at one place. */
-static fixture_array clump(const test_case *test, int count)
+static setup_array clump(const test_case *test, int count)
 {
     double *x = positions_in_cube(count, test->dimension, .25);
     for (int k = 0; k < count / 10 * test->dimension; k++)
         x[k] = .125;
-    return fixture_numbers(test_position_type(test), count, test->dimension, x);
+    return setup_numbers(test_position_type(test), count, test->dimension, x);
 }
 
-static sphg_geometry geometry_of(const fixture_array *positions, int list_free)
+static sphg_geometry geometry_of(const setup_array *positions, int list_free)
 {
-    sphg_geometry geometry = {.sources = fixture_view(positions), .list_free = list_free};
+    sphg_geometry geometry = {.sources = setup_view(positions), .list_free = list_free};
     geometry.source_count = geometry.target_count = positions->count;
     return geometry;
 }
@@ -141,19 +141,18 @@ static sphg_geometry geometry_of(const fixture_array *positions, int list_free)
 static void clumps_can_be_summed_without_lists(const test_case *test)
 {
     const int count = long_or(1000000, 70000);
-    const fixture_array positions = clump(test, count);
-    const sphg_scheme scheme = fixture_scheme(test, 1);
+    const setup_array positions = clump(test, count);
+    const sphg_scheme scheme = setup_scheme(test, 1);
     const sphg_geometry geometry = geometry_of(&positions, 1);
     host *own = host_of((size_t)1 << 30);
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
+    SETUP_OK(own->context, sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
     const int32_t picked[] = {0, count / 10, count - 1};
     const sphg_subset subset = {0, 3, picked, NULL};
     int64_t offsets[4] = {0};
     sphg_pairs pairs = {.offsets = offsets};
     const sphg_sources sources = {.neighbors = own->neighbors};
-    FIXTURE_OK(own->context, sphg_pair_gradients(own->context, &scheme, &sources, &subset,
-                                                 sphg_absent(), &pairs));
+    SETUP_OK(own->context,
+             sphg_pair_gradients(own->context, &scheme, &sources, &subset, sphg_absent(), &pairs));
     for (int k = 0; k < 3; k++)
         assert_int_equal(offsets[k + 1] - offsets[k], count - 1);
     TEST_REQUIRE(own->limit.largest <= (size_t)count * 512 + (1 << 22), "asked for %zu bytes",
@@ -187,11 +186,11 @@ static int64_t pairs_of(crowd all)
     return count_of(all) * (all.each - 1);
 }
 
-static fixture_array positions_of(const test_case *test, crowd all)
+static setup_array positions_of(const test_case *test, crowd all)
 {
     enum { ROW = 64, APART = 16 };
-    const fixture_array one = clump(test, all.each);
-    const fixture_array made = fixture_output(one.type, (int)count_of(all), 3);
+    const setup_array one = clump(test, all.each);
+    const setup_array made = setup_output(one.type, (int)count_of(all), 3);
     const float *from = one.data;
     float *to = made.data;
     for (int c = 0; c < all.clumps; c++)
@@ -207,15 +206,15 @@ static fixture_array positions_of(const test_case *test, crowd all)
 static void lists_that_do_not_fit_are_a_memory_failure(const test_case *test)
 {
     const crowd all = crowd_of_today();
-    const fixture_array positions = positions_of(test, all);
-    const sphg_scheme scheme = fixture_scheme(test, 1);
+    const setup_array positions = positions_of(test, all);
+    const sphg_scheme scheme = setup_scheme(test, 1);
     const sphg_geometry listed = geometry_of(&positions, 0), list_free = geometry_of(&positions, 1);
     host *own = host_of((size_t)pairs_of(all)); /* half of what they take */
     assert_int_equal(sphg_neighbors_search(own->context, own->neighbors, &scheme, &listed),
                      SPHG_ERROR_MEMORY);
     assert_true(own->limit.largest >= (size_t)(2 * pairs_of(all)));
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, own->neighbors, &scheme, &list_free));
+    SETUP_OK(own->context,
+             sphg_neighbors_search(own->context, own->neighbors, &scheme, &list_free));
 }
 
 /* Offsets alone, without memory for the pairs. */
@@ -223,17 +222,16 @@ static void pairs_beyond_32_bits_are_counted(const test_case *test)
 {
     const crowd all = crowd_of_today();
     const int64_t count = count_of(all);
-    const fixture_array positions = positions_of(test, all);
-    const sphg_scheme scheme = fixture_scheme(test, 1);
+    const setup_array positions = positions_of(test, all);
+    const sphg_scheme scheme = setup_scheme(test, 1);
     const sphg_geometry geometry = geometry_of(&positions, 1);
     host *own = host_of((size_t)1 << 29);
     int64_t *offsets = test_memory((size_t)(count + 1) * sizeof *offsets);
     sphg_pairs pairs = {.offsets = offsets};
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
+    SETUP_OK(own->context, sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
     const sphg_sources sources = {.neighbors = own->neighbors};
-    FIXTURE_OK(own->context,
-               sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
+    SETUP_OK(own->context,
+             sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
     assert_true(pairs.count == pairs_of(all));
     for (int64_t i = 0; i <= count; i++)
         TEST_REQUIRE(offsets[i] == i * (all.each - 1), "offset %lld is %lld", (long long)i,
@@ -261,26 +259,26 @@ static void offsets_of_the_host_have_64_bits(const test_case *test)
     if (!indices)
         return;
     cloud points = cloud_line(test->dimension, 4, .25);
-    const fixture_array positions = fixture_positions(test, &points);
-    const sphg_scheme scheme = fixture_scheme(test, 4);
+    const setup_array positions = setup_positions(test, &points);
+    const sphg_scheme scheme = setup_scheme(test, 4);
     const sphg_geometry geometry = geometry_of(&positions, 0);
     const int64_t offsets[] = {0, far, far + 3, far + 3, far + 4};
     const sphg_lists lists = {.offsets = offsets, .indices = indices};
     const int32_t of_second[] = {0, 2, 3, 1};
     memcpy(indices + far, of_second, sizeof of_second);
     host *own = host_of((size_t)1 << 27);
-    FIXTURE_OK(own->context,
-               sphg_neighbors_use_lists(own->context, own->neighbors, &scheme, &geometry, &lists));
+    SETUP_OK(own->context,
+             sphg_neighbors_use_lists(own->context, own->neighbors, &scheme, &geometry, &lists));
     sphg_neighbors_info info;
-    FIXTURE_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
+    SETUP_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
     assert_true(info.pairs == far + 4);
     const sphg_sources sources = {.neighbors = own->neighbors};
     const sphg_subset subset = {1, 4, NULL, NULL};
     int64_t found_offsets[4];
     int32_t found[4] = {-1, -1, -1, -1};
     sphg_pairs pairs = {.offsets = found_offsets, .indices = found, .capacity = 4};
-    FIXTURE_OK(own->context, sphg_pair_gradients(own->context, &scheme, &sources, &subset,
-                                                 sphg_absent(), &pairs));
+    SETUP_OK(own->context,
+             sphg_pair_gradients(own->context, &scheme, &sources, &subset, sphg_absent(), &pairs));
     assert_int_equal(pairs.count, 4);
     assert_memory_equal(found, of_second, sizeof of_second);
     munmap(indices, bytes);
@@ -297,24 +295,23 @@ static void room_for_more_pairs_than_32_bits_count_may_be_offered(const test_cas
     if (!memory)
         return;
     cloud points = cloud_line(test->dimension, 4, .25);
-    const fixture_array positions = fixture_positions(test, &points);
-    const fixture_array volume =
-        fixture_numbers(test_field_type(test), 4, 1, (const double[]){1, 1, 1, 1});
-    const sphg_scheme scheme = fixture_scheme(test, 4);
+    const setup_array positions = setup_positions(test, &points);
+    const setup_array volume =
+        setup_numbers(test_field_type(test), 4, 1, (const double[]){1, 1, 1, 1});
+    const sphg_scheme scheme = setup_scheme(test, 4);
     sphg_geometry geometry = geometry_of(&positions, 0);
     geometry.precision = test_field_type(test);
     host *own = host_of((size_t)1 << 27);
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
-    const sphg_sources sources = {.neighbors = own->neighbors, .volume = fixture_view(&volume)};
+    SETUP_OK(own->context, sphg_neighbors_search(own->context, own->neighbors, &scheme, &geometry));
+    const sphg_sources sources = {.neighbors = own->neighbors, .volume = setup_view(&volume)};
     int64_t offsets[5];
     sphg_pairs pairs = {.offsets = offsets,
                         .indices = (int32_t *)(void *)memory,
                         .gradient = {memory + for_indices, NULL, NULL, (ptrdiff_t)(width * size),
                                      test_field_type(test)},
                         .capacity = room};
-    FIXTURE_OK(own->context,
-               sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
+    SETUP_OK(own->context,
+             sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
     assert_int_equal(pairs.count, 12);
     for (int k = 0; k < 12; k++)
         assert_int_equal(pairs.indices[k], k % 3 + (k % 3 >= k / 3));

@@ -1,9 +1,9 @@
 /* Whatever rounding mode, flushing of denormals and traps the host has set, on whichever thread:
  * the same bits, no trap, and the host finds its environment and errno as they were. */
-#include "support/hostile_rows.h"
-#include "support/hooks.h"
-#include "support/long.h"
-#include "support/pairs.h"
+#include "support/bad_argument_rows.h"
+#include "support/fake_host.h"
+#include "support/long_counts.h"
+#include "support/brute_force.h"
 #include <dlfcn.h>
 #include <errno.h>
 #include <fenv.h>
@@ -98,7 +98,7 @@ typedef struct world {
     const test_case *test;
     scene particles;
     sphg_scheme scheme;
-    fixture_array field, tiny, volume, matrices;
+    setup_array field, tiny, volume, matrices;
 } world;
 
 static world world_of(const test_case *test)
@@ -111,15 +111,15 @@ static world world_of(const test_case *test)
     double *numbers = cloud_numbers(&points, -1, 1, &random);
     double *matrices = test_memory(COUNT * 9 * sizeof *matrices);
     own.particles = scene_of_cloud(test, &points);
-    own.scheme = fixture_scheme(test, 2);
-    own.field = fixture_numbers(type, COUNT, 1, numbers);
-    own.volume = fixture_numbers(type, COUNT, 1, cloud_volumes(&points, .2, &random));
+    own.scheme = setup_scheme(test, 2);
+    own.field = setup_numbers(type, COUNT, 1, numbers);
+    own.volume = setup_numbers(type, COUNT, 1, cloud_volumes(&points, .2, &random));
     for (int k = 0; k < COUNT * 9; k++)
         matrices[k] = random_between(&random, -small, small);
     for (int k = 0; k < COUNT; k++)
         numbers[k] *= small;
-    own.tiny = fixture_numbers(type, COUNT, 1, numbers);
-    own.matrices = fixture_numbers(type, COUNT, 9, matrices);
+    own.tiny = setup_numbers(type, COUNT, 1, numbers);
+    own.matrices = setup_numbers(type, COUNT, 9, matrices);
     return own;
 }
 
@@ -129,12 +129,12 @@ typedef struct run {
     environment around;
     double skin;
     sphg_result result;
-    fixture_array record;
+    setup_array record;
 } run;
 
 static sphg_view member(const run *job, int first)
 {
-    sphg_view view = fixture_view(&job->record);
+    sphg_view view = setup_view(&job->record);
     view.x = (const char *)view.x + first * (view.type == SPHG_F64 ? 8 : 4);
     return view;
 }
@@ -142,20 +142,20 @@ static sphg_view member(const run *job, int first)
 static sphg_result operate(const run *job, sphg_context *context, const sphg_neighbors *neighbors)
 {
     const world *own = job->own;
-    const sphg_sources sources = {.neighbors = neighbors, .volume = fixture_view(&own->volume)};
+    const sphg_sources sources = {.neighbors = neighbors, .volume = setup_view(&own->volume)};
     sphg_result result = sphg_gradient(context, &own->scheme, &sources, NULL,
-                                       fixture_view(&own->field), member(job, 0));
+                                       setup_view(&own->field), member(job, 0));
     if (!result)
-        result = sphg_gradient(context, &own->scheme, &sources, NULL, fixture_view(&own->tiny),
+        result = sphg_gradient(context, &own->scheme, &sources, NULL, setup_view(&own->tiny),
                                member(job, 3));
     if (!result)
         result =
             sphg_correction(context, &own->scheme, &sources, NULL, member(job, 6), sphg_absent());
     if (!result && own->test->dimension == 3)
-        result = sphg_svd(context, COUNT, fixture_view(&own->matrices), sphg_absent(),
+        result = sphg_svd(context, COUNT, setup_view(&own->matrices), sphg_absent(),
                           member(job, 22), sphg_absent());
     if (!result)
-        result = sphg_eigen(context, own->test->dimension, COUNT, fixture_view(&own->matrices),
+        result = sphg_eigen(context, own->test->dimension, COUNT, setup_view(&own->matrices),
                             member(job, 25), sphg_absent());
     return result;
 }
@@ -182,10 +182,10 @@ static void *work(void *given)
     return NULL;
 }
 
-static fixture_array run_around(const world *own, const sphg_config *config, environment around,
-                                double skin, const char *where)
+static setup_array run_around(const world *own, const sphg_config *config, environment around,
+                              double skin, const char *where)
 {
-    run job = {own, *config, around, skin, SPHG_OK, fixture_output(own->field.type, COUNT, RECORD)};
+    run job = {own, *config, around, skin, SPHG_OK, setup_output(own->field.type, COUNT, RECORD)};
     pthread_t thread;
     assert_int_equal(pthread_create(&thread, NULL, work, &job), 0);
     pthread_join(thread, NULL);
@@ -233,27 +233,27 @@ static void each_in_its_own(sphg_task *task, void *data, int32_t count, int32_t 
 static void results_do_not_depend_on_the_float_environment(const test_case *test)
 {
     const world own = world_of(test);
-    hooks host;
-    hooks_open(&host);
+    fake_host host;
+    fake_host_open(&host);
     const sphg_config configs[] = {
         {.threads = 1, .isa = test_isa()},
         {.threads = 2, .isa = test_isa()},
-        {.threads = 3, .isa = test_isa(), .parallel_for = hooks_pthreads, .user = &host},
+        {.threads = 3, .isa = test_isa(), .parallel_for = fake_host_pthreads, .user = &host},
         {.threads = 3, .isa = test_isa(), .parallel_for = each_in_its_own, .user = &host}};
     host.workers = 3;
-    const fixture_array expected[] = {
+    const setup_array expected[] = {
         run_around(&own, &configs[0], environment_of(0), 0, "default"),
         run_around(&own, &configs[0], environment_of(0), .5, "default")};
     was_lost = 0;
     for (int number = 0; number < ENVIRONMENTS; number += TEST_SLOWED ? 3 : 1)
         for (int k = 0; k < 4; k++) {
             const char *where = test_text("environment %d, executor %d", number, k);
-            const fixture_array found =
+            const setup_array found =
                 run_around(&own, &configs[k], environment_of(number), number % 2 * .5, where);
-            TEST_REQUIRE(fixture_same_bits(&found, &expected[number % 2]), "%s: other bits", where);
+            TEST_REQUIRE(setup_same_bits(&found, &expected[number % 2]), "%s: other bits", where);
             TEST_REQUIRE(!was_lost, "%s: the environment was changed", where);
         }
-    hooks_close(&host);
+    fake_host_close(&host);
 }
 
 /* A library with -ffast-math is loaded into the process: see support/fast_math_host.c. */
@@ -261,32 +261,32 @@ static void fast_math_elsewhere_changes_nothing(const test_case *test)
 {
     const world own = world_of(test);
     const sphg_config config = {.threads = 2, .isa = test_isa()};
-    const fixture_array expected = run_around(&own, &config, environment_of(0), 0, "before");
+    const setup_array expected = run_around(&own, &config, environment_of(0), 0, "before");
     void *library = dlopen(FAST_MATH_HOST, RTLD_NOW);
     assert_non_null(library);
     const environment around = get_environment();
-    const fixture_array found = run_around(&own, &config, around, 0, "after");
+    const setup_array found = run_around(&own, &config, around, 0, "after");
     set_environment(environment_of(0));
     dlclose(library);
     if (around == environment_of(0))
         print_message("this compiler's -ffast-math leaves the environment alone\n");
-    assert_true(fixture_same_bits(&found, &expected));
+    assert_true(setup_same_bits(&found, &expected));
 }
 
 /* ---- Every public function ---------------------------------------------------------------- */
 
 static void every_function_leaves_the_environment_alone(const test_case *test)
 {
-    victim *own = victim_create(test, 0);
-    unsigned char *expected = test_memory(VICTIM_SLOTS * VICTIM_SLOT_BYTES);
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++)
+    valid_call *own = valid_call_create(test, 0);
+    unsigned char *expected = test_memory(VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES);
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++)
             for (int number = 0; number < ENVIRONMENTS; number++) {
-                const probe *tested = &hostile_functions[f].probes[p];
+                const probe *tested = &argument_functions[f].probes[p];
                 const environment around = environment_of(number);
                 if (!tested->call)
                     continue;
-                victim_reset(own);
+                valid_call_reset(own);
                 if (tested->prepare)
                     tested->prepare(own);
                 errno = 4711;
@@ -294,18 +294,19 @@ static void every_function_leaves_the_environment_alone(const test_case *test)
                 const sphg_result result = tested->call(own);
                 const int kept = get_environment() == around && errno == 4711;
                 set_environment(environment_of(0));
-                TEST_REQUIRE(result == SPHG_OK || number > 0, "%s", hostile_functions[f].name);
+                TEST_REQUIRE(result == SPHG_OK || number > 0, "%s", argument_functions[f].name);
                 if (number == 0)
-                    memcpy(expected, own->outputs, VICTIM_SLOTS * VICTIM_SLOT_BYTES);
-                TEST_REQUIRE(kept, "%s in environment %d", hostile_functions[f].name, number);
-                TEST_REQUIRE(memcmp(expected, own->outputs, VICTIM_SLOTS * VICTIM_SLOT_BYTES) == 0,
-                             "%s: other bits in environment %d", hostile_functions[f].name, number);
+                    memcpy(expected, own->outputs, VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES);
+                TEST_REQUIRE(kept, "%s in environment %d", argument_functions[f].name, number);
+                TEST_REQUIRE(
+                    memcmp(expected, own->outputs, VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES) == 0,
+                    "%s: other bits in environment %d", argument_functions[f].name, number);
             }
 }
 
 static void functions_of_numbers_do_not_depend_on_it(const test_case *test)
 {
-    const sphg_scheme scheme = fixture_scheme(test, 1.25);
+    const sphg_scheme scheme = setup_scheme(test, 1.25);
     const double x[3] = {.1, .3, .7}, table[6] = {1.1, .2, .3, .9, .1, 1.3};
     double expected[8] = {0};
     for (int number = 0; number < ENVIRONMENTS; number++) {

@@ -1,10 +1,10 @@
 /* One number for all results of a scene: the same for 1 to 64 threads, for every executor, wherever
  * the arrays begin and for vectors of any length; and, on the baseline path, the same for every
  * compiler and machine. */
-#include "support/fixture.h"
-#include "support/hooks.h"
-#include "support/long.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/fake_host.h"
+#include "support/long_counts.h"
+#include "support/brute_force.h"
 #include <string.h>
 
 enum { COUNT = 1600, DIMENSION = 3 };
@@ -22,19 +22,19 @@ typedef struct hashes {
 typedef struct setting {
     const test_case *test;
     sphg_scheme scheme;
-    fixture_array position, volume, density, scalar, vector, tensor;
+    setup_array position, volume, density, scalar, vector, tensor;
     rows lists;
     const sphg_config *config;
     random_state *shifts; /* NULL: arrays begin at cache lines */
 } setting;
 
-static fixture_array numbers_of(sphg_type type, int width, double low, double high,
-                                random_state *random)
+static setup_array numbers_of(sphg_type type, int width, double low, double high,
+                              random_state *random)
 {
     double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
     for (int k = 0; k < COUNT * width; k++)
         numbers[k] = random_between(random, low, high);
-    return fixture_numbers(type, COUNT, width, numbers);
+    return setup_numbers(type, COUNT, width, numbers);
 }
 
 /* Thin at one side and full at the other, so that some particles are isolated and some moments are
@@ -42,11 +42,11 @@ static fixture_array numbers_of(sphg_type type, int width, double low, double hi
 static setting setting_of(const test_case *test)
 {
     random_state random = random_seeded(191);
-    setting own = {.test = test, .scheme = fixture_scheme(test, 2)};
+    setting own = {.test = test, .scheme = setup_scheme(test, 2)};
     cloud points = cloud_random(DIMENSION, COUNT, 11, &random);
     for (int i = 0; i < COUNT; i++)
         points.x[DIMENSION * i] *= points.x[DIMENSION * i] / 8;
-    own.position = fixture_positions(test, &points);
+    own.position = setup_positions(test, &points);
     scene particles = scene_of_cloud(test, &points);
     own.lists = rows_by_brute_force(&particles, 2);
     own.volume = numbers_of(test_field_type(test), 1, .5, 1.5, &random);
@@ -68,19 +68,19 @@ static void *moved(const setting *own, const void *data, size_t bytes, size_t nu
     return memory;
 }
 
-static size_t bytes_of(const fixture_array *array, size_t *number)
+static size_t bytes_of(const setup_array *array, size_t *number)
 {
     *number = array->type == SPHG_F64 ? 8 : array->type == SPHG_F32 ? 4 : 1;
     return (size_t)array->count * (size_t)array->width * *number;
 }
 
-static sphg_view view_of(const setting *own, const fixture_array *array)
+static sphg_view view_of(const setting *own, const setup_array *array)
 {
-    fixture_array copy = *array;
+    setup_array copy = *array;
     size_t number;
     const size_t bytes = bytes_of(array, &number);
     copy.data = moved(own, array->data, bytes, number);
-    return fixture_view(&copy);
+    return setup_view(&copy);
 }
 
 /* ---- Results ------------------------------------------------------------------------------ */
@@ -88,18 +88,18 @@ static sphg_view view_of(const setting *own, const fixture_array *array)
 enum { OUTPUTS_MOST = 16 };
 
 typedef struct outputs {
-    fixture_array arrays[OUTPUTS_MOST];
+    setup_array arrays[OUTPUTS_MOST];
     int count;
 } outputs;
 
 static sphg_view output_of(const setting *own, outputs *all, sphg_type type, int width)
 {
-    fixture_array array = {NULL, type, COUNT, width};
+    setup_array array = {NULL, type, COUNT, width};
     size_t number;
     const size_t bytes = bytes_of(&array, &number);
     array.data = moved(own, NULL, bytes, number);
     all->arrays[all->count++] = array;
-    return fixture_view(&array);
+    return setup_view(&array);
 }
 
 static uint64_t hash_of(uint64_t hash, const void *data, size_t bytes) /* FNV-1a */
@@ -134,11 +134,11 @@ static sphg_neighbors *neighbors_of(const setting *own, sphg_context *context, s
         .offsets = moved(own, own->lists.offsets, (COUNT + 1) * sizeof(int64_t), sizeof(int64_t)),
         .indices = moved(own, own->lists.indices, pairs * sizeof(int32_t), sizeof(int32_t))};
     sphg_neighbors *neighbors = NULL;
-    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
-    FIXTURE_OK(context,
-               how == HOST_LISTS
-                   ? sphg_neighbors_use_lists(context, neighbors, &own->scheme, &geometry, &lists)
-                   : sphg_neighbors_search(context, neighbors, &own->scheme, &geometry));
+    SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
+    SETUP_OK(context,
+             how == HOST_LISTS
+                 ? sphg_neighbors_use_lists(context, neighbors, &own->scheme, &geometry, &lists)
+                 : sphg_neighbors_search(context, neighbors, &own->scheme, &geometry));
     return neighbors;
 }
 
@@ -172,7 +172,7 @@ static void sweep_forward(const setting *own, sphg_context *context, sphg_source
         request.stats = stats;
         request.correction = output_of(own, all, type, sphg_correction_width(&own->scheme));
     }
-    FIXTURE_OK(context, sphg_evaluate(context, &own->scheme, &request));
+    SETUP_OK(context, sphg_evaluate(context, &own->scheme, &request));
     sources->correction = request.correction;
 }
 
@@ -197,7 +197,7 @@ static void sweep_two_sided(const setting *own, sphg_context *context, const sph
                                      .gradient = output_of(own, all, type, 9)}};
     const sphg_request back = {
         .sources = sources, .set_count = 1, .fields = two_sided, .field_count = 3};
-    FIXTURE_OK(context, sphg_evaluate(context, &own->scheme, &back));
+    SETUP_OK(context, sphg_evaluate(context, &own->scheme, &back));
 }
 
 /* Derivatives of order 2, and what is left of their corrections. */
@@ -222,7 +222,7 @@ static void sweep_second(const setting *own, sphg_context *context, const sphg_s
     request.rank = output_of(own, all, SPHG_U8, 1);
     request.lambda_min = output_of(own, all, type, 1);
     request.correction = output_of(own, all, type, 45);
-    FIXTURE_OK(context, sphg_evaluate(context, &own->scheme, &request));
+    SETUP_OK(context, sphg_evaluate(context, &own->scheme, &request));
 }
 
 static uint64_t hash_of_sweeps(const setting *own, sphg_context *context,
@@ -247,7 +247,7 @@ static hashes run(const setting *own)
 {
     sphg_context *context = NULL;
     hashes found;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, own->config, &context));
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, own->config, &context));
     for (supply how = KEPT; how < SUPPLIES; how++) {
         sphg_neighbors *neighbors = neighbors_of(own, context, how);
         found.of[how] = hash_of_sweeps(own, context, neighbors);
@@ -291,21 +291,22 @@ static void try_threads(const setting *own, sphg_isa isa, const hashes *expected
 
 static void try_executors(const setting *own, sphg_isa isa, const hashes *expected)
 {
-    hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    fake_host_executor *const executors[] = {fake_host_odd_splits, fake_host_reversed,
+                                             fake_host_pthreads};
     random_state shifts = random_seeded(197);
     const int all = long_or(1, 0), first = TEST_SLOWED ? 4 : 2;
-    const int most = long_or(64, 16); /* each worker has memory, all of which hooks fill */
+    const int most = long_or(64, 16); /* each worker has memory, all of which the fake host fills */
     for (int k = all ? 2 : first + (int)isa % 2; k < 6; k += all ? 1 : 2) {
-        hooks host;
-        hooks_open(&host);
+        fake_host host;
+        fake_host_open(&host);
         host.workers = k == 2 ? most : k == 3 ? 1 : 7;
-        sphg_config config = hooks_config(&host, host.workers);
+        sphg_config config = fake_host_config(&host, host.workers);
         config.parallel_for = executors[k % 3];
         config.isa = isa;
         const hashes found = run_under(own, &config, &shifts);
         require_same(&found, expected,
                      test_text("path %d, executor %d, %d workers", (int)isa, k % 3, host.workers));
-        hooks_close(&host);
+        fake_host_close(&host);
     }
 }
 
@@ -317,7 +318,7 @@ static void require_one_hash(const test_case *test, int order)
     int paths = 0, fused = 0;
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
         const sphg_config serial = {.isa = isa, .threads = 1};
-        if (!fixture_context_on(isa))
+        if (!setup_context_on(isa))
             continue;
         const hashes expected = run_under(&own, &serial, NULL);
         TEST_REQUIRE(expected.of[KEPT] == expected.of[LIST_FREE], "path %d: list-free", (int)isa);

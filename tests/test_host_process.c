@@ -1,7 +1,7 @@
 /* The library within its host's process: it prints nothing, leaves locale and signals alone, works
  * on many threads at once and after a fork. */
-#include "support/hostile_rows.h"
-#include "support/victim_calls.h"
+#include "support/bad_argument_rows.h"
+#include "support/public_calls.h"
 #include <locale.h>
 #include <signal.h>
 #include <stdio.h>
@@ -27,7 +27,7 @@ static void remember_signals(reaction *reactions)
 }
 
 /* What the calls print, valid and refused ones: bytes in a file that stands for both streams. */
-static long printed_by_calls(victim *own)
+static long printed_by_calls(valid_call *own)
 {
     FILE *file = tmpfile();
     assert_non_null(file);
@@ -35,17 +35,17 @@ static long printed_by_calls(victim *own)
     const int kept[2] = {dup(1), dup(2)};
     for (int k = 0; k < 2; k++)
         dup2(fileno(file), k + 1);
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++) {
-            const probe *tested = &hostile_functions[f].probes[p];
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++) {
+            const probe *tested = &argument_functions[f].probes[p];
             trial made;
             for (int a = 0; tested->call && a < tested->count; a++) {
-                victim_reset(own);
+                valid_call_reset(own);
                 if (tested->prepare)
                     tested->prepare(own);
-                if (hostile_spoil(own, tested, a, 0, &made))
+                if (argument_spoil(own, tested, a, 0, &made))
                     tested->call(own);
-                hostile_restore(&made);
+                argument_restore(&made);
             }
         }
     fflush(stdout);
@@ -60,7 +60,7 @@ static long printed_by_calls(victim *own)
 
 static void calls_leave_the_process_alone(const test_case *test)
 {
-    victim *own = victim_create(test, 0);
+    valid_call *own = valid_call_create(test, 0);
     reaction before[SIGNALS] = {{0}}, after[SIGNALS] = {{0}};
     sigset_t mask_before, mask_after;
     const char *locale = test_text("%s", setlocale(LC_ALL, NULL));
@@ -82,26 +82,26 @@ static void calls_leave_the_process_alone(const test_case *test)
 enum { HELPERS = 12, ROUNDS = 5 };
 
 /* The valid call of every function, their outputs mixed into one number. */
-static uint64_t digest_of_calls(victim *own)
+static uint64_t digest_of_calls(valid_call *own)
 {
     uint64_t digest = UINT64_C(14695981039346656037);
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++) {
-            const probe *tested = &hostile_functions[f].probes[p];
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++) {
+            const probe *tested = &argument_functions[f].probes[p];
             if (!tested->call)
                 continue;
-            victim_reset(own);
+            valid_call_reset(own);
             if (tested->prepare)
                 tested->prepare(own);
             digest = (digest ^ (uint64_t)tested->call(own)) * UINT64_C(1099511628211);
-            for (int k = 0; k < VICTIM_SLOTS * VICTIM_SLOT_BYTES; k++)
+            for (int k = 0; k < VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES; k++)
                 digest = (digest ^ own->outputs[k]) * UINT64_C(1099511628211);
         }
     return digest;
 }
 
 typedef struct helper {
-    victim *own;
+    valid_call *own;
     uint64_t expected;
     int same;
 } helper;
@@ -120,7 +120,7 @@ static void contexts_work_side_by_side(const test_case *test)
     helper helpers[HELPERS];
     pthread_t threads[HELPERS];
     for (int k = 0; k < HELPERS; k++)
-        helpers[k].own = victim_create(test, 0);
+        helpers[k].own = valid_call_create(test, 0);
     const uint64_t expected = digest_of_calls(helpers[0].own);
     for (int k = 0; k < HELPERS; k++) {
         helpers[k].expected = expected;
@@ -140,8 +140,8 @@ typedef struct fork_world {
     const test_case *test;
     sphg_scheme scheme;
     sphg_geometry geometry;
-    fixture_array positions, corrections;
-    hooks *host;
+    setup_array positions, corrections;
+    fake_host *host;
     sphg_context *old;
 } fork_world;
 
@@ -161,7 +161,7 @@ static uint64_t digest_by(const fork_world *own, sphg_context *context)
                                                 ? sphg_view_f64(&one, 0)
                                                 : sphg_view_f32(&one_f32, 0)};
     failed = failed || sphg_correction(context, &own->scheme, &sources, NULL,
-                                       fixture_view(&own->corrections), sphg_absent());
+                                       setup_view(&own->corrections), sphg_absent());
     sphg_neighbors_destroy(neighbors);
     uint64_t digest = UINT64_C(14695981039346656037);
     const unsigned char *bytes = own->corrections.data;
@@ -171,9 +171,9 @@ static uint64_t digest_by(const fork_world *own, sphg_context *context)
 }
 
 /* A new context: as many threads, or the host's executor. */
-static uint64_t digest_by_new(const fork_world *own, int threads, hooks_executor *executor)
+static uint64_t digest_by_new(const fork_world *own, int threads, fake_host_executor *executor)
 {
-    sphg_config config = hooks_config(own->host, threads);
+    sphg_config config = fake_host_config(own->host, threads);
     config.parallel_for = executor;
     sphg_context *context = NULL;
     if (sphg_context_create(SPHG_VERSION, &config, &context))
@@ -203,7 +203,7 @@ static int fault_in_child(const fork_world *own, uint64_t expected)
     if (digest_by_new(own, 1, NULL) != expected)
         return 4;
     const int64_t regions = own->host->regions;
-    if (digest_by_new(own, own->host->workers, hooks_pthreads) != expected ||
+    if (digest_by_new(own, own->host->workers, fake_host_pthreads) != expected ||
         own->host->regions == regions)
         return 5;
     if (sphg_context_get_info(own->old, &info) || info.isa == SPHG_ISA_BEST)
@@ -235,13 +235,13 @@ static fork_world fork_world_of(const test_case *test)
     random_state random = random_seeded(311);
     cloud points =
         cloud_random(test->dimension, FORK_COUNT, test->dimension == 2 ? 140 : 27, &random);
-    fork_world own = {.test = test, .scheme = fixture_scheme(test, 1), .host = fixture_hooks()};
-    own.positions = fixture_positions(test, &points);
-    own.geometry = fixture_geometry(test, &points, &own.positions);
-    own.corrections = fixture_output(SPHG_F64, FORK_COUNT,
-                                     sphg_correction_width(&own.scheme)); /* room for both */
+    fork_world own = {.test = test, .scheme = setup_scheme(test, 1), .host = setup_hooks()};
+    own.positions = setup_positions(test, &points);
+    own.geometry = setup_geometry(test, &points, &own.positions);
+    own.corrections =
+        setup_output(SPHG_F64, FORK_COUNT, sphg_correction_width(&own.scheme)); /* room for both */
     own.corrections.type = test_field_type(test);
-    own.old = fixture_context_of(2);
+    own.old = setup_context_of(2);
     return own;
 }
 
@@ -261,24 +261,24 @@ static void contexts_say_what_they_are(const test_case *test)
 {
     (void)test;
     const sphg_isa sets[] = {SPHG_ISA_BASE, SPHG_ISA_X86_V3, SPHG_ISA_X86_V4, SPHG_ISA_NEON};
-    hooks *host = fixture_hooks();
+    fake_host *host = setup_hooks();
     sphg_context_info best, info;
-    FIXTURE_OK(NULL, sphg_context_get_info(fixture_context_with(NULL), &best));
+    SETUP_OK(NULL, sphg_context_get_info(setup_context_with(NULL), &best));
     assert_int_equal(best.openmp, TEST_OPENMP);
     assert_true(best.isa != SPHG_ISA_BEST && best.threads >= 1 && best.bytes > 0);
     for (int k = 0; k < 4; k++) {
-        sphg_context *const context = fixture_context_on(sets[k]);
+        sphg_context *const context = setup_context_on(sets[k]);
         if (!context)
             continue;
-        FIXTURE_OK(context, sphg_context_get_info(context, &info));
+        SETUP_OK(context, sphg_context_get_info(context, &info));
         assert_int_equal(info.isa, sets[k]);
         assert_true(sets[k] <= best.isa);
     }
-    FIXTURE_OK(NULL, sphg_context_get_info(fixture_context_of(3), &info));
+    SETUP_OK(NULL, sphg_context_get_info(setup_context_of(3), &info));
     assert_int_equal(info.threads, TEST_OPENMP ? 3 : 1);
-    sphg_config config = hooks_config(host, 5);
-    config.parallel_for = hooks_reversed;
-    FIXTURE_OK(NULL, sphg_context_get_info(fixture_context_with(&config), &info));
+    sphg_config config = fake_host_config(host, 5);
+    config.parallel_for = fake_host_reversed;
+    SETUP_OK(NULL, sphg_context_get_info(setup_context_with(&config), &info));
     assert_int_equal(info.threads, 5);
 }
 

@@ -3,8 +3,8 @@
  * The list of functions, parameters and members comes from the header: what is new there and has no
  * rows here does not compile or fails. */
 #include "public_names.h"
-#include "support/hostile_rows.h"
-#include "support/victim_calls.h"
+#include "support/bad_argument_rows.h"
+#include "support/public_calls.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,11 +16,11 @@ static int begins_with(const char *path, const char *name, size_t length)
 
 static int has_row(const char *function, const char *name, size_t length)
 {
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++)
-            for (int a = 0; a < hostile_functions[f].probes[p].count; a++)
-                if ((!function || strcmp(hostile_functions[f].name, function) == 0) &&
-                    begins_with(hostile_functions[f].probes[p].arguments[a].path, name, length))
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++)
+            for (int a = 0; a < argument_functions[f].probes[p].count; a++)
+                if ((!function || strcmp(argument_functions[f].name, function) == 0) &&
+                    begins_with(argument_functions[f].probes[p].arguments[a].path, name, length))
                     return 1;
     return 0;
 }
@@ -28,11 +28,11 @@ static int has_row(const char *function, const char *name, size_t length)
 static void every_parameter_has_a_row(const test_case *test)
 {
     (void)test;
-    for (int f = 0; f < hostile_function_count; f++)
-        for (const char *word = hostile_functions[f].parameters + 1; *word;) {
+    for (int f = 0; f < argument_function_count; f++)
+        for (const char *word = argument_functions[f].parameters + 1; *word;) {
             const size_t length = strcspn(word, " ");
-            TEST_REQUIRE(!length || has_row(hostile_functions[f].name, word, length),
-                         "%s: no rows for %.*s", hostile_functions[f].name, (int)length, word);
+            TEST_REQUIRE(!length || has_row(argument_functions[f].name, word, length),
+                         "%s: no rows for %.*s", argument_functions[f].name, (int)length, word);
             word += length + (word[length] == ' ');
         }
 }
@@ -79,7 +79,7 @@ static const char *words_for(const trial *made, const argument *spoilt)
     return made->words ? made->words : spoilt->said ? spoilt->said : dot ? dot + 1 : spoilt->path;
 }
 
-static int is_heard(const victim *own, const trial *made, const argument *spoilt)
+static int is_heard(const valid_call *own, const trial *made, const argument *spoilt)
 {
     const char *message = own->host->log_message;
     return own->host->log_count == 1 && strstr(message, words_for(made, spoilt)) &&
@@ -99,32 +99,32 @@ __attribute__((format(printf, 2, 3))) static void judge(int holds, const char *f
     putchar('\n');
 }
 
-static sphg_neighbors_info info_of(const victim *own)
+static sphg_neighbors_info info_of(const valid_call *own)
 {
     sphg_neighbors_info info;
-    FIXTURE_OK(own->living, sphg_neighbors_get_info(own->living, own->rebuilt, &info));
+    SETUP_OK(own->living, sphg_neighbors_get_info(own->living, own->rebuilt, &info));
     return info;
 }
 
-static void judge_refusal(const victim *own, const trial *made, const argument *spoilt,
+static void judge_refusal(const valid_call *own, const trial *made, const argument *spoilt,
                           sphg_result result, const char *where)
 {
     const int expected = made->expected;
-    judge(expected == HOSTILE_REFUSED ? result > 0 : (int)result == expected, "%s: %d (%s), not %d",
-          where, (int)result, own->host->log_message, expected);
+    judge(expected == ARGUMENT_REFUSED ? result > 0 : (int)result == expected,
+          "%s: %d (%s), not %d", where, (int)result, own->host->log_message, expected);
     if (result == SPHG_OK)
         return;
-    judge(spoilt->kind == HOSTILE_HANDLE || is_heard(own, made, spoilt),
+    judge(spoilt->kind == ARGUMENT_HANDLE || is_heard(own, made, spoilt),
           "%s: '%s' (%d) lacks '%s' or '%s'", where, own->host->log_message, own->host->log_count,
           words_for(made, spoilt), made->value);
-    judge(spoilt->kind == HOSTILE_HANDLE || own->host->log_result == result,
+    judge(spoilt->kind == ARGUMENT_HANDLE || own->host->log_result == result,
           "%s: the log heard another code", where);
-    judge(result < 0 || victim_outputs_are_untouched(own), "%s: an output was written", where);
+    judge(result < 0 || valid_call_outputs_are_untouched(own), "%s: an output was written", where);
 }
 
-static void prepare(victim *own, const probe *tested)
+static void prepare(valid_call *own, const probe *tested)
 {
-    victim_reset(own);
+    valid_call_reset(own);
     if (tested->prepare)
         tested->prepare(own);
 }
@@ -138,15 +138,15 @@ static int is_same(const sphg_neighbors_info *a, const sphg_neighbors_info *b)
 }
 
 /* Spoils, calls, judges, and makes the valid call; 0: this argument has no such way. */
-static int try_once(victim *own, const hostile_function *function, const probe *tested, int a,
+static int try_once(valid_call *own, const argument_function *function, const probe *tested, int a,
                     int number)
 {
     const argument *spoilt = &tested->arguments[a];
     trial made;
     prepare(own, tested);
-    if (!hostile_spoil(own, tested, a, number, &made))
+    if (!argument_spoil(own, tested, a, number, &made))
         return 0;
-    if (made.expected == HOSTILE_SKIPPED)
+    if (made.expected == ARGUMENT_SKIPPED)
         return 1;
     const char *where = test_text("%s: %s %s", function->name, spoilt->path, made.what);
     memset(own->host->log_message, 0, sizeof own->host->log_message);
@@ -155,7 +155,7 @@ static int try_once(victim *own, const hostile_function *function, const probe *
     const sphg_neighbors_info after = info_of(own);
     judge_refusal(own, &made, spoilt, result, where);
     judge(!result || is_same(&before, &after), "%s: the neighbours changed", where);
-    hostile_restore(&made);
+    argument_restore(&made);
     prepare(own, tested);
     judge(tested->call(own) == SPHG_OK, "after %s: %s", where, own->host->log_message);
     cells++;
@@ -164,17 +164,17 @@ static int try_once(victim *own, const hostile_function *function, const probe *
 
 static void refuse_everywhere(const test_case *test, int trusted)
 {
-    victim *own = victim_create(test, trusted);
+    valid_call *own = valid_call_create(test, trusted);
     cells = complaints = 0;
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++) {
-            const probe *tested = &hostile_functions[f].probes[p];
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++) {
+            const probe *tested = &argument_functions[f].probes[p];
             if (!tested->call)
                 continue;
             for (int a = 0; a < tested->count; a++)
                 for (int number = 0;
-                     !(trusted && hostile_is_about_numbers(tested->arguments[a].kind)) &&
-                     try_once(own, &hostile_functions[f], tested, a, number);
+                     !(trusted && argument_is_about_numbers(tested->arguments[a].kind)) &&
+                     try_once(own, &argument_functions[f], tested, a, number);
                      number++)
                     ;
         }
@@ -196,7 +196,7 @@ static void trusted_contexts_refuse_the_same_arguments(const test_case *test)
 /* ---- A context in use --------------------------------------------------------------------- */
 
 typedef struct reentry {
-    victim *own;
+    valid_call *own;
     const probe *tested;
     sphg_result inner;
     int untouched;
@@ -209,10 +209,10 @@ static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t
     (void)worker;
     if (target == 0) {
         again->inner = again->tested->call(again->own);
-        again->untouched = victim_outputs_are_untouched(again->own);
+        again->untouched = valid_call_outputs_are_untouched(again->own);
     }
     *indices = again->own->indices;
-    return VICTIM_COUNT;
+    return VALID_CALL_COUNT;
 }
 
 static int takes_a_context(const probe *tested)
@@ -223,22 +223,22 @@ static int takes_a_context(const probe *tested)
 /* Every function, called from within another call on the same context. */
 static void every_function_is_refused_while_the_context_is_busy(const test_case *test)
 {
-    victim *own = victim_create(test, 0);
-    fixture_array results = fixture_output(test_field_type(test), VICTIM_COUNT, test->dimension);
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++) {
-            reentry again = {own, &hostile_functions[f].probes[p], SPHG_OK, 0};
+    valid_call *own = valid_call_create(test, 0);
+    setup_array results = setup_output(test_field_type(test), VALID_CALL_COUNT, test->dimension);
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++) {
+            reentry again = {own, &argument_functions[f].probes[p], SPHG_OK, 0};
             const sphg_lists lists = {.row = row_that_calls_back, .user = &again};
             if (!takes_a_context(again.tested))
                 continue;
             prepare(own, again.tested);
-            FIXTURE_OK(own->living, sphg_neighbors_use_lists(own->living, own->listed, &own->scheme,
-                                                             &own->valid->geometry, &lists));
+            SETUP_OK(own->living, sphg_neighbors_use_lists(own->living, own->listed, &own->scheme,
+                                                           &own->valid->geometry, &lists));
             const sphg_sources sources = {.neighbors = own->listed, .volume = own->volume_view};
-            FIXTURE_OK(own->living, sphg_gradient(own->living, &own->scheme, &sources, NULL,
-                                                  own->scalars, fixture_view(&results)));
+            SETUP_OK(own->living, sphg_gradient(own->living, &own->scheme, &sources, NULL,
+                                                own->scalars, setup_view(&results)));
             TEST_REQUIRE(again.inner == SPHG_ERROR_BUSY && again.untouched, "%s: %s",
-                         hostile_functions[f].name, sphg_result_string(again.inner));
+                         argument_functions[f].name, sphg_result_string(again.inner));
         }
 }
 

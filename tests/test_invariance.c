@@ -1,6 +1,6 @@
 /* What may change without changing the results (docs/theory.md, errors): to the bit where only
  * exact operations are involved and sums keep their order, within the error bound elsewhere. */
-#include "support/stage.h"
+#include "support/comparison.h"
 #include <string.h>
 
 static cloud unit_block(int d)
@@ -35,22 +35,22 @@ static host_lists everybody(int count)
     return lists;
 }
 
-/* The stage with neighbours from lists, so that sums run in the order of the indices. */
-static stage in_list_order(const stage *made)
+/* The comparison with neighbours from lists, so that sums run in the order of the indices. */
+static comparison in_list_order(const comparison *made)
 {
-    stage on = *made;
+    comparison on = *made;
     int n = on.points.count;
     host_lists host = everybody(n);
     sphg_lists lists = {.offsets = host.offsets, .indices = host.indices};
-    fixture_array positions = fixture_positions(on.test, &on.points);
-    sphg_geometry geometry = fixture_geometry(on.test, &on.points, &positions);
-    on.neighbors = fixture_lists(on.context, &on.scheme, &geometry, &lists);
+    setup_array positions = setup_positions(on.test, &on.points);
+    sphg_geometry geometry = setup_geometry(on.test, &on.points, &positions);
+    on.neighbors = setup_lists(on.context, &on.scheme, &geometry, &lists);
     return on;
 }
 
-static stage listed_stage(const test_case *test, cloud points, double support)
+static comparison listed_stage(const test_case *test, cloud points, double support)
 {
-    stage made = stage_of(test, "listed block", points, support);
+    comparison made = comparison_of(test, "listed block", points, support);
     return in_list_order(&made);
 }
 
@@ -66,39 +66,40 @@ static double *scaled(const double *numbers, int count, int exponent)
 }
 
 /* found * 2^exponent equals expected, to the bit. */
-static void require_scaled(const fixture_array *expected, const fixture_array *found, int exponent,
+static void require_scaled(const setup_array *expected, const setup_array *found, int exponent,
                            const char *what, int k)
 {
     for (int n = 0; n < expected->count * expected->width; n++) {
         int i = n / expected->width, c = n % expected->width;
-        double exact = ldexp(fixture_get(expected, i, c), exponent);
-        TEST_REQUIRE(exact == fixture_get(found, i, c), "%s at 2^%d, item %d: %a, not %a", what, k,
-                     i, fixture_get(found, i, c), exact);
+        double exact = ldexp(setup_get(expected, i, c), exponent);
+        TEST_REQUIRE(exact == setup_get(found, i, c), "%s at 2^%d, item %d: %a, not %a", what, k, i,
+                     setup_get(found, i, c), exact);
     }
 }
 
-static stage scaled_stage(const stage *made, int k)
+static comparison scaled_stage(const comparison *made, int k)
 {
     cloud points = cloud_copy(&made->points);
     int d = points.dimension;
     for (int n = 0; n < points.count * d; n++)
         points.x[n] = ldexp(points.x[n], k);
     points.spacing = ldexp(points.spacing, k);
-    stage on = stage_of(made->test, "scaled", points, ldexp(made->scheme.support_radius, k));
-    return stage_with_volumes(&on, scaled(made->scene.volume, points.count, d * k));
+    comparison on =
+        comparison_of(made->test, "scaled", points, ldexp(made->scheme.support_radius, k));
+    return comparison_with_volumes(&on, scaled(made->scene.volume, points.count, d * k));
 }
 
-static void require_scaled_field(const stage *small, const stage *large, const stage_field *field,
-                                 int with_table, int k)
+static void require_scaled_field(const comparison *small, const comparison *large,
+                                 const comparison_field *field, int with_table, int k)
 {
     enum { a = 3 };
     int d = small->points.dimension;
-    int width = fixture_width(field->shape, d), total = small->points.count * width;
-    fixture_array table = stage_table(small), large_table = stage_table(large);
-    stage_field times = *field;
+    int width = setup_width(field->shape, d), total = small->points.count * width;
+    setup_array table = comparison_table(small), large_table = comparison_table(large);
+    comparison_field times = *field;
     times.numbers = scaled(field->numbers, total, a);
-    stage_result one = stage_apply(small, field, with_table ? &table : NULL);
-    stage_result two = stage_apply(large, &times, with_table ? &large_table : NULL);
+    comparison_result one = comparison_apply(small, field, with_table ? &table : NULL);
+    comparison_result two = comparison_apply(large, &times, with_table ? &large_table : NULL);
     int power = field->form == SPHG_ADJOINT ? a + (d - 1) * k : a - k;
     require_scaled(&one.gradient, &two.gradient, power, "gradient", k);
     require_scaled(&one.divergence, &two.divergence, power, "divergence", k);
@@ -127,18 +128,19 @@ static void powers_of_two_scale_to_the_bit(const test_case *test)
     for (int k = 0; k < points.count * points.dimension; k++)
         points.x[k] *= .6875; /* so that 1 / H^d and V are normal numbers at both limits */
     points.spacing = .6875;
-    stage small = stage_of(test, "block", points, 1.5);
+    comparison small = comparison_of(test, "block", points, 1.5);
     for (int e = 0; e < 5; e++) {
         int k = exponents[e];
-        stage large = scaled_stage(&small, k);
-        stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
-                             stage_random_field(&small, SPHG_VECTOR, 1)};
+        comparison large = scaled_stage(&small, k);
+        comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                                  comparison_random_field(&small, SPHG_VECTOR, 1)};
         require_scaled_field(&small, &large, &field, 0, k);
         field.form = SPHG_DIRECT;
         require_scaled_field(&small, &large, &field, 1, k);
         field.form = SPHG_ADJOINT;
         require_scaled_field(&small, &large, &field, 1, k);
-        field = (stage_field){SPHG_SCALAR, SPHG_DIRECT, stage_random_field(&small, SPHG_SCALAR, 3)};
+        field = (comparison_field){SPHG_SCALAR, SPHG_DIRECT,
+                                   comparison_random_field(&small, SPHG_SCALAR, 3)};
         if (e < 3) /* at the limits 1 / H^2 is no normal number */
             require_scaled_field(&small, &large, &field, 0, k);
     }
@@ -146,50 +148,51 @@ static void powers_of_two_scale_to_the_bit(const test_case *test)
 
 static void powers_of_two_keep_ranks_and_scale_corrections(const test_case *test)
 {
-    stage small = stage_of(test, "block", unit_block(test->dimension), 1.5);
+    comparison small = comparison_of(test, "block", unit_block(test->dimension), 1.5);
     int d = test->dimension, exponents[] = {5, -9, 20};
     for (int e = 0; e < 3; e++) {
         int k = exponents[e];
-        stage stages[] = {small, scaled_stage(&small, k)};
-        fixture_array table[2], rank[2];
+        comparison stages[] = {small, scaled_stage(&small, k)};
+        setup_array table[2], rank[2];
         for (int s = 0; s < 2; s++) {
-            table[s] = stage_table(&stages[s]);
-            rank[s] = fixture_output(SPHG_U8, small.points.count, 1);
-            sphg_sources sources = stage_sources(&stages[s]);
-            FIXTURE_OK(small.context,
-                       sphg_correction(small.context, &stages[s].scheme, &sources, NULL,
-                                       fixture_view(&table[s]), fixture_view(&rank[s])));
+            table[s] = comparison_table(&stages[s]);
+            rank[s] = setup_output(SPHG_U8, small.points.count, 1);
+            sphg_sources sources = comparison_sources(&stages[s]);
+            SETUP_OK(small.context,
+                     sphg_correction(small.context, &stages[s].scheme, &sources, NULL,
+                                     setup_view(&table[s]), setup_view(&rank[s])));
         }
         int power = test->method == SPHG_KGC ? 0 : test->method == SPHG_RKPM ? -2 * k : (d - 2) * k;
         require_scaled(&table[0], &table[1], power, "C", k);
-        assert_true(fixture_same_bits(&rank[0], &rank[1]));
+        assert_true(setup_same_bits(&rank[0], &rank[1]));
     }
 }
 
 /* ---- Translation, constants, mirror
  * ---------------------------------------------------------------- */
 
-static void require_same_bits(const stage *a, const stage *b, sphg_form form)
+static void require_same_bits(const comparison *a, const comparison *b, sphg_form form)
 {
-    stage_field field = {SPHG_VECTOR, form, stage_random_field(a, SPHG_VECTOR, 2)};
-    stage_result one = stage_apply(a, &field, NULL), two = stage_apply(b, &field, NULL);
-    assert_true(stage_results_have_same_bits(&one, &two));
+    comparison_field field = {SPHG_VECTOR, form, comparison_random_field(a, SPHG_VECTOR, 2)};
+    comparison_result one = comparison_apply(a, &field, NULL),
+                      two = comparison_apply(b, &field, NULL);
+    assert_true(comparison_results_have_same_bits(&one, &two));
 }
 
 static void exact_translation_keeps_every_bit(const test_case *test)
 {
     static const double vector[] = {1024, -512, 2048};
-    stage here = listed_stage(test, unit_block(test->dimension), 2.25);
+    comparison here = listed_stage(test, unit_block(test->dimension), 2.25);
     cloud moved = cloud_copy(&here.points);
     cloud_shift(&moved, vector);
-    stage there = listed_stage(test, moved, 2.25);
+    comparison there = listed_stage(test, moved, 2.25);
     require_same_bits(&here, &there, SPHG_DIFFERENCE);
     require_same_bits(&here, &there, SPHG_DIRECT);
 }
 
 static void exact_constants_added_keep_every_bit(const test_case *test)
 {
-    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    comparison on = comparison_of(test, "block", unit_block(test->dimension), 2.25);
     int total = on.points.count * test->dimension;
     double *numbers = test_memory((size_t)total * sizeof *numbers);
     double *raised = test_memory((size_t)total * sizeof *raised);
@@ -198,50 +201,53 @@ static void exact_constants_added_keep_every_bit(const test_case *test)
         numbers[k] = random_index(&random, 4096) * 0x1p-10;
         raised[k] = numbers[k] + 24;
     }
-    stage_field one = {SPHG_VECTOR, SPHG_DIFFERENCE, numbers};
-    stage_field two = {SPHG_VECTOR, SPHG_DIFFERENCE, raised};
-    stage_result a = stage_apply(&on, &one, NULL), b = stage_apply(&on, &two, NULL);
-    assert_true(stage_results_have_same_bits(&a, &b));
+    comparison_field one = {SPHG_VECTOR, SPHG_DIFFERENCE, numbers};
+    comparison_field two = {SPHG_VECTOR, SPHG_DIFFERENCE, raised};
+    comparison_result a = comparison_apply(&on, &one, NULL), b = comparison_apply(&on, &two, NULL);
+    assert_true(comparison_results_have_same_bits(&a, &b));
 }
 
 /* Mirrored at x = 0: d/dx changes sign, the rest stays. */
 static void mirror_images_have_mirrored_bits(const test_case *test)
 {
     int d = test->dimension;
-    stage here = listed_stage(test, unit_block(d), 2.25);
+    comparison here = listed_stage(test, unit_block(d), 2.25);
     cloud mirrored = cloud_copy(&here.points);
     for (int i = 0; i < mirrored.count; i++)
         mirrored.x[i * d] = -mirrored.x[i * d];
-    stage there = listed_stage(test, mirrored, 2.25);
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&here, SPHG_SCALAR, 5)};
-    stage_result one = stage_apply(&here, &field, NULL), two = stage_apply(&there, &field, NULL);
+    comparison there = listed_stage(test, mirrored, 2.25);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(&here, SPHG_SCALAR, 5)};
+    comparison_result one = comparison_apply(&here, &field, NULL),
+                      two = comparison_apply(&there, &field, NULL);
     for (int n = 0; n < mirrored.count * d; n++) {
-        double expected = fixture_get(&one.gradient, n / d, n % d) * (n % d == 0 ? -1 : 1);
-        TEST_REQUIRE(expected == fixture_get(&two.gradient, n / d, n % d), "item %d", n / d);
+        double expected = setup_get(&one.gradient, n / d, n % d) * (n % d == 0 ? -1 : 1);
+        TEST_REQUIRE(expected == setup_get(&two.gradient, n / d, n % d), "item %d", n / d);
     }
 }
 
 /* ---- Subsets and threads ------------------------------------------------------------------ */
 
-static void require_subset(const stage *on, const stage_field *field, const stage_result *full,
-                           const sphg_subset *subset, const uint8_t *expected)
+static void require_subset(const comparison *on, const comparison_field *field,
+                           const comparison_result *full, const sphg_subset *subset,
+                           const uint8_t *expected)
 {
-    stage_result part = stage_apply_to(on, field, NULL, subset);
+    comparison_result part = comparison_apply_to(on, field, NULL, subset);
     int width = full->gradient.width;
     for (int i = 0; i < on->points.count; i++) {
         if (!expected[i]) {
-            TEST_REQUIRE(fixture_is_canary(&part.gradient, i), "%d was not selected", i);
+            TEST_REQUIRE(setup_is_canary(&part.gradient, i), "%d was not selected", i);
             continue;
         }
         for (int c = 0; c < width; c++)
-            TEST_REQUIRE(fixture_get(&part.gradient, i, c) == fixture_get(&full->gradient, i, c),
+            TEST_REQUIRE(setup_get(&part.gradient, i, c) == setup_get(&full->gradient, i, c),
                          "item %d", i);
     }
 }
 
 /* One of so many, by mask and by list, picked at random and in a row. */
-static void require_share(const stage *on, const stage_field *field, const stage_result *full,
-                          int share, random_state *random)
+static void require_share(const comparison *on, const comparison_field *field,
+                          const comparison_result *full, int share, random_state *random)
 {
     const int n = on->points.count;
     uint8_t *mask = test_memory((size_t)n), *range = test_memory((size_t)n);
@@ -276,9 +282,10 @@ static void subsets_have_the_bits_of_the_full_run(const test_case *test)
     random_state jitter = random_seeded(52);
     const int d = test->dimension;
     const cloud points = cloud_jittered(d, d == 2 ? 40 : 12, 1, .3, &jitter); /* several blocks */
-    stage on = stage_of(test, "several blocks", points, 2.25);
-    stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_VECTOR, 6)};
-    stage_result full = stage_apply(&on, &field, NULL);
+    comparison on = comparison_of(test, "several blocks", points, 2.25);
+    comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_VECTOR, 6)};
+    comparison_result full = comparison_apply(&on, &field, NULL);
     random_state random = random_seeded(53);
     for (size_t k = 0; k < sizeof shares / sizeof shares[0]; k++)
         require_share(&on, &field, &full, shares[k], &random);
@@ -286,16 +293,17 @@ static void subsets_have_the_bits_of_the_full_run(const test_case *test)
 
 static void threads_do_not_change_a_bit(const test_case *test)
 {
-    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
-    stage_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_VECTOR, 6)};
-    stage_result two = stage_apply(&on, &field, NULL);
+    comparison on = comparison_of(test, "block", unit_block(test->dimension), 2.25);
+    comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_VECTOR, 6)};
+    comparison_result two = comparison_apply(&on, &field, NULL);
     static const int threads[] = {1, 3, 5};
     for (int t = 0; t < 3; t++) {
-        stage other = on;
-        other.context = fixture_context_of(threads[t]);
-        other.neighbors = fixture_neighbors(other.context, test, &other.scheme, &other.points);
-        stage_result found = stage_apply(&other, &field, NULL);
-        TEST_REQUIRE(stage_results_have_same_bits(&two, &found), "%d threads", threads[t]);
+        comparison other = on;
+        other.context = setup_context_of(threads[t]);
+        other.neighbors = setup_neighbors(other.context, test, &other.scheme, &other.points);
+        comparison_result found = comparison_apply(&other, &field, NULL);
+        TEST_REQUIRE(comparison_results_have_same_bits(&two, &found), "%d threads", threads[t]);
     }
 }
 
@@ -303,18 +311,18 @@ static void threads_do_not_change_a_bit(const test_case *test)
  * ------------------------------------------------------------------------- */
 
 /* Items of `found` taken from particle[i], component[c]; compared on a few particles. */
-static void require_near(const stage *on, const stage_field *field, const stage_result *exact,
-                         const stage_result *found, const int *particle, const int *component,
-                         const char *what)
+static void require_near(const comparison *on, const comparison_field *field,
+                         const comparison_result *exact, const comparison_result *found,
+                         const int *particle, const int *component, const char *what)
 {
     int d = on->points.dimension;
     oracle_field asked = {field->shape, field->form, field->numbers, NULL};
     for (int i = 0; i < on->points.count; i += 9) {
         quad moved[3], bound = oracle_apply(on->reference, &asked, i).bound;
         for (int c = 0; c < d; c++)
-            moved[c] = fixture_get(&found->gradient, particle ? particle[i] : i,
-                                   component ? component[c] : c);
-        TEST_WITHIN(equal_within_bound, stage_ratio(&exact->gradient, i, moved, bound),
+            moved[c] = setup_get(&found->gradient, particle ? particle[i] : i,
+                                 component ? component[c] : c);
+        TEST_WITHIN(equal_within_bound, comparison_ratio(&exact->gradient, i, moved, bound),
                     test_text("%s, %s", what, test_method_name(on->test->method)));
     }
 }
@@ -329,7 +337,7 @@ static double *gathered(const double *numbers, const int *from, int count, int w
 
 static void order_of_particles_matters_within_the_bound(const test_case *test)
 {
-    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    comparison on = comparison_of(test, "block", unit_block(test->dimension), 2.25);
     int n = on.points.count, d = test->dimension;
     int *from = test_memory((size_t)n * sizeof *from), *to = test_memory((size_t)n * sizeof *to);
     random_state random = random_seeded(54);
@@ -342,25 +350,29 @@ static void order_of_particles_matters_within_the_bound(const test_case *test)
         to[from[i]] = i;
     cloud shuffled = on.points;
     shuffled.x = gathered(on.points.x, from, n, d);
-    stage other = stage_of(test, "shuffled", shuffled, 2.25);
-    other = stage_with_volumes(&other, gathered(on.scene.volume, from, n, 1));
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 7)};
-    stage_field moved = field;
+    comparison other = comparison_of(test, "shuffled", shuffled, 2.25);
+    other = comparison_with_volumes(&other, gathered(on.scene.volume, from, n, 1));
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_SCALAR, 7)};
+    comparison_field moved = field;
     moved.numbers = gathered(field.numbers, from, n, 1);
-    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &moved, NULL);
+    comparison_result one = comparison_apply(&on, &field, NULL),
+                      two = comparison_apply(&other, &moved, NULL);
     require_near(&on, &field, &one, &two, to, NULL, "shuffled");
 }
 
 static void axes_may_be_swapped_within_the_bound(const test_case *test)
 {
     int d = test->dimension, next[] = {1, d == 2 ? 0 : 2, 0};
-    stage on = stage_of(test, "block", unit_block(d), 2.25);
+    comparison on = comparison_of(test, "block", unit_block(d), 2.25);
     cloud turned = cloud_copy(&on.points);
     for (int k = 0; k < turned.count * d; k++)
         turned.x[k / d * d + next[k % d]] = on.points.x[k];
-    stage other = stage_of(test, "axes swapped", turned, 2.25);
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 7)};
-    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &field, NULL);
+    comparison other = comparison_of(test, "axes swapped", turned, 2.25);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_SCALAR, 7)};
+    comparison_result one = comparison_apply(&on, &field, NULL),
+                      two = comparison_apply(&other, &field, NULL);
     require_near(&on, &field, &one, &two, NULL, next, "axes swapped");
 }
 
@@ -371,35 +383,39 @@ static void rotations_turn_gradients_within_the_bound(const test_case *test)
     cloud points = unit_block(d);
     for (int k = 0; k < points.count * d; k++)
         points.x[k] *= 5;
-    stage on = stage_of(test, "block", points, 11.25);
+    comparison on = comparison_of(test, "block", points, 11.25);
     cloud turned = cloud_copy(&points);
     for (int i = 0; i < points.count; i++) {
         const double *x = points.x + i * d;
         turned.x[i * d] = (3 * x[0] - 4 * x[1]) / 5;
         turned.x[i * d + 1] = (4 * x[0] + 3 * x[1]) / 5;
     }
-    stage other = stage_of(test, "turned", turned, 11.25);
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 8)};
-    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &field, NULL);
-    double *back = fixture_doubles(&two.gradient);
+    comparison other = comparison_of(test, "turned", turned, 11.25);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_SCALAR, 8)};
+    comparison_result one = comparison_apply(&on, &field, NULL),
+                      two = comparison_apply(&other, &field, NULL);
+    double *back = setup_doubles(&two.gradient);
     for (int i = 0; i < points.count; i++) {
         double gx = back[i * d], gy = back[i * d + 1];
         back[i * d] = (3 * gx + 4 * gy) / 5;
         back[i * d + 1] = (-4 * gx + 3 * gy) / 5;
     }
-    two.gradient = fixture_numbers(SPHG_F64, points.count, d, back);
+    two.gradient = setup_numbers(SPHG_F64, points.count, d, back);
     require_near(&on, &field, &one, &two, NULL, NULL, "turned");
 }
 
 static void far_translation_stays_within_the_bound(const test_case *test)
 {
     static const double vector[] = {-37, 91, 13.5};
-    stage on = stage_of(test, "block", unit_block(test->dimension), 2.25);
+    comparison on = comparison_of(test, "block", unit_block(test->dimension), 2.25);
     cloud moved = cloud_copy(&on.points);
     cloud_shift(&moved, vector);
-    stage other = stage_of(test, "moved", moved, 2.25);
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 9)};
-    stage_result one = stage_apply(&on, &field, NULL), two = stage_apply(&other, &field, NULL);
+    comparison other = comparison_of(test, "moved", moved, 2.25);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_SCALAR, 9)};
+    comparison_result one = comparison_apply(&on, &field, NULL),
+                      two = comparison_apply(&other, &field, NULL);
     require_near(&on, &field, &one, &two, NULL, NULL, "other cells");
 }
 
@@ -407,17 +423,18 @@ static void mls_is_rkpm_at_unit_volume(const test_case *test)
 {
     test_case cases[] = {*test, *test};
     cases[1].method = SPHG_RKPM;
-    stage stages[2];
-    stage_result found[2];
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, NULL};
+    comparison stages[2];
+    comparison_result found[2];
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, NULL};
     for (int s = 0; s < 2; s++) {
-        stage made = stage_of(&cases[s], "unit volumes", unit_block(test->dimension), 2.25);
+        comparison made =
+            comparison_of(&cases[s], "unit volumes", unit_block(test->dimension), 2.25);
         double *volume = test_memory((size_t)made.points.count * sizeof *volume);
         for (int i = 0; i < made.points.count; i++)
             volume[i] = 1;
-        stages[s] = stage_with_volumes(&made, volume);
-        field.numbers = stage_random_field(&stages[s], SPHG_SCALAR, 10);
-        found[s] = stage_apply(&stages[s], &field, NULL);
+        stages[s] = comparison_with_volumes(&made, volume);
+        field.numbers = comparison_random_field(&stages[s], SPHG_SCALAR, 10);
+        found[s] = comparison_apply(&stages[s], &field, NULL);
     }
     require_near(&stages[0], &field, &found[0], &found[1], NULL, NULL, "MLS against RKPM");
 }

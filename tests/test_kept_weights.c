@@ -1,6 +1,6 @@
 /* Weights that neighbours keep beside their lists: the same bits as without, read only where they
  * are those of the sweep, and really read. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include <string.h>
 
 typedef struct kept {
@@ -8,35 +8,35 @@ typedef struct kept {
     sphg_context *context;
     sphg_scheme scheme;
     cloud points;
-    fixture_array positions, volume, other_volume, scalar, vector;
+    setup_array positions, volume, other_volume, scalar, vector;
     sphg_neighbors *keeping, *plain;
 } kept;
 
 static sphg_geometry geometry_of(const kept *on, int keep)
 {
     cloud points = on->points;
-    sphg_geometry geometry = fixture_geometry(on->test, &points, &on->positions);
+    sphg_geometry geometry = setup_geometry(on->test, &points, &on->positions);
     geometry.keep_weights = keep;
     return geometry;
 }
 
 static kept kept_on(const test_case *test, sphg_context *context)
 {
-    kept made = {.test = test, .context = context, .scheme = fixture_scheme(test, 2)};
+    kept made = {.test = test, .context = context, .scheme = setup_scheme(test, 2)};
     random_state random = random_seeded(71);
     const sphg_type type = test_field_type(test);
     made.points = cloud_jittered(test->dimension, test->dimension == 3 ? 9 : 24, 1, .3, &random);
-    made.positions = fixture_positions(test, &made.points);
+    made.positions = setup_positions(test, &made.points);
     const int n = made.points.count;
-    made.volume = fixture_numbers(type, n, 1, cloud_volumes(&made.points, .3, &random));
-    made.other_volume = fixture_numbers(type, n, 1, cloud_volumes(&made.points, .3, &random));
-    made.scalar = fixture_numbers(type, n, 1, cloud_numbers(&made.points, -1, 1, &random));
-    made.vector = fixture_output(type, n, test->dimension);
+    made.volume = setup_numbers(type, n, 1, cloud_volumes(&made.points, .3, &random));
+    made.other_volume = setup_numbers(type, n, 1, cloud_volumes(&made.points, .3, &random));
+    made.scalar = setup_numbers(type, n, 1, cloud_numbers(&made.points, -1, 1, &random));
+    made.vector = setup_output(type, n, test->dimension);
     for (int k = 0; k < n * test->dimension; k++)
-        fixture_put(&made.vector, k, random_between(&random, -1, 1));
+        setup_put(&made.vector, k, random_between(&random, -1, 1));
     const sphg_geometry keeping = geometry_of(&made, 1), plain = geometry_of(&made, 0);
-    made.keeping = fixture_search(context, &made.scheme, &keeping);
-    made.plain = fixture_search(context, &made.scheme, &plain);
+    made.keeping = setup_search(context, &made.scheme, &keeping);
+    made.plain = setup_search(context, &made.scheme, &plain);
     return made;
 }
 
@@ -47,7 +47,7 @@ static int keeps(const kept *on)
 }
 
 typedef struct results {
-    fixture_array table, jacobian, force;
+    setup_array table, jacobian, force;
 } results;
 
 static results results_of(const kept *on)
@@ -55,8 +55,8 @@ static results results_of(const kept *on)
     const int n = on->points.count, d = on->test->dimension;
     const int width = sphg_correction_width(&on->scheme);
     const sphg_type type = test_field_type(on->test);
-    return (results){fixture_output(type, n, width ? width : 1), fixture_output(type, n, d * d),
-                     fixture_output(type, n, d)};
+    return (results){setup_output(type, n, width ? width : 1), setup_output(type, n, d * d),
+                     setup_output(type, n, d)};
 }
 
 /* Corrections and a Jacobian in one sweep, then a force that uses them. */
@@ -64,34 +64,34 @@ static results evaluate(const kept *on, const sphg_neighbors *neighbors, sphg_vi
                         int same_volumes, const sphg_subset *subset)
 {
     results found = results_of(on);
-    const sphg_view vector = fixture_view(&on->vector), scalar = fixture_view(&on->scalar);
+    const sphg_view vector = setup_view(&on->vector), scalar = setup_view(&on->scalar);
     const int width = sphg_correction_width(&on->scheme);
     sphg_sources sources = {.neighbors = neighbors, .volume = volume, .same_volumes = same_volumes};
     sphg_field field = {
-        .shape = SPHG_VECTOR, .at_sources = &vector, .gradient = fixture_view(&found.jacobian)};
+        .shape = SPHG_VECTOR, .at_sources = &vector, .gradient = setup_view(&found.jacobian)};
     sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1, .subset = subset};
     if (width)
-        request.correction = fixture_view(&found.table);
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        request.correction = setup_view(&found.table);
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     if (subset)
         return found;
     field = (sphg_field){.shape = SPHG_SCALAR,
                          .form = SPHG_ADJOINT,
                          .at_sources = &scalar,
-                         .gradient = fixture_view(&found.force)};
+                         .gradient = setup_view(&found.force)};
     request.correction = sphg_absent();
     if (width)
-        sources.correction = fixture_view(&found.table);
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        sources.correction = setup_view(&found.table);
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return found;
 }
 
 static void require_same(const results *a, const results *b, const char *how)
 {
-    TEST_REQUIRE(fixture_same_bits(&a->table, &b->table), "%s: corrections", how);
-    TEST_REQUIRE(fixture_same_bits(&a->jacobian, &b->jacobian), "%s: Jacobian", how);
-    TEST_REQUIRE(fixture_same_bits(&a->force, &b->force), "%s: force", how);
+    TEST_REQUIRE(setup_same_bits(&a->table, &b->table), "%s: corrections", how);
+    TEST_REQUIRE(setup_same_bits(&a->jacobian, &b->jacobian), "%s: Jacobian", how);
+    TEST_REQUIRE(setup_same_bits(&a->force, &b->force), "%s: force", how);
 }
 
 static void require_fresh(const kept *on, sphg_view volume, int same_volumes, const char *how)
@@ -106,11 +106,11 @@ static void require_fresh(const kept *on, sphg_view volume, int same_volumes, co
 static void bits_are_those_without(const test_case *test)
 {
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
-        sphg_context *context = fixture_context_on(isa);
+        sphg_context *context = setup_context_on(isa);
         if (!context)
             continue;
         const kept on = kept_on(test, context);
-        const sphg_view volume = fixture_view(&on.volume);
+        const sphg_view volume = setup_view(&on.volume);
         uint8_t *mask = test_memory((size_t)on.points.count);
         for (int i = 0; i < on.points.count; i++)
             mask[i] = i < on.points.count / 2 || i % 3 == 0;
@@ -133,8 +133,8 @@ static sphg_scheme with_kernel(const kept *on, sphg_kernel kernel)
 
 static void another_scheme_or_volume_forms_them_anew(const test_case *test)
 {
-    kept on = kept_on(test, fixture_context());
-    const sphg_view volume = fixture_view(&on.volume), other = fixture_view(&on.other_volume);
+    kept on = kept_on(test, setup_context());
+    const sphg_view volume = setup_view(&on.volume), other = setup_view(&on.other_volume);
     require_fresh(&on, volume, 0, "first");
     require_fresh(&on, other, 0, "other volumes");
     const sphg_scheme mine = on.scheme;
@@ -153,48 +153,48 @@ static void another_scheme_or_volume_forms_them_anew(const test_case *test)
 
 static void one_volume_for_all_is_compared(const test_case *test)
 {
-    const kept on = kept_on(test, fixture_context());
+    const kept on = kept_on(test, setup_context());
     const sphg_type type = test_field_type(test);
     for (int k = 0; k < 3; k++) {
-        const fixture_array one = fixture_numbers(type, 1, 1, (const double[]){k == 1 ? .75 : 1});
-        sphg_view volume = fixture_view(&one);
+        const setup_array one = setup_numbers(type, 1, 1, (const double[]){k == 1 ? .75 : 1});
+        sphg_view volume = setup_view(&one);
         volume.stride = 0;
         require_fresh(&on, volume, 0, test_text("volume %d, first", k));
         require_fresh(&on, volume, 1, test_text("volume %d, again", k));
     }
-    require_fresh(&on, fixture_view(&on.volume), 1, "volumes of their own");
+    require_fresh(&on, setup_view(&on.volume), 1, "volumes of their own");
 }
 
 static void a_new_search_forgets_them(const test_case *test)
 {
-    kept on = kept_on(test, fixture_context());
-    const sphg_view volume = fixture_view(&on.volume);
+    kept on = kept_on(test, setup_context());
+    const sphg_view volume = setup_view(&on.volume);
     require_fresh(&on, volume, 0, "before");
     for (int k = 0; k < on.points.count; k++)
         on.points.x[k * test->dimension] *= 1.125;
-    on.positions = fixture_positions(test, &on.points);
+    on.positions = setup_positions(test, &on.points);
     const sphg_geometry keeping = geometry_of(&on, 1), plain = geometry_of(&on, 0);
-    FIXTURE_OK(on.context, sphg_neighbors_search(on.context, on.keeping, &on.scheme, &keeping));
-    FIXTURE_OK(on.context, sphg_neighbors_search(on.context, on.plain, &on.scheme, &plain));
+    SETUP_OK(on.context, sphg_neighbors_search(on.context, on.keeping, &on.scheme, &keeping));
+    SETUP_OK(on.context, sphg_neighbors_search(on.context, on.plain, &on.scheme, &plain));
     require_fresh(&on, volume, 1, "after");
 }
 
 /* A sweep that failed wrote what nobody may read. */
 static void bad_volumes_leave_nothing_behind(const test_case *test)
 {
-    const kept on = kept_on(test, fixture_context());
-    const fixture_array bad =
-        fixture_numbers(test_field_type(test), on.points.count, 1, fixture_doubles(&on.volume));
-    fixture_put(&bad, on.points.count / 2, -1);
-    const sphg_view vector = fixture_view(&on.vector);
+    const kept on = kept_on(test, setup_context());
+    const setup_array bad =
+        setup_numbers(test_field_type(test), on.points.count, 1, setup_doubles(&on.volume));
+    setup_put(&bad, on.points.count / 2, -1);
+    const sphg_view vector = setup_view(&on.vector);
     results found = results_of(&on);
-    const sphg_sources sources = {.neighbors = on.keeping, .volume = fixture_view(&bad)};
+    const sphg_sources sources = {.neighbors = on.keeping, .volume = setup_view(&bad)};
     const sphg_field field = {
-        .shape = SPHG_VECTOR, .at_sources = &vector, .gradient = fixture_view(&found.jacobian)};
+        .shape = SPHG_VECTOR, .at_sources = &vector, .gradient = setup_view(&found.jacobian)};
     const sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     assert_int_equal(sphg_evaluate(on.context, &on.scheme, &request), SPHG_ERROR_VOLUME);
-    require_fresh(&on, fixture_view(&on.volume), 1, "after a volume of -1");
+    require_fresh(&on, setup_view(&on.volume), 1, "after a volume of -1");
 }
 
 /* ---- They are read -------------------------------------------------------------------------- */
@@ -202,17 +202,17 @@ static void bad_volumes_leave_nothing_behind(const test_case *test)
 /* Told that volumes are those of before, which they are not, sums are still those of before. */
 static void what_is_kept_is_read(const test_case *test)
 {
-    const kept on = kept_on(test, fixture_context());
+    const kept on = kept_on(test, setup_context());
     if (!keeps(&on))
         test_skip();
-    const results before = evaluate(&on, on.keeping, fixture_view(&on.volume), 0, NULL);
-    const results told = evaluate(&on, on.keeping, fixture_view(&on.other_volume), 1, NULL);
-    const results honest = evaluate(&on, on.keeping, fixture_view(&on.other_volume), 0, NULL);
+    const results before = evaluate(&on, on.keeping, setup_view(&on.volume), 0, NULL);
+    const results told = evaluate(&on, on.keeping, setup_view(&on.other_volume), 1, NULL);
+    const results honest = evaluate(&on, on.keeping, setup_view(&on.other_volume), 0, NULL);
     int equal = 0, honest_equal = 0;
     for (int i = 0; i < on.points.count; i++) {
-        const double x = fixture_get(&before.jacobian, i, 0);
-        equal += fixture_get(&told.jacobian, i, 0) == x;
-        honest_equal += fixture_get(&honest.jacobian, i, 0) == x;
+        const double x = setup_get(&before.jacobian, i, 0);
+        equal += setup_get(&told.jacobian, i, 0) == x;
+        honest_equal += setup_get(&honest.jacobian, i, 0) == x;
     }
     /* the last group may be too small to be kept */
     TEST_REQUIRE(equal > on.points.count - 16, "%d of %d were read", equal, on.points.count);
@@ -222,10 +222,10 @@ static void what_is_kept_is_read(const test_case *test)
 
 static void they_are_counted_among_the_bytes(const test_case *test)
 {
-    const kept on = kept_on(test, fixture_context());
+    const kept on = kept_on(test, setup_context());
     sphg_neighbors_info with, without;
-    FIXTURE_OK(on.context, sphg_neighbors_get_info(on.context, on.keeping, &with));
-    FIXTURE_OK(on.context, sphg_neighbors_get_info(on.context, on.plain, &without));
+    SETUP_OK(on.context, sphg_neighbors_get_info(on.context, on.keeping, &with));
+    SETUP_OK(on.context, sphg_neighbors_get_info(on.context, on.plain, &without));
     const int64_t each = test_field_type(test) == SPHG_F64 ? 8 : 4;
     if (test->precision == TEST_MIXED)
         assert_int_equal(with.bytes, without.bytes);
@@ -248,8 +248,7 @@ static void run_in_company(sphg_task *task, void *data, int32_t count, int32_t g
     company *with = user;
     (void)grain;
     if (with->on && !with->calls++)
-        with->found =
-            evaluate(with->on, with->on->keeping, fixture_view(&with->on->volume), 0, NULL);
+        with->found = evaluate(with->on, with->on->keeping, setup_view(&with->on->volume), 0, NULL);
     task(data, 0, count, 0);
 }
 
@@ -258,24 +257,24 @@ static void a_sweep_beside_another_has_the_same_bits(const test_case *test)
     company with = {.on = NULL};
     const sphg_config config = {
         .threads = 1, .isa = test_isa(), .parallel_for = run_in_company, .user = &with};
-    const kept inner = kept_on(test, fixture_context());
+    const kept inner = kept_on(test, setup_context());
     kept outer = inner;
-    outer.context = fixture_context_with(&config);
-    const results expected = evaluate(&inner, inner.plain, fixture_view(&inner.volume), 0, NULL);
+    outer.context = setup_context_with(&config);
+    const results expected = evaluate(&inner, inner.plain, setup_view(&inner.volume), 0, NULL);
     with.on = &inner;
-    const results found = evaluate(&outer, inner.keeping, fixture_view(&inner.volume), 0, NULL);
+    const results found = evaluate(&outer, inner.keeping, setup_view(&inner.volume), 0, NULL);
     TEST_REQUIRE(with.calls > 0, "nobody came");
     require_same(&found, &expected, "the first");
     require_same(&with.found, &expected, "the second");
     with.on = NULL;
-    require_fresh(&inner, fixture_view(&inner.volume), 1, "afterwards");
+    require_fresh(&inner, setup_view(&inner.volume), 1, "afterwards");
 }
 
 /* ---- Refusals ------------------------------------------------------------------------------- */
 
 static void lists_must_be_kept_by_a_search(const test_case *test)
 {
-    const kept on = kept_on(test, fixture_context());
+    const kept on = kept_on(test, setup_context());
     sphg_geometry geometry = geometry_of(&on, 1);
     geometry.list_free = 1;
     assert_int_equal(sphg_neighbors_search(on.context, on.keeping, &on.scheme, &geometry),
@@ -291,7 +290,7 @@ static void lists_must_be_kept_by_a_search(const test_case *test)
         SPHG_ERROR_ARGUMENT);
     TEST_REQUIRE(strstr(sphg_last_message(on.context), "keep_weights"), "%s",
                  sphg_last_message(on.context));
-    require_fresh(&on, fixture_view(&on.volume), 0, "the neighbours of before");
+    require_fresh(&on, setup_view(&on.volume), 0, "the neighbours of before");
 }
 
 static const test_entry entries[] = {

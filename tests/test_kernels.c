@@ -1,6 +1,6 @@
 /* The smoothing functions W and W'/r against the table of docs/theory.md: closed forms, quadrature
  * that is exact for the polynomial pieces, and finite differences. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include "support/oracle_kernel.h"
 #include <complex.h>
 #include <float.h>
@@ -283,38 +283,38 @@ static sphg_neighbors *lonely_pairs(const test_case *test, sphg_context *context
         offsets[n + 1] = n + 1;
     }
     const sphg_type type = test_position_type(test);
-    const fixture_array from = fixture_numbers(type, PLACES, d, sources);
-    const fixture_array to = fixture_numbers(type, PLACES, d, targets);
-    const sphg_geometry geometry = {.sources = fixture_view(&from),
-                                    .targets = fixture_view(&to),
+    const setup_array from = setup_numbers(type, PLACES, d, sources);
+    const setup_array to = setup_numbers(type, PLACES, d, targets);
+    const sphg_geometry geometry = {.sources = setup_view(&from),
+                                    .targets = setup_view(&to),
                                     .source_count = PLACES,
                                     .target_count = PLACES,
                                     .precision = test_field_type(test)};
     const sphg_lists lists = {.offsets = offsets, .indices = indices};
-    return fixture_lists(context, scheme, &geometry, &lists);
+    return setup_lists(context, scheme, &geometry, &lists);
 }
 
 /* sum A_j V_j W and sum A_j V_j W'/r x_ij of A = 1. */
 static void sum_pairs(const test_case *test, sphg_context *context, const sphg_scheme *scheme,
-                      fixture_array *values, fixture_array *gradients)
+                      setup_array *values, setup_array *gradients)
 {
     const sphg_type type = test_field_type(test);
     const double one = 1;
-    const fixture_array ones = fixture_numbers(type, 1, 1, &one);
-    sphg_view everywhere = fixture_view(&ones);
+    const setup_array ones = setup_numbers(type, 1, 1, &one);
+    sphg_view everywhere = setup_view(&ones);
     everywhere.stride = 0;
     const sphg_sources sources = {.neighbors = lonely_pairs(test, context, scheme),
                                   .volume = everywhere};
-    *values = fixture_output(type, PLACES, 1);
-    *gradients = fixture_output(type, PLACES, test->dimension);
+    *values = setup_output(type, PLACES, 1);
+    *gradients = setup_output(type, PLACES, test->dimension);
     const sphg_field field = {.shape = SPHG_SCALAR,
                               .form = SPHG_DIRECT,
                               .at_sources = &everywhere,
-                              .value = fixture_view(values),
-                              .gradient = fixture_view(gradients)};
+                              .value = setup_view(values),
+                              .gradient = setup_view(gradients)};
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
-    FIXTURE_OK(context, sphg_evaluate(context, scheme, &request));
+    SETUP_OK(context, sphg_evaluate(context, scheme, &request));
 }
 
 static void passes_keep_their_digits_on_every_instruction_set(const test_case *test)
@@ -324,14 +324,14 @@ static void passes_keep_their_digits_on_every_instruction_set(const test_case *t
     sphg_scheme scheme = scheme_of(row, test->dimension, 1);
     scheme.method = SPHG_PLAIN;
     for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
-        sphg_context *context = fixture_context_on((sphg_isa)isa);
-        fixture_array values, gradients;
+        sphg_context *context = setup_context_on((sphg_isa)isa);
+        setup_array values, gradients;
         if (!context)
             continue;
         sum_pairs(test, context, &scheme, &values, &gradients);
         for (int n = 0; n < PLACES; n++)
-            require_shape(row, n, fixture_get(&values, n, 0) / sigma,
-                          fixture_get(&gradients, n, 0) / (sigma * -place(n)),
+            require_shape(row, n, setup_get(&values, n, 0) / sigma,
+                          setup_get(&gradients, n, 0) / (sigma * -place(n)),
                           test_unit_roundoff(test));
     }
 }

@@ -1,7 +1,7 @@
 /* sphg_neighbors_check(): complete lists pass, however they are handed over and whatever else they
  * hold; of others the first fault is named. Who is near whom is decided by brute force. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static place place_of(const test_case *test, int kind)
     random_state random = random_seeded(61);
     cloud points = cloud_random(test->dimension, COUNT, 4, &random);
     cloud others = cloud_random(test->dimension, TARGETS, 4, &random);
-    place own = {.context = fixture_context(), .name = place_names[kind]};
+    place own = {.context = setup_context(), .name = place_names[kind]};
     own.particles = scene_of_cloud(test, &points);
     if (kind == APART)
         own.particles.targets = scene_of_cloud(test, &others).sources;
@@ -35,7 +35,7 @@ static place place_of(const test_case *test, int kind)
         own.particles.target_count = TARGETS;
     for (int axis = 0; kind == PERIODIC && axis < test->dimension; axis++)
         own.particles.period[axis] = 4;
-    own.scheme = fixture_scheme(test, test->dimension == 2 ? .75 : 1.25);
+    own.scheme = setup_scheme(test, test->dimension == 2 ? .75 : 1.25);
     own.geometry = scene_geometry(&own.particles);
     own.near = rows_by_brute_force(&own.particles, own.scheme.support_radius);
     return own;
@@ -173,7 +173,7 @@ static void require_passed(const place *own, const sphg_neighbors *neighbors, do
     assert_int_equal(fault.source, -1);
     assert_int_equal(fault.faulty, 0);
     assert_true(fault.distance == 0);
-    FIXTURE_OK(own->context, sphg_neighbors_check(own->context, &scheme, neighbors, NULL));
+    SETUP_OK(own->context, sphg_neighbors_check(own->context, &scheme, neighbors, NULL));
 }
 
 static void require_lists_pass(const place *own, draft *lists, const char *where)
@@ -181,7 +181,7 @@ static void require_lists_pass(const place *own, draft *lists, const char *where
     for (int group = 0; group < GROUPS; group++) {
         const sphg_lists given = group_of(lists, group);
         const sphg_neighbors *brought =
-            fixture_lists(own->context, &own->scheme, &own->geometry, &given);
+            setup_lists(own->context, &own->scheme, &own->geometry, &given);
         require_passed(own, brought, own->scheme.support_radius, where);
     }
 }
@@ -200,8 +200,7 @@ static void require_found(const place *own, draft *lists, const sphg_list_fault 
 {
     const char *where = test_text("%s, group %d, fault %d", own->name, group, (int)expected->kind);
     const sphg_lists given = group_of(lists, group);
-    const sphg_neighbors *brought =
-        fixture_lists(own->context, &own->scheme, &own->geometry, &given);
+    const sphg_neighbors *brought = setup_lists(own->context, &own->scheme, &own->geometry, &given);
     sphg_list_fault found = {SPHG_FAULT_NONE, 0, 0, 0, 0};
     const sphg_result result = sphg_neighbors_check(own->context, &own->scheme, brought, &found);
     const int is_index = expected->kind == SPHG_FAULT_LENGTH || expected->kind == SPHG_FAULT_INDEX;
@@ -260,7 +259,7 @@ static void lists_need_no_more_than_the_scheme_asks(const test_case *test)
     const rows few = rows_by_brute_force(&own.particles, narrow);
     draft lists = draft_of(&few);
     const sphg_lists given = group_of(&lists, CSR);
-    const sphg_neighbors *brought = fixture_lists(own.context, &own.scheme, &own.geometry, &given);
+    const sphg_neighbors *brought = setup_lists(own.context, &own.scheme, &own.geometry, &given);
     require_passed(&own, brought, narrow, "narrow");
     assert_int_equal(sphg_neighbors_check(own.context, &own.scheme, brought, NULL),
                      SPHG_ERROR_LISTS);
@@ -274,7 +273,7 @@ static void lists_of_the_library_pass(const test_case *test)
             const double H = own.scheme.support_radius;
             own.geometry.list_free = way == 1;
             own.geometry.skin = way == 2 ? .2 * H : 0;
-            sphg_neighbors *searched = fixture_search(own.context, &own.scheme, &own.geometry);
+            sphg_neighbors *searched = setup_search(own.context, &own.scheme, &own.geometry);
             require_passed(&own, searched, H, test_text("way %d", way));
             require_passed(&own, searched, .7 * H, test_text("way %d, narrow", way));
             if (way < 2 || kind == APART)
@@ -283,8 +282,8 @@ static void lists_of_the_library_pass(const test_case *test)
                 own.particles.sources[k] += k % 2 ? 0x1p-5 : -0x1p-5;
             const sphg_geometry moved = scene_geometry(&own.particles);
             own.geometry.sources = moved.sources;
-            FIXTURE_OK(own.context,
-                       sphg_neighbors_search(own.context, searched, &own.scheme, &own.geometry));
+            SETUP_OK(own.context,
+                     sphg_neighbors_search(own.context, searched, &own.scheme, &own.geometry));
             require_passed(&own, searched, H, "kept by the skin");
         }
 }
@@ -293,11 +292,11 @@ static void lists_of_the_library_pass(const test_case *test)
 static void neighbours_stay_as_they_are(const test_case *test)
 {
     const place own = place_of(test, PERIODIC);
-    const sphg_neighbors *searched = fixture_search(own.context, &own.scheme, &own.geometry);
+    const sphg_neighbors *searched = setup_search(own.context, &own.scheme, &own.geometry);
     sphg_neighbors_info before, after;
-    FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, searched, &before));
+    SETUP_OK(own.context, sphg_neighbors_get_info(own.context, searched, &before));
     require_passed(&own, searched, own.scheme.support_radius, "searched");
-    FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, searched, &after));
+    SETUP_OK(own.context, sphg_neighbors_get_info(own.context, searched, &after));
     assert_true(before.pairs == after.pairs && before.bytes == after.bytes);
     const rows found = rows_listed(own.context, searched, &own.scheme, NULL);
     rows_require_equal(&found, &own.near, "after the check");
@@ -320,8 +319,8 @@ static void empty_sets_pass(const test_case *test)
     for (int k = 0; k < 4; k++) {
         const double H = own.scheme.support_radius;
         const char *where = test_text("empty %d", k);
-        require_passed(&own, fixture_search(own.context, &own.scheme, &empty[k]), H, where);
-        require_passed(&own, fixture_lists(own.context, &own.scheme, &empty[k], &lists), H, where);
+        require_passed(&own, setup_search(own.context, &own.scheme, &empty[k]), H, where);
+        require_passed(&own, setup_lists(own.context, &own.scheme, &empty[k], &lists), H, where);
     }
 }
 
@@ -414,8 +413,7 @@ static void the_lowest_target_is_named_and_all_are_counted(const test_case *test
 static void require_falling_offsets_found(const place *own, draft *lists, int target)
 {
     const sphg_lists given = group_of(lists, CSR);
-    const sphg_neighbors *brought =
-        fixture_lists(own->context, &own->scheme, &own->geometry, &given);
+    const sphg_neighbors *brought = setup_lists(own->context, &own->scheme, &own->geometry, &given);
     sphg_list_fault found = {SPHG_FAULT_NONE, 0, 0, 0, 0};
     lists->offsets[target + 1] = lists->offsets[target] - 1;
     assert_int_equal(sphg_neighbors_check(own->context, &own->scheme, brought, &found),
@@ -496,7 +494,7 @@ static void the_answer_does_not_depend_on_threads(const test_case *test)
     random_state random = random_seeded(67);
     cloud points = cloud_random(test->dimension, MANY, 8, &random);
     const scene particles = scene_of_cloud(test, &points);
-    const sphg_scheme scheme = fixture_scheme(test, 1.5);
+    const sphg_scheme scheme = setup_scheme(test, 1.5);
     const sphg_geometry geometry = scene_geometry(&particles);
     const rows near = rows_by_brute_force(&particles, 1.5);
     draft lists = draft_of(&near);
@@ -504,16 +502,15 @@ static void the_answer_does_not_depend_on_threads(const test_case *test)
         if (lists.lengths[i] > 0)
             lists.lengths[i]--;
     const sphg_lists given = group_of(&lists, FUNCTION);
-    hooks *host = fixture_hooks();
-    sphg_config reversed = hooks_config(host, 4), in_turn = hooks_config(host, 4);
-    reversed.parallel_for = hooks_reversed;
-    in_turn.parallel_for = hooks_odd_splits;
-    sphg_context *const contexts[] = {fixture_context_of(1), fixture_context_of(2),
-                                      fixture_context_of(7), fixture_context_with(&reversed),
-                                      fixture_context_with(&in_turn)};
+    fake_host *host = setup_hooks();
+    sphg_config reversed = fake_host_config(host, 4), in_turn = fake_host_config(host, 4);
+    reversed.parallel_for = fake_host_reversed;
+    in_turn.parallel_for = fake_host_odd_splits;
+    sphg_context *const contexts[] = {setup_context_of(1), setup_context_of(2), setup_context_of(7),
+                                      setup_context_with(&reversed), setup_context_with(&in_turn)};
     sphg_list_fault first = {SPHG_FAULT_NONE, 0, 0, 0, 0};
     for (int k = 0; k < 5; k++) {
-        const sphg_neighbors *brought = fixture_lists(contexts[k], &scheme, &geometry, &given);
+        const sphg_neighbors *brought = setup_lists(contexts[k], &scheme, &geometry, &given);
         sphg_list_fault found = {SPHG_FAULT_NONE, 0, 0, 0, 0};
         assert_int_equal(sphg_neighbors_check(contexts[k], &scheme, brought, &found),
                          SPHG_ERROR_LISTS);
@@ -531,8 +528,8 @@ static void the_answer_does_not_depend_on_threads(const test_case *test)
 static void questions_that_make_no_sense_are_refused(const test_case *test)
 {
     const place own = place_of(test, OWN);
-    const sphg_neighbors *searched = fixture_search(own.context, &own.scheme, &own.geometry);
-    sphg_neighbors *blank = pairs_neighbors(own.context);
+    const sphg_neighbors *searched = setup_search(own.context, &own.scheme, &own.geometry);
+    sphg_neighbors *blank = brute_force_neighbors(own.context);
     sphg_list_fault fault;
     memset(&fault, 0x5a, sizeof fault);
     const sphg_list_fault untouched = fault;

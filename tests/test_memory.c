@@ -1,8 +1,8 @@
 /* The host's allocator: every allocation may fail and leaves nothing behind, every release names
  * the size that was asked for, and warm calls ask for nothing. */
-#include "support/fixture.h"
-#include "support/hooks.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/fake_host.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@ enum { COUNT = 400, ITEMS = 1000 /* several workers share them */, LISTED = 3000
 
 /* A host with one context, its arrays, and neighbours that may or may not be built. */
 typedef struct world {
-    hooks *host;
+    fake_host *host;
     sphg_context *context;
     sphg_neighbors *neighbors;
     sphg_scheme scheme;
@@ -18,8 +18,8 @@ typedef struct world {
     sphg_geometry geometry;
     sphg_lists lists;
     rows pairs;
-    fixture_array field, volume, matrices;
-    fixture_array first, second, third; /* outputs */
+    setup_array field, volume, matrices;
+    setup_array first, second, third; /* outputs */
 } world;
 
 static void close_world(void *object)
@@ -39,10 +39,10 @@ static world *world_create(const test_case *test)
     const int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 20 : 7, 0.25, 0.2, &random);
     double *matrices = test_memory(ITEMS * 9 * sizeof *matrices);
-    own->host = fixture_hooks();
+    own->host = setup_hooks();
     test_at_end(close_world, own);
     own->particles = scene_of_cloud(test, &points);
-    own->scheme = fixture_scheme(test, 0.5);
+    own->scheme = setup_scheme(test, 0.5);
     own->geometry = scene_geometry(&own->particles);
     own->pairs = rows_by_brute_force(&own->particles, 0.5);
     own->lists.offsets = own->pairs.offsets;
@@ -50,25 +50,25 @@ static world *world_create(const test_case *test)
     for (int k = 0; k < ITEMS * 9; k++)
         matrices[k] = k % 9 == 0 || k % 9 == 3 || k % 9 == 5 ? 1 : 0.1 / (1 + k % 7);
     const sphg_type type = test_field_type(test);
-    own->matrices = fixture_numbers(type, ITEMS, 9, matrices);
-    own->field = fixture_numbers(type, points.count, 1, cloud_numbers(&points, -1, 1, &random));
-    own->volume = fixture_numbers(type, points.count, 1, cloud_volumes(&points, 0.1, &random));
+    own->matrices = setup_numbers(type, ITEMS, 9, matrices);
+    own->field = setup_numbers(type, points.count, 1, cloud_numbers(&points, -1, 1, &random));
+    own->volume = setup_numbers(type, points.count, 1, cloud_volumes(&points, 0.1, &random));
     return own;
 }
 
 /* Zeroed, so that runs can be compared to the bit. */
 static void clear_outputs(world *own)
 {
-    fixture_array *const outputs[] = {&own->first, &own->second, &own->third};
+    setup_array *const outputs[] = {&own->first, &own->second, &own->third};
     for (int k = 0; k < 3; k++) {
-        *outputs[k] = fixture_output(own->field.type, ITEMS, 16);
+        *outputs[k] = setup_output(own->field.type, ITEMS, 16);
         memset(outputs[k]->data, 0, (size_t)ITEMS * 16 * 4);
     }
 }
 
-static sphg_view items_of(const fixture_array *array, int width)
+static sphg_view items_of(const setup_array *array, int width)
 {
-    sphg_view view = fixture_view(array);
+    sphg_view view = setup_view(array);
     view.stride = view.stride / array->width * width;
     return view;
 }
@@ -106,7 +106,7 @@ static const char *const call_names[CALLS] = {"context_create",
 
 static sphg_result create_context(world *own)
 {
-    const sphg_config config = hooks_config(own->host, 2);
+    const sphg_config config = fake_host_config(own->host, 2);
     return sphg_context_create(SPHG_VERSION, &config, &own->context);
 }
 
@@ -129,12 +129,12 @@ static sphg_result bring_lists(world *own)
 static sphg_result evaluate(world *own)
 {
     const int32_t width = sphg_correction_width(&own->scheme);
-    const sphg_view field = fixture_view(&own->field);
+    const sphg_view field = setup_view(&own->field);
     sphg_sources sources = {0};
     sphg_field wanted = {0};
     sphg_request request = {0};
     sources.neighbors = own->neighbors;
-    sources.volume = fixture_view(&own->volume);
+    sources.volume = setup_view(&own->volume);
     wanted.shape = SPHG_SCALAR;
     wanted.at_sources = &field;
     wanted.gradient = items_of(&own->first, own->particles.dimension);
@@ -153,7 +153,7 @@ static sphg_result pair_gradients(world *own)
     sphg_pairs pairs = {0};
     const sphg_subset subset = {0, 100, NULL, NULL};
     sources.neighbors = own->neighbors;
-    sources.volume = fixture_view(&own->volume);
+    sources.volume = setup_view(&own->volume);
     pairs.gradient = items_of(&own->first, own->particles.dimension);
     pairs.capacity = LISTED;
     return sphg_pair_gradients(own->context, &own->scheme, &sources, &subset, sphg_absent(),
@@ -166,7 +166,7 @@ static sphg_result invert(world *own)
     sphg_scheme scheme = own->scheme;
     scheme.method = SPHG_KGC;
     wanted.correction = items_of(&own->first, 6);
-    return sphg_invert_moments(own->context, &scheme, ITEMS, fixture_view(&own->matrices),
+    return sphg_invert_moments(own->context, &scheme, ITEMS, setup_view(&own->matrices),
                                sphg_absent(), &wanted);
 }
 
@@ -194,11 +194,10 @@ static sphg_result perform(world *own, call which)
     case INVERT:
         return invert(own);
     case EIGEN:
-        return sphg_eigen(own->context, own->particles.dimension, ITEMS,
-                          fixture_view(&own->matrices), items_of(&own->first, 3),
-                          items_of(&own->second, 9));
+        return sphg_eigen(own->context, own->particles.dimension, ITEMS, setup_view(&own->matrices),
+                          items_of(&own->first, 3), items_of(&own->second, 9));
     default:
-        return sphg_svd(own->context, ITEMS, fixture_view(&own->matrices), items_of(&own->first, 9),
+        return sphg_svd(own->context, ITEMS, setup_view(&own->matrices), items_of(&own->first, 9),
                         items_of(&own->second, 3), items_of(&own->third, 9));
     }
 }
@@ -222,13 +221,13 @@ static void prepare(world *own, call which)
 }
 
 /* Everything that depends on the call, as bits: its outputs, or the gradient after a build. */
-static void keep_result(world *own, call which, fixture_array *kept)
+static void keep_result(world *own, call which, setup_array *kept)
 {
-    const fixture_array *const outputs[] = {&own->first, &own->second, &own->third};
+    const setup_array *const outputs[] = {&own->first, &own->second, &own->third};
     const size_t bytes = (size_t)ITEMS * 16 * 4;
     if (which >= SEARCH && which <= USE_LISTS)
-        FIXTURE_OK(own->context, evaluate(own));
-    *kept = fixture_output(SPHG_F32, 3 * ITEMS, 16);
+        SETUP_OK(own->context, evaluate(own));
+    *kept = setup_output(SPHG_F32, 3 * ITEMS, 16);
     for (int k = 0; k < 3; k++)
         memcpy((char *)kept->data + (size_t)k * bytes, outputs[k]->data, bytes);
 }
@@ -243,15 +242,15 @@ static void require_clean(world *own, const char *where)
 
 /* One run in which allocations [k, until) of the call fail; returns whether any of them did. */
 static int run_with_failures(world *own, call which, int64_t k, int64_t until,
-                             const fixture_array *expected)
+                             const setup_array *expected)
 {
     const char *where = test_text("%s, allocation %lld", call_names[which], (long long)k);
-    fixture_array again;
+    setup_array again;
     prepare(own, which);
-    hooks_fail(own->host, k, until);
+    fake_host_fail(own->host, k, until);
     const sphg_result result = perform(own, which);
     const int failed = own->host->allocations >= k;
-    hooks_fail(own->host, 0, 0);
+    fake_host_fail(own->host, 0, 0);
     TEST_REQUIRE(result == (failed ? SPHG_ERROR_MEMORY : SPHG_OK), "%s: %s", where,
                  sphg_result_string(result));
     if (which == CREATE_CONTEXT && failed)
@@ -259,7 +258,7 @@ static int run_with_failures(world *own, call which, int64_t k, int64_t until,
     if (failed)
         TEST_REQUIRE(perform(own, which) == SPHG_OK, "%s: no recovery", where);
     keep_result(own, which, &again);
-    TEST_REQUIRE(which == CREATE_CONTEXT || fixture_same_bits(&again, expected),
+    TEST_REQUIRE(which == CREATE_CONTEXT || setup_same_bits(&again, expected),
                  "%s: another result afterwards", where);
     require_clean(own, where);
     return failed;
@@ -270,7 +269,7 @@ static void any_allocation_may_fail(const test_case *test)
 {
     world *own = world_create(test);
     for (int which = 0; which < CALLS; which++) {
-        fixture_array expected;
+        setup_array expected;
         if (which == SVD && test->dimension == 2)
             continue;
         prepare(own, (call)which);
@@ -292,9 +291,9 @@ static void failed_build_must_be_repeated(const test_case *test)
     world *own = world_create(test);
     prepare(own, EVALUATE);
     own->scheme.support_radius = 1.5; /* many more pairs than the last build had */
-    hooks_fail(own->host, 1, INT64_MAX);
+    fake_host_fail(own->host, 1, INT64_MAX);
     assert_int_equal(build(own, 0, 0), SPHG_ERROR_MEMORY);
-    hooks_fail(own->host, 0, 0);
+    fake_host_fail(own->host, 0, 0);
     assert_int_equal(evaluate(own), SPHG_ERROR_STATE);
     assert_int_equal(build(own, 0, 0), SPHG_OK);
     assert_int_equal(evaluate(own), SPHG_OK);
@@ -321,13 +320,13 @@ static void stir(world *own, const double *rest, int step, random_state *random)
 static void work(world *own)
 {
     int32_t order[COUNT];
-    FIXTURE_OK(own->context, sphg_neighbors_get_order(own->context, own->neighbors, order));
-    FIXTURE_OK(own->context, evaluate(own));
-    FIXTURE_OK(own->context, pair_gradients(own));
-    FIXTURE_OK(own->context, invert(own));
-    FIXTURE_OK(own->context, perform(own, EIGEN));
+    SETUP_OK(own->context, sphg_neighbors_get_order(own->context, own->neighbors, order));
+    SETUP_OK(own->context, evaluate(own));
+    SETUP_OK(own->context, pair_gradients(own));
+    SETUP_OK(own->context, invert(own));
+    SETUP_OK(own->context, perform(own, EIGEN));
     if (own->particles.dimension == 3)
-        FIXTURE_OK(own->context, perform(own, SVD));
+        SETUP_OK(own->context, perform(own, SVD));
 }
 
 static void warm_calls_allocate_nothing(const test_case *test)
@@ -342,14 +341,14 @@ static void warm_calls_allocate_nothing(const test_case *test)
         stir(own, rest, 0, &random);
         if (kinds[kind] == USE_LISTS)
             own->geometry = scene_geometry(&own->particles);
-        FIXTURE_OK(own->context, perform(own, kinds[kind]));
+        SETUP_OK(own->context, perform(own, kinds[kind]));
         work(own);
-        hooks_fail(own->host, 0, 0);
+        fake_host_fail(own->host, 0, 0);
         for (int step = 1; step < 12; step++) {
             stir(own, rest, step, &random);
             if (kinds[kind] == USE_LISTS) /* which name all particles */
                 own->geometry = scene_geometry(&own->particles);
-            FIXTURE_OK(own->context, perform(own, kinds[kind]));
+            SETUP_OK(own->context, perform(own, kinds[kind]));
             work(own);
             TEST_REQUIRE(own->host->allocations == 0, "%s, step %d: %lld allocations",
                          call_names[kinds[kind]], step, (long long)own->host->allocations);
@@ -392,8 +391,8 @@ static void spreading_clouds_allocate_nothing(const test_case *test)
         for (int step = 0; step < 6; step++) {
             spread(own, rest, order[step], pairs);
             const char *where = test_text("%s, step %d", call_names[kinds[kind]], step);
-            hooks_fail(own->host, 0, 0);
-            FIXTURE_OK(own->context, perform(own, kinds[kind]));
+            fake_host_fail(own->host, 0, 0);
+            SETUP_OK(own->context, perform(own, kinds[kind]));
             work(own);
             const rows found = rows_listed(own->context, own->neighbors, &own->scheme, NULL);
             TEST_REQUIRE(step == 0 || own->host->allocations == 0, "%s: %lld allocations", where,
@@ -411,10 +410,10 @@ static void neighbors_know_what_they_hold(const test_case *test)
     world *own = world_create(test);
     for (call which = SEARCH; which <= USE_LISTS; which++) {
         prepare(own, which);
-        FIXTURE_OK(own->context, perform(own, which));
+        SETUP_OK(own->context, perform(own, which));
         work(own);
         sphg_neighbors_info info;
-        FIXTURE_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
+        SETUP_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
         const int64_t before = own->host->live_bytes;
         sphg_neighbors_destroy(own->neighbors);
         own->neighbors = NULL;
@@ -431,10 +430,10 @@ static void contexts_hold_what_they_say(const test_case *test)
     world *own = world_create(test);
     for (call which = SEARCH; which <= USE_LISTS; which++) {
         prepare(own, which);
-        FIXTURE_OK(own->context, perform(own, which));
+        SETUP_OK(own->context, perform(own, which));
         work(own);
         sphg_context_info info;
-        FIXTURE_OK(own->context, sphg_context_get_info(own->context, &info));
+        SETUP_OK(own->context, sphg_context_get_info(own->context, &info));
         sphg_neighbors_destroy(own->neighbors);
         own->neighbors = NULL;
         const int64_t before = own->host->live_bytes;

@@ -1,54 +1,54 @@
 /* The k-th allocation of a call fails, once or from then on, for every k and every public function,
  * each on a context as cold as it can be: a clean code, nothing leaked, and the next call gives the
  * bits that it would have given. */
-#include "support/hostile_rows.h"
-#include "support/victim_calls.h"
+#include "support/bad_argument_rows.h"
+#include "support/public_calls.h"
 #include <string.h>
 
-enum { BYTES = VICTIM_SLOTS * VICTIM_SLOT_BYTES };
+enum { BYTES = VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES };
 
 /* ---- Calls that the table of functions lacks ---------------------------------------------- */
 
-static void prepare_list_free(victim *own)
+static void prepare_list_free(valid_call *own)
 {
     own->geometry.list_free = 1;
 }
 
-static void prepare_skin(victim *own)
+static void prepare_skin(valid_call *own)
 {
     own->geometry.skin = .25;
 }
 
-static void prepare_periodic(victim *own)
+static void prepare_periodic(valid_call *own)
 {
     own->geometry.period[0] = own->geometry.period[1] = 3;
 }
 
-static void prepare_lists(victim *own)
+static void prepare_lists(valid_call *own)
 {
     own->sources[0].neighbors = own->listed;
 }
 
-static void prepare_two_sets(victim *own)
+static void prepare_two_sets(valid_call *own)
 {
     own->sources[1] = own->sources[0];
     own->sources[1].neighbors = own->listed;
     own->request.set_count = 2;
 }
 
-static void prepare_classic(victim *own)
+static void prepare_classic(valid_call *own)
 {
     own->scheme.method = SPHG_CRKPM;
     own->request.correction = sphg_absent();
 }
 
-static void prepare_pairs_with_indices(victim *own)
+static void prepare_pairs_with_indices(valid_call *own)
 {
     prepare_of_four_targets(own);
     own->target_correction = sphg_absent();
 }
 
-static void prepare_gradients_of_pairs_alone(victim *own)
+static void prepare_gradients_of_pairs_alone(valid_call *own)
 {
     prepare_pairs_with_indices(own);
     own->pairs.indices = NULL;
@@ -71,7 +71,7 @@ enum { EXTRA = sizeof extra / sizeof *extra };
 /* ---- The property ------------------------------------------------------------------------- */
 
 typedef struct cold {
-    victim *own;
+    valid_call *own;
     sphg_context *context;
     sphg_neighbors *neighbors;
 } cold;
@@ -81,12 +81,12 @@ static void require_ok(sphg_result result)
     assert_int_equal(result, SPHG_OK);
 }
 
-/* The victim's call on a context and an object that have not worked before. */
-static cold cold_call(victim *own, const probe *tested)
+/* The valid call on a context and an object that have not worked before. */
+static cold cold_call(valid_call *own, const probe *tested)
 {
     cold made = {own, NULL, NULL};
-    victim_reset(own);
-    const sphg_config config = hooks_config(own->host, 2);
+    valid_call_reset(own);
+    const sphg_config config = fake_host_config(own->host, 2);
     require_ok(sphg_context_create(SPHG_VERSION, &config, &made.context));
     require_ok(sphg_neighbors_create(made.context, &made.neighbors));
     own->context = made.context;
@@ -107,7 +107,7 @@ static void forget(const cold *made)
 /* What a build leaves is seen by an operator. */
 static void look(const cold *made, const probe *tested)
 {
-    victim *own = made->own;
+    valid_call *own = made->own;
     const sphg_sources sources = {.neighbors = made->neighbors, .volume = own->volume_view};
     const sphg_field field = {.shape = SPHG_SCALAR,
                               .at_sources = &own->scalars,
@@ -122,15 +122,15 @@ static void look(const cold *made, const probe *tested)
 static int64_t failures;
 
 /* 0: the call has fewer than k allocations. */
-static int fail_at(victim *own, const probe *tested, int64_t k, int64_t until,
+static int fail_at(valid_call *own, const probe *tested, int64_t k, int64_t until,
                    const unsigned char *expected, const char *name)
 {
     const cold made = cold_call(own, tested);
     const int64_t blocks = own->host->live_blocks;
-    hooks_fail(own->host, k, until);
+    fake_host_fail(own->host, k, until);
     const sphg_result result = tested->call(own);
     const int failed = own->host->allocations >= k;
-    hooks_fail(own->host, 0, 0);
+    fake_host_fail(own->host, 0, 0);
     TEST_REQUIRE(result == (failed ? SPHG_ERROR_MEMORY : SPHG_OK), "%s, allocation %lld: %s", name,
                  (long long)k, sphg_result_string(result));
     TEST_REQUIRE(!failed || strstr(own->host->log_message, "the allocator returned NULL"),
@@ -148,7 +148,7 @@ static int fail_at(victim *own, const probe *tested, int64_t k, int64_t until,
     return failed;
 }
 
-static void fail_everywhere(victim *own, const probe *tested, const char *name)
+static void fail_everywhere(valid_call *own, const probe *tested, const char *name)
 {
     unsigned char *expected = test_memory(BYTES);
     const cold made = cold_call(own, tested);
@@ -164,13 +164,13 @@ static void fail_everywhere(victim *own, const probe *tested, const char *name)
 
 static void any_allocation_of_any_function_may_fail(const test_case *test)
 {
-    victim *own = victim_create(test, 0);
+    valid_call *own = valid_call_create(test, 0);
     failures = 0;
     const int64_t blocks = own->host->live_blocks;
-    for (int f = 0; f < hostile_function_count; f++)
-        for (int p = 0; p < hostile_functions[f].count; p++)
-            if (hostile_functions[f].probes[p].call)
-                fail_everywhere(own, &hostile_functions[f].probes[p], hostile_functions[f].name);
+    for (int f = 0; f < argument_function_count; f++)
+        for (int p = 0; p < argument_functions[f].count; p++)
+            if (argument_functions[f].probes[p].call)
+                fail_everywhere(own, &argument_functions[f].probes[p], argument_functions[f].name);
     for (int k = 0; k < EXTRA; k++)
         fail_everywhere(own, &extra[k], test_text("extra call %d", k));
     TEST_REQUIRE(own->host->live_blocks == blocks, "%lld blocks leaked",

@@ -1,7 +1,7 @@
 /* Random scenes and what must not change them: relations that hold to the bit, so that no reference
  * is needed. SPHG_TEST_LONG=1 takes 100 000 scenes. */
-#include "support/fixture.h"
-#include "support/long.h"
+#include "support/setup.h"
+#include "support/long_counts.h"
 #include <math.h>
 #include <string.h>
 
@@ -95,12 +95,11 @@ static void run(const rig *own, const world *on, const sphg_subset *subset, outc
         request.rank = sphg_view_u8(found->rank, 1);
         request.stats = &found->stats;
     }
-    FIXTURE_OK(own->context,
-               on->searched
-                   ? sphg_neighbors_search(own->context, own->neighbors, &on->scheme, &geometry)
-                   : sphg_neighbors_use_lists(own->context, own->neighbors, &on->scheme, &geometry,
-                                              &lists));
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &on->scheme, &request));
+    SETUP_OK(own->context, on->searched ? sphg_neighbors_search(own->context, own->neighbors,
+                                                                &on->scheme, &geometry)
+                                        : sphg_neighbors_use_lists(own->context, own->neighbors,
+                                                                   &on->scheme, &geometry, &lists));
+    SETUP_OK(own->context, sphg_evaluate(own->context, &on->scheme, &request));
     for (int k = 0; k < n * d; k++)
         found->gradient[k] = own->type == SPHG_F64 ? result[k] : (double)((float *)result)[k];
 }
@@ -268,9 +267,9 @@ typedef void relation(rig *own, const world *on, const outcome *expected);
 
 static void each_scene(const test_case *test, int searched, relation *const *relations, int count)
 {
-    rig own = {test_field_type(test), fixture_context_of(1), NULL, random_seeded(601)};
+    rig own = {test_field_type(test), setup_context_of(1), NULL, random_seeded(601)};
     const int scenes = long_or(100000, 250);
-    FIXTURE_OK(own.context, sphg_neighbors_create(own.context, &own.neighbors));
+    SETUP_OK(own.context, sphg_neighbors_create(own.context, &own.neighbors));
     for (int k = 0; k < scenes; k++) {
         world on;
         outcome expected = {.rank = {0}};

@@ -1,6 +1,6 @@
 /* sphg_invert_moments: C = f(M / m_ref) / m_ref for every policy, the decisions around the
  * threshold, and the certificate that keeps healthy matrices off the eigensolver. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include "support/spectra.h"
 #include <math.h>
 #include <string.h>
@@ -15,7 +15,7 @@ typedef struct setting {
 
 static setting setting_of(const test_case *test, sphg_policy policy, double threshold)
 {
-    setting own = {fixture_scheme(test, 0.5), test->precision == TEST_F64, 0, 0.0625};
+    setting own = {setup_scheme(test, 0.5), test->precision == TEST_F64, 0, 0.0625};
     own.scheme.policy = policy;
     own.scheme.threshold = threshold;
     own.unit = test_unit_roundoff(test);
@@ -155,7 +155,7 @@ static batch batch_of(const setting *own, spectrum set, int count)
     return items;
 }
 
-static fixture_array packed(const setting *own, const batch *items)
+static setup_array packed(const setting *own, const batch *items)
 {
     const int d = own->scheme.dimension, width = d * (d + 1) / 2;
     double *numbers = test_memory((size_t)(items->count * width) * sizeof *numbers);
@@ -163,11 +163,11 @@ static fixture_array packed(const setting *own, const batch *items)
         for (int r = 0; r < d; r++)
             for (int c = r; c < d; c++)
                 numbers[next++] = items->full[9 * i + r * d + c];
-    return fixture_numbers(own->is_double ? SPHG_F64 : SPHG_F32, items->count, width, numbers);
+    return setup_numbers(own->is_double ? SPHG_F64 : SPHG_F32, items->count, width, numbers);
 }
 
 typedef struct outcome {
-    fixture_array correction, rank, lambda_min;
+    setup_array correction, rank, lambda_min;
     sphg_stats stats;
 } outcome;
 
@@ -175,9 +175,9 @@ static outcome outputs_for(const setting *own, int count)
 {
     const sphg_type type = own->is_double ? SPHG_F64 : SPHG_F32;
     const int d = own->scheme.dimension;
-    return (outcome){.correction = fixture_output(type, count, d * (d + 1) / 2),
-                     .rank = fixture_output(SPHG_U8, count, 1),
-                     .lambda_min = fixture_output(type, count, 1)};
+    return (outcome){.correction = setup_output(type, count, d * (d + 1) / 2),
+                     .rank = setup_output(SPHG_U8, count, 1),
+                     .lambda_min = setup_output(type, count, 1)};
 }
 
 static void invert(sphg_context *context, const setting *own, int count, sphg_view moments,
@@ -186,16 +186,16 @@ static void invert(sphg_context *context, const setting *own, int count, sphg_vi
     const float single = (float)own->volume;
     const sphg_view volume =
         own->is_double ? sphg_view_f64(&own->volume, 0) : sphg_view_f32(&single, 0);
-    FIXTURE_OK(context, sphg_invert_moments(context, &own->scheme, count, moments, volume, wanted));
+    SETUP_OK(context, sphg_invert_moments(context, &own->scheme, count, moments, volume, wanted));
 }
 
 static outcome inverted(sphg_context *context, const setting *own, const batch *items)
 {
-    const fixture_array moments = packed(own, items);
+    const setup_array moments = packed(own, items);
     outcome found = outputs_for(own, items->count);
-    const sphg_inversion wanted = {fixture_view(&found.correction), fixture_view(&found.rank),
-                                   fixture_view(&found.lambda_min), &found.stats};
-    invert(context, own, items->count, fixture_view(&moments), &wanted);
+    const sphg_inversion wanted = {setup_view(&found.correction), setup_view(&found.rank),
+                                   setup_view(&found.lambda_min), &found.stats};
+    invert(context, own, items->count, setup_view(&moments), &wanted);
     return found;
 }
 
@@ -221,18 +221,18 @@ static void check_item(const setting *own, const batch *items, const outcome *fo
     const verdict expected = judge(own, items->full + 9 * i);
     double c[6] = {0};
     for (int k = 0; k < found->correction.width; k++)
-        c[k] = fixture_get(&found->correction, i, k);
-    require_lambda_min(own, &expected, fixture_get(&found->lambda_min, i, 0), where);
+        c[k] = setup_get(&found->correction, i, k);
+    require_lambda_min(own, &expected, setup_get(&found->lambda_min, i, 0), where);
     if (expected.is_close)
         return;
-    TEST_REQUIRE((int)fixture_get(&found->rank, i, 0) == expected.rank, "%s, item %d: rank %g",
-                 where, i, fixture_get(&found->rank, i, 0));
+    TEST_REQUIRE((int)setup_get(&found->rank, i, 0) == expected.rank, "%s, item %d: rank %g", where,
+                 i, setup_get(&found->rank, i, 0));
     TEST_WITHIN(moment_inversion, correction_error(own, &expected, c), where);
 }
 
 static void correction_is_f_of_the_moments(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const double thresholds[] = {0, 1e-3, 0.2};
     for (int policy = 0; policy < 4; policy++)
         for (int t = 0; t < 3; t++)
@@ -250,7 +250,7 @@ static void correction_is_f_of_the_moments(const test_case *test)
 /* Scaled by m_ref, the unit matrix is a full neighbourhood: rank d, C = I / m_ref. */
 static void full_neighbourhood_is_one(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     const setting own = setting_of(test, SPHG_BLEND, 0);
     batch items = {1, test_memory(9 * sizeof(double))};
@@ -259,9 +259,9 @@ static void full_neighbourhood_is_one(const test_case *test)
         items.full[k * d + k] = (double)scale;
     round_to(&own, items.full);
     const outcome found = inverted(context, &own, &items);
-    const double first = fixture_get(&found.correction, 0, 0);
+    const double first = setup_get(&found.correction, 0, 0);
     TEST_WITHIN(moment_inversion, (double)fabsl(first * scale - 1) / own.unit, "C = I");
-    assert_int_equal((int)fixture_get(&found.rank, 0, 0), d);
+    assert_int_equal((int)setup_get(&found.rank, 0, 0), d);
     assert_int_equal(found.stats.certified, 1);
     assert_true(fabs(found.stats.lambda_min * sqrt(d) - 1) < 0.01);
 }
@@ -308,7 +308,7 @@ static void check_certificate(sphg_context *context, const setting *own, uint64_
 
 static void certificate_never_accepts_a_touched_matrix(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const double thresholds[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
     for (int t = 0; t < 5; t++)
         for (int policy = 0; policy < 4; policy++) {
@@ -320,7 +320,7 @@ static void certificate_never_accepts_a_touched_matrix(const test_case *test)
 /* What the fast path accepts is as exact as what the eigensolver returns, and says so. */
 static void certified_lambda_is_a_lower_bound_and_decomposed_is_exact(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     const setting own = setting_of(test, SPHG_BLEND, 1e-2);
     const batch all = batch_of(&own, SPECTRA_one_one_small, 400);
@@ -330,7 +330,7 @@ static void certified_lambda_is_a_lower_bound_and_decomposed_is_exact(const test
         const outcome found = inverted(context, &own, &one);
         const verdict expected = judge(&own, one.full);
         const long double lambda = expected.lambda[d - 1], slack = 16 * own.unit * expected.size;
-        const double given = fixture_get(&found.lambda_min, 0, 0);
+        const double given = setup_get(&found.lambda_min, 0, 0);
         assert_int_equal(found.stats.certified + found.stats.decomposed, 1);
         assert_true(found.stats.lambda_min == given);
         ways[found.stats.certified]++;
@@ -345,7 +345,7 @@ static void certified_lambda_is_a_lower_bound_and_decomposed_is_exact(const test
 /* Volumes that do not tile: moments of a plane in the millions, whose rounding exceeds eps. */
 static void noise_of_large_moments_is_not_inverted(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     for (int policy = 0; policy < 4; policy++) {
         const setting own = setting_of(test, (sphg_policy)policy, 0);
@@ -358,7 +358,7 @@ static void noise_of_large_moments_is_not_inverted(const test_case *test)
         }
         const outcome found = inverted(context, &own, &items);
         for (int i = 0; i < items.count; i++)
-            assert_true(fixture_get(&found.rank, i, 0) < d);
+            assert_true(setup_get(&found.rank, i, 0) < d);
     }
 }
 
@@ -367,15 +367,15 @@ static void noise_of_large_moments_is_not_inverted(const test_case *test)
 static void require_same_item(const outcome *a, const outcome *b, int i)
 {
     for (int k = 0; k < a->correction.width; k++)
-        assert_true(fixture_get(&a->correction, i, k) == fixture_get(&b->correction, i, k));
-    assert_true(fixture_get(&a->rank, i, 0) == fixture_get(&b->rank, i, 0));
-    assert_true(fixture_get(&a->lambda_min, i, 0) == fixture_get(&b->lambda_min, i, 0));
+        assert_true(setup_get(&a->correction, i, k) == setup_get(&b->correction, i, k));
+    assert_true(setup_get(&a->rank, i, 0) == setup_get(&b->rank, i, 0));
+    assert_true(setup_get(&a->lambda_min, i, 0) == setup_get(&b->lambda_min, i, 0));
 }
 
 /* For every policy, place and kind of bad number; half of the others take the fast path. */
 static void bad_matrix_spoils_only_itself(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const double kinds[] = {NAN, INFINITY, -INFINITY};
     for (int bad = 0; bad < 37; bad++) {
         const setting own = setting_of(test, (sphg_policy)(bad % 4), 0);
@@ -389,14 +389,14 @@ static void bad_matrix_spoils_only_itself(const test_case *test)
             if (i != bad)
                 require_same_item(&found, &clean, i);
         for (int k = 0; k < found.correction.width; k++)
-            assert_true(isnan(fixture_get(&found.correction, bad, k)));
-        assert_int_equal((int)fixture_get(&found.rank, bad, 0), 0);
+            assert_true(isnan(setup_get(&found.correction, bad, k)));
+        assert_int_equal((int)setup_get(&found.rank, bad, 0), 0);
     }
 }
 
 static void stats_add_up(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     for (int policy = 0; policy < 4; policy++) {
         const setting own = setting_of(test, (sphg_policy)policy, 0);
         const batch items = batch_of(&own, SPECTRA_one_small_small, 1000);
@@ -404,8 +404,8 @@ static void stats_add_up(const test_case *test)
         int64_t rank[4] = {0};
         double least = INFINITY;
         for (int i = 0; i < items.count; i++) {
-            rank[(int)fixture_get(&found.rank, i, 0)]++;
-            least = fmin(least, fixture_get(&found.lambda_min, i, 0));
+            rank[(int)setup_get(&found.rank, i, 0)]++;
+            least = fmin(least, setup_get(&found.lambda_min, i, 0));
         }
         assert_memory_equal(rank, found.stats.rank, sizeof rank);
         assert_int_equal(found.stats.certified + found.stats.decomposed, items.count);
@@ -416,39 +416,39 @@ static void stats_add_up(const test_case *test)
 
 static void each_output_may_be_asked_for_alone(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const setting own = setting_of(test, SPHG_BLEND, 0);
     const batch items = batch_of(&own, SPECTRA_one_small_small, 100);
-    const fixture_array moments = packed(&own, &items);
+    const setup_array moments = packed(&own, &items);
     const outcome all = inverted(context, &own, &items), alone = outputs_for(&own, items.count);
-    const sphg_inversion wanted[] = {{.correction = fixture_view(&alone.correction)},
-                                     {.rank = fixture_view(&alone.rank)},
-                                     {.lambda_min = fixture_view(&alone.lambda_min)}};
+    const sphg_inversion wanted[] = {{.correction = setup_view(&alone.correction)},
+                                     {.rank = setup_view(&alone.rank)},
+                                     {.lambda_min = setup_view(&alone.lambda_min)}};
     for (int k = 0; k < 3; k++)
-        invert(context, &own, items.count, fixture_view(&moments), &wanted[k]);
-    assert_true(fixture_same_bits(&alone.correction, &all.correction));
-    assert_true(fixture_same_bits(&alone.rank, &all.rank));
-    assert_true(fixture_same_bits(&alone.lambda_min, &all.lambda_min));
+        invert(context, &own, items.count, setup_view(&moments), &wanted[k]);
+    assert_true(setup_same_bits(&alone.correction, &all.correction));
+    assert_true(setup_same_bits(&alone.rank, &all.rank));
+    assert_true(setup_same_bits(&alone.lambda_min, &all.lambda_min));
 }
 
 /* C may replace M, in a record with other members, which keep their bytes. */
 static void correction_may_replace_the_moments(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const setting own = setting_of(test, SPHG_BLEND, 0);
     const batch items = batch_of(&own, SPECTRA_one_one_small, 333);
     const outcome plain = inverted(context, &own, &items);
-    const fixture_array moments = packed(&own, &items);
-    fixture_array record = fixture_output(moments.type, items.count, 9);
+    const setup_array moments = packed(&own, &items);
+    setup_array record = setup_output(moments.type, items.count, 9);
     const size_t size = own.is_double ? 8 : 4, width = (size_t)moments.width * size;
     for (int i = 0; i < items.count; i++)
         memcpy((char *)record.data + (size_t)i * 9 * size + size,
                (const char *)moments.data + (size_t)i * width, width);
-    sphg_view place = fixture_view(&record);
+    sphg_view place = setup_view(&record);
     place.x = (const char *)place.x + size;
     const sphg_inversion wanted = {.correction = place};
     invert(context, &own, items.count, place, &wanted);
-    const fixture_array canary = fixture_output(moments.type, 1, 1);
+    const setup_array canary = setup_output(moments.type, 1, 1);
     for (int i = 0; i < items.count; i++) {
         const char *item = (const char *)record.data + (size_t)i * 9 * size;
         assert_memory_equal(item + size, (const char *)plain.correction.data + (size_t)i * width,

@@ -1,7 +1,7 @@
 /* Neighbours that the host brings, and the life of a neighbours object: copies, borrowed lists,
  * rebuilds, order and report. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,39 +9,39 @@
 enum { COUNT = 300 };
 
 /* A jittered block, its scheme, and what a search of it gives. */
-typedef struct stage {
+typedef struct comparison {
     sphg_context *context;
     cloud points;
     scene particles;
     sphg_scheme scheme;
     sphg_geometry geometry;
-    fixture_array field, volume;
-} stage;
+    setup_array field, volume;
+} comparison;
 
-static stage stage_of(const test_case *test)
+static comparison comparison_of(const test_case *test)
 {
-    stage own = {.context = fixture_context()};
+    comparison own = {.context = setup_context()};
     random_state random = random_seeded(83);
     own.points = cloud_random(test->dimension, COUNT, 4, &random);
     own.particles = scene_of_cloud(test, &own.points);
-    own.scheme = fixture_scheme(test, test->dimension == 2 ? 0.5 : 1);
+    own.scheme = setup_scheme(test, test->dimension == 2 ? 0.5 : 1);
     own.geometry = scene_geometry(&own.particles);
-    own.field = fixture_numbers(test_field_type(test), COUNT, 1,
-                                cloud_numbers(&own.points, -1, 1, &random));
+    own.field =
+        setup_numbers(test_field_type(test), COUNT, 1, cloud_numbers(&own.points, -1, 1, &random));
     own.volume =
-        fixture_numbers(test_field_type(test), COUNT, 1, cloud_volumes(&own.points, 0.1, &random));
+        setup_numbers(test_field_type(test), COUNT, 1, cloud_volumes(&own.points, 0.1, &random));
     return own;
 }
 
 /* The gradient through these neighbours; equal bits mean equal pairs, order and positions. */
-static fixture_array gradient_through(const stage *own, const sphg_neighbors *neighbors)
+static setup_array gradient_through(const comparison *own, const sphg_neighbors *neighbors)
 {
-    fixture_array gradient = fixture_output(own->field.type, COUNT, own->points.dimension);
+    setup_array gradient = setup_output(own->field.type, COUNT, own->points.dimension);
     sphg_sources sources = {0};
     sources.neighbors = neighbors;
-    sources.volume = fixture_view(&own->volume);
-    FIXTURE_OK(own->context, sphg_gradient(own->context, &own->scheme, &sources, NULL,
-                                           fixture_view(&own->field), fixture_view(&gradient)));
+    sources.volume = setup_view(&own->volume);
+    SETUP_OK(own->context, sphg_gradient(own->context, &own->scheme, &sources, NULL,
+                                         setup_view(&own->field), setup_view(&gradient)));
     return gradient;
 }
 
@@ -66,7 +66,7 @@ typedef struct host_lists {
     int32_t mask;
 } host_lists;
 
-static host_lists host_lists_of(const stage *own, double radius, int32_t mask)
+static host_lists host_lists_of(const comparison *own, double radius, int32_t mask)
 {
     random_state random = random_seeded(89);
     const rows wide = rows_by_brute_force(&own->particles, radius);
@@ -124,44 +124,44 @@ static sphg_lists group_of(host_lists *lists, int group)
  * gradients agree up to the order of summation. */
 static void lists_of_the_host_give_the_pairs_of_the_search(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     const double H = own.scheme.support_radius;
-    const sphg_neighbors *searched = fixture_search(own.context, &own.scheme, &own.geometry);
+    const sphg_neighbors *searched = setup_search(own.context, &own.scheme, &own.geometry);
     const rows expected = rows_by_brute_force(&own.particles, H);
-    const fixture_array gradient = gradient_through(&own, searched);
+    const setup_array gradient = gradient_through(&own, searched);
     const int32_t masks[] = {0, 0x1fffffff};
     for (int k = 0; k < 2 * GROUPS; k++) {
         host_lists lists = host_lists_of(&own, k % 2 ? H : 1.5 * H, masks[k / GROUPS]);
         const sphg_lists given = group_of(&lists, k % GROUPS);
         const sphg_neighbors *brought =
-            fixture_lists(own.context, &own.scheme, &own.geometry, &given);
+            setup_lists(own.context, &own.scheme, &own.geometry, &given);
         const rows found = rows_listed(own.context, brought, &own.scheme, NULL);
         rows_require_equal(&found, &expected, test_text("group %d", k % GROUPS));
-        const fixture_array other = gradient_through(&own, brought);
-        fixture_require_close(&gradient, &other, test_method_name(test->method));
+        const setup_array other = gradient_through(&own, brought);
+        setup_require_close(&gradient, &other, test_method_name(test->method));
     }
 }
 
 /* Search, export as CSR, use the export: same pairs, same gradients up to rounding. */
 static void exported_pairs_can_be_used_as_lists(const test_case *test)
 {
-    const stage own = stage_of(test);
-    const sphg_neighbors *searched = fixture_search(own.context, &own.scheme, &own.geometry);
+    const comparison own = comparison_of(test);
+    const sphg_neighbors *searched = setup_search(own.context, &own.scheme, &own.geometry);
     const rows exported = rows_listed(own.context, searched, &own.scheme, NULL);
     sphg_lists given = {0};
     given.offsets = exported.offsets;
     given.indices = exported.indices;
-    const sphg_neighbors *brought = fixture_lists(own.context, &own.scheme, &own.geometry, &given);
+    const sphg_neighbors *brought = setup_lists(own.context, &own.scheme, &own.geometry, &given);
     const rows again = rows_listed(own.context, brought, &own.scheme, NULL);
     rows_require_equal(&again, &exported, "round trip");
-    const fixture_array a = gradient_through(&own, searched), b = gradient_through(&own, brought);
-    fixture_require_close(&a, &b, "exported");
+    const setup_array a = gradient_through(&own, searched), b = gradient_through(&own, brought);
+    setup_require_close(&a, &b, "exported");
 }
 
 /* Lists work across periodic faces and for targets that are not sources. */
 static void lists_see_periodic_images_and_targets(const test_case *test)
 {
-    stage own = stage_of(test);
+    comparison own = comparison_of(test);
     random_state random = random_seeded(97);
     cloud others = cloud_random(test->dimension, COUNT, 4, &random);
     const scene apart = scene_of_cloud(test, &others);
@@ -173,7 +173,7 @@ static void lists_see_periodic_images_and_targets(const test_case *test)
     host_lists lists = host_lists_of(&own, 1.5, 0);
     for (int group = 0; group < GROUPS; group++) {
         const sphg_lists given = group_of(&lists, group);
-        const sphg_neighbors *brought = fixture_lists(own.context, &own.scheme, &geometry, &given);
+        const sphg_neighbors *brought = setup_lists(own.context, &own.scheme, &geometry, &given);
         const rows found = rows_listed(own.context, brought, &own.scheme, NULL);
         rows_require_equal(&found, &expected, "periodic targets");
     }
@@ -184,7 +184,7 @@ static void lists_see_periodic_images_and_targets(const test_case *test)
 /* The rest configuration of a solid: the particles move on, the neighbours do not. */
 static void built_neighbours_keep_their_positions(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     const size_t bytes =
         (size_t)(COUNT * test->dimension) * (own.particles.is_double ? sizeof(double) : 4);
     host_lists lists = host_lists_of(&own, 1.25, 0);
@@ -192,13 +192,13 @@ static void built_neighbours_keep_their_positions(const test_case *test)
         sphg_geometry geometry = scene_geometry(&own.particles);
         const sphg_lists given = group_of(&lists, CSR);
         geometry.list_free = kind == 1;
-        const sphg_neighbors *rest =
-            kind < 2 ? fixture_search(own.context, &own.scheme, &geometry)
-                     : fixture_lists(own.context, &own.scheme, &geometry, &given);
-        const fixture_array before = gradient_through(&own, rest);
+        const sphg_neighbors *rest = kind < 2
+                                         ? setup_search(own.context, &own.scheme, &geometry)
+                                         : setup_lists(own.context, &own.scheme, &geometry, &given);
+        const setup_array before = gradient_through(&own, rest);
         memset((void *)(uintptr_t)geometry.sources.x, 0x7f, bytes);
-        const fixture_array after = gradient_through(&own, rest);
-        assert_true(fixture_same_bits(&before, &after));
+        const setup_array after = gradient_through(&own, rest);
+        assert_true(setup_same_bits(&before, &after));
     }
 }
 
@@ -206,13 +206,13 @@ static void built_neighbours_keep_their_positions(const test_case *test)
 
 static void info_reports_pairs_counts_and_bytes(const test_case *test)
 {
-    stage own = stage_of(test);
-    sphg_neighbors *neighbors = pairs_neighbors(own.context);
+    comparison own = comparison_of(test);
+    sphg_neighbors *neighbors = brute_force_neighbors(own.context);
     const rows expected = rows_by_brute_force(&own.particles, own.scheme.support_radius);
     sphg_neighbors_info info = {0};
-    FIXTURE_OK(own.context,
-               sphg_neighbors_search(own.context, neighbors, &own.scheme, &own.geometry));
-    FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
+    SETUP_OK(own.context,
+             sphg_neighbors_search(own.context, neighbors, &own.scheme, &own.geometry));
+    SETUP_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
     assert_int_equal(info.pairs, expected.offsets[COUNT]);
     assert_int_equal(info.target_count, COUNT);
     assert_int_equal(info.source_count, COUNT);
@@ -220,9 +220,9 @@ static void info_reports_pairs_counts_and_bytes(const test_case *test)
     assert_true(info.bytes > COUNT * test->dimension * 4);
     own.geometry.list_free = 1;
     own.geometry.target_count = COUNT - 7;
-    FIXTURE_OK(own.context,
-               sphg_neighbors_search(own.context, neighbors, &own.scheme, &own.geometry));
-    FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
+    SETUP_OK(own.context,
+             sphg_neighbors_search(own.context, neighbors, &own.scheme, &own.geometry));
+    SETUP_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
     assert_int_equal(info.pairs, 0);
     assert_int_equal(info.target_count, COUNT - 7);
     own.geometry.list_free = 0;
@@ -230,15 +230,15 @@ static void info_reports_pairs_counts_and_bytes(const test_case *test)
     host_lists lists = host_lists_of(&own, 1.25, 0);
     for (int group = 0; group < GROUPS; group++) {
         const sphg_lists given = group_of(&lists, group);
-        FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
-                                                         &own.geometry, &given));
-        FIXTURE_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
+        SETUP_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
+                                                       &own.geometry, &given));
+        SETUP_OK(own.context, sphg_neighbors_get_info(own.context, neighbors, &info));
         assert_int_equal(info.pairs, group == CSR ? lists.csr.offsets[COUNT] : 0);
     }
 }
 
 /* The sum of the squared steps along a path through all particles. */
-static double path_length(const stage *own, const int32_t *order)
+static double path_length(const comparison *own, const int32_t *order)
 {
     const int d = own->points.dimension;
     double sum = 0;
@@ -251,10 +251,10 @@ static double path_length(const stage *own, const int32_t *order)
 
 static void order_is_a_permutation_and_a_short_path(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     int32_t order[COUNT], identity[COUNT], seen[COUNT] = {0};
-    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &own.geometry);
-    FIXTURE_OK(own.context, sphg_neighbors_get_order(own.context, neighbors, order));
+    const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &own.geometry);
+    SETUP_OK(own.context, sphg_neighbors_get_order(own.context, neighbors, order));
     for (int k = 0; k < COUNT; k++) {
         assert_in_range(order[k], 0, COUNT - 1);
         seen[order[k]]++;
@@ -268,16 +268,16 @@ static void order_is_a_permutation_and_a_short_path(const test_case *test)
 /* Particles sorted by the order have the same pairs under their new names. */
 static void sorting_by_the_order_renames_the_pairs(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     const int d = test->dimension;
     int32_t order[COUNT];
-    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &own.geometry);
-    FIXTURE_OK(own.context, sphg_neighbors_get_order(own.context, neighbors, order));
+    const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &own.geometry);
+    SETUP_OK(own.context, sphg_neighbors_get_order(own.context, neighbors, order));
     scene sorted = own.particles;
     sorted.sources = test_memory(COUNT * 3 * sizeof(double));
     for (int k = 0; k < COUNT * d; k++)
         sorted.sources[k] = own.particles.sources[order[k / d] * d + k % d];
-    rows_require_search_exact(own.context, pairs_neighbors(own.context), &sorted,
+    rows_require_search_exact(own.context, brute_force_neighbors(own.context), &sorted,
                               own.scheme.support_radius, "sorted");
 }
 
@@ -286,11 +286,11 @@ static void sorting_by_the_order_renames_the_pairs(const test_case *test)
 /* A build that was refused leaves the old state; the next good one replaces it. */
 static void refused_build_keeps_the_old_state(const test_case *test)
 {
-    const stage own = stage_of(test);
-    sphg_neighbors *neighbors = pairs_neighbors(own.context);
-    FIXTURE_OK(own.context,
-               sphg_neighbors_search(own.context, neighbors, &own.scheme, &own.geometry));
-    const fixture_array before = gradient_through(&own, neighbors);
+    const comparison own = comparison_of(test);
+    sphg_neighbors *neighbors = brute_force_neighbors(own.context);
+    SETUP_OK(own.context,
+             sphg_neighbors_search(own.context, neighbors, &own.scheme, &own.geometry));
+    const setup_array before = gradient_through(&own, neighbors);
     cloud bad = {test->dimension, COUNT, 1, test_memory(COUNT * 3 * sizeof(double))};
     memcpy(bad.x, own.points.x, (size_t)(COUNT * test->dimension) * sizeof(double));
     bad.x[COUNT] = NAN;
@@ -306,19 +306,19 @@ static void refused_build_keeps_the_old_state(const test_case *test)
     assert_int_equal(
         sphg_neighbors_use_lists(own.context, neighbors, &own.scheme, &geometry, &given),
         SPHG_ERROR_NOT_FINITE);
-    const fixture_array after = gradient_through(&own, neighbors);
-    assert_true(fixture_same_bits(&before, &after));
-    FIXTURE_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
-                                                     &own.geometry, &given));
-    const fixture_array third = gradient_through(&own, neighbors);
-    fixture_require_close(&before, &third, "lists of the host");
+    const setup_array after = gradient_through(&own, neighbors);
+    assert_true(setup_same_bits(&before, &after));
+    SETUP_OK(own.context,
+             sphg_neighbors_use_lists(own.context, neighbors, &own.scheme, &own.geometry, &given));
+    const setup_array third = gradient_through(&own, neighbors);
+    setup_require_close(&before, &third, "lists of the host");
 }
 
 /* One object serves scenes of any size, dimension and kind in turn; none and one are sizes too. */
 static void object_can_be_rebuilt_for_other_scenes(const test_case *test)
 {
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     const int counts[] = {200, 0, 1, 50, 2, 0, 300};
     for (int k = 0; k < 14; k++) {
         random_state random = random_seeded(101 + (uint64_t)k);
@@ -333,45 +333,44 @@ static void object_can_be_rebuilt_for_other_scenes(const test_case *test)
 
 static void no_and_one_particle_give_empty_results(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     for (int count = 0; count < 2; count++) {
         const double zero[3] = {0};
-        const fixture_array x =
-            fixture_numbers(test_position_type(test), count, test->dimension, zero);
-        const fixture_array field = fixture_numbers(test_field_type(test), count, 1, zero);
+        const setup_array x = setup_numbers(test_position_type(test), count, test->dimension, zero);
+        const setup_array field = setup_numbers(test_field_type(test), count, 1, zero);
         const double one = 1;
-        const fixture_array volume = fixture_numbers(test_field_type(test), count, 1, &one);
-        fixture_array gradient = fixture_output(field.type, count, test->dimension);
+        const setup_array volume = setup_numbers(test_field_type(test), count, 1, &one);
+        setup_array gradient = setup_output(field.type, count, test->dimension);
         cloud points = {test->dimension, count, 1, NULL};
-        const sphg_scheme scheme = fixture_scheme(test, 1);
-        const sphg_geometry geometry = fixture_geometry(test, &points, &x);
+        const sphg_scheme scheme = setup_scheme(test, 1);
+        const sphg_geometry geometry = setup_geometry(test, &points, &x);
         sphg_sources sources = {0};
-        sources.neighbors = fixture_search(context, &scheme, &geometry);
-        sources.volume = fixture_view(&volume);
-        FIXTURE_OK(context, sphg_gradient(context, &scheme, &sources, NULL, fixture_view(&field),
-                                          fixture_view(&gradient)));
+        sources.neighbors = setup_search(context, &scheme, &geometry);
+        sources.volume = setup_view(&volume);
+        SETUP_OK(context, sphg_gradient(context, &scheme, &sources, NULL, setup_view(&field),
+                                        setup_view(&gradient)));
         for (int k = 0; k < count * test->dimension; k++)
-            assert_true(fixture_get(&gradient, 0, k) == 0);
+            assert_true(setup_get(&gradient, 0, k) == 0);
     }
 }
 
 /* No target, or none with a neighbour: there is no index to point at. */
 static void lists_without_pairs_need_no_indices(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     int64_t *offsets = test_memory((COUNT + 1) * sizeof *offsets);
     const sphg_lists none = {.offsets = offsets};
-    const fixture_array gradient =
-        gradient_through(&own, fixture_lists(own.context, &own.scheme, &own.geometry, &none));
+    const setup_array gradient =
+        gradient_through(&own, setup_lists(own.context, &own.scheme, &own.geometry, &none));
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < gradient.width; k++)
-            assert_true(fixture_get(&gradient, i, k) == 0);
+            assert_true(setup_get(&gradient, i, k) == 0);
 }
 
 /* A set whose particles are all elsewhere today, as in a host that splits its domain. */
 static void targets_without_sources_have_sums_of_nothing(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     for (int list_free = 0; list_free < 2; list_free++) {
         sphg_geometry geometry = own.geometry;
         geometry.targets = geometry.sources;
@@ -379,32 +378,32 @@ static void targets_without_sources_have_sums_of_nothing(const test_case *test)
         geometry.sources = sphg_absent();
         geometry.source_count = 0;
         geometry.list_free = list_free;
-        const fixture_array value = fixture_output(own.field.type, COUNT, 1);
+        const setup_array value = setup_output(own.field.type, COUNT, 1);
         const sphg_view none = sphg_absent();
         const sphg_sources sources = {.neighbors =
-                                          fixture_search(own.context, &own.scheme, &geometry),
-                                      .volume = fixture_view(&own.volume)};
+                                          setup_search(own.context, &own.scheme, &geometry),
+                                      .volume = setup_view(&own.volume)};
         const sphg_field asked = {.shape = SPHG_SCALAR,
                                   .form = SPHG_DIRECT,
                                   .at_sources = &none,
-                                  .value = fixture_view(&value)};
+                                  .value = setup_view(&value)};
         const sphg_request request = {
             .sources = &sources, .fields = &asked, .set_count = 1, .field_count = 1};
-        FIXTURE_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+        SETUP_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
         for (int i = 0; i < COUNT; i++)
-            assert_true(fixture_get(&value, i, 0) == 0);
+            assert_true(setup_get(&value, i, 0) == 0);
     }
 }
 
 static void no_dimension_means_three(const test_case *test)
 {
-    stage own = stage_of(test);
-    const fixture_array expected =
-        gradient_through(&own, fixture_search(own.context, &own.scheme, &own.geometry));
+    comparison own = comparison_of(test);
+    const setup_array expected =
+        gradient_through(&own, setup_search(own.context, &own.scheme, &own.geometry));
     own.scheme.dimension = 0;
-    const fixture_array found =
-        gradient_through(&own, fixture_search(own.context, &own.scheme, &own.geometry));
-    assert_true(fixture_same_bits(&found, &expected));
+    const setup_array found =
+        gradient_through(&own, setup_search(own.context, &own.scheme, &own.geometry));
+    assert_true(setup_same_bits(&found, &expected));
 }
 
 #define EACH(property) TEST_ENTRY(property, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0)

@@ -1,8 +1,8 @@
 /* A NaN or an infinity in a field, a density or a table reaches its own particle and the targets
  * that have it as neighbour, and nobody else: whatever the host lists, whatever skin and padding
  * hold. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <string.h>
 
@@ -23,18 +23,18 @@ typedef struct scenery {
     sphg_scheme scheme;
     sphg_neighbors *neighbors;
     rows pairs; /* who may be reached */
-    fixture_array volume, density, table, field;
+    setup_array volume, density, table, field;
     int32_t bad[BAD];
 } scenery;
 
-static fixture_array random_numbers(const scenery *own, int width, double low, double high)
+static setup_array random_numbers(const scenery *own, int width, double low, double high)
 {
     const int count = own->particles.source_count;
     random_state random = random_seeded(500 + (uint64_t)width);
     double *numbers = test_memory((size_t)(count * width) * sizeof *numbers);
     for (int k = 0; k < count * width; k++)
         numbers[k] = random_between(&random, low, high);
-    return fixture_numbers(test_field_type(own->test), count, width, numbers);
+    return setup_numbers(test_field_type(own->test), count, width, numbers);
 }
 
 /* All sources for every target: some far beyond H, and each target itself. */
@@ -52,8 +52,8 @@ static sphg_lists everybody(int targets, int sources)
 static void build(scenery *own)
 {
     const sphg_geometry geometry = scene_geometry(&own->particles);
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, own->neighbors, &own->scheme, &geometry));
+    SETUP_OK(own->context,
+             sphg_neighbors_search(own->context, own->neighbors, &own->scheme, &geometry));
 }
 
 /* Within the skin: the lists stay those of the first positions. */
@@ -66,21 +66,21 @@ static void move_a_little(scenery *own)
         own->particles.sources[k] = own->particles.is_double ? x : (double)(float)x;
     }
     build(own);
-    FIXTURE_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
+    SETUP_OK(own->context, sphg_neighbors_get_info(own->context, own->neighbors, &info));
     assert_int_equal(info.rebuilt, 0);
 }
 
 static void supply_neighbors(scenery *own)
 {
-    own->neighbors = pairs_neighbors(own->context);
+    own->neighbors = brute_force_neighbors(own->context);
     own->particles.list_free = own->way == LIST_FREE || own->way == CLUMP_LIST_FREE;
     own->particles.skin = own->way == SKIN ? .5 : 0;
     if (own->way == SUPERSET) {
         const sphg_geometry geometry = scene_geometry(&own->particles);
         const sphg_lists lists =
             everybody(own->particles.target_count, own->particles.source_count);
-        FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->neighbors,
-                                                          &own->scheme, &geometry, &lists));
+        SETUP_OK(own->context, sphg_neighbors_use_lists(own->context, own->neighbors, &own->scheme,
+                                                        &geometry, &lists));
         return;
     }
     build(own);
@@ -92,12 +92,12 @@ static scenery scenery_of(const test_case *test, supply way)
 {
     random_state random = random_seeded(499);
     const int d = test->dimension, is_clump = way >= CLUMP;
-    scenery own = {.test = test, .way = way, .context = fixture_context()};
+    scenery own = {.test = test, .way = way, .context = setup_context()};
     const double side = is_clump ? 3 : d == 2 ? 9 : 5;
     cloud points = cloud_random(d, is_clump ? CROWD : COUNT, side, &random);
     own.particles = scene_of_cloud(test, &points);
     own.particles.target_count = is_clump ? CROWD_TARGETS : COUNT - 20; /* 20 ghosts */
-    own.scheme = fixture_scheme(test, is_clump ? .25 : 1.5);
+    own.scheme = setup_scheme(test, is_clump ? .25 : 1.5);
     supply_neighbors(&own);
     own.pairs = rows_by_brute_force(&own.particles, own.scheme.support_radius);
     const int width = sphg_correction_width(&own.scheme);
@@ -114,7 +114,7 @@ static scenery scenery_of(const test_case *test, supply way)
 /* ---- Results ------------------------------------------------------------------------------ */
 
 typedef struct results {
-    fixture_array gradient, divergence, curl, value;
+    setup_array gradient, divergence, curl, value;
 } results;
 
 static results evaluate(const scenery *own, sphg_form form)
@@ -122,25 +122,25 @@ static results evaluate(const scenery *own, sphg_form form)
     const int d = own->test->dimension, n = own->particles.target_count;
     const sphg_type type = test_field_type(own->test);
     const int two_sided = form >= SPHG_SYMMETRIC && own->test->method != SPHG_PLAIN;
-    results found = {fixture_output(type, n, d * d), fixture_output(type, n, 1),
-                     fixture_output(type, n, d == 2 ? 1 : 3), fixture_output(type, n, d)};
-    const sphg_view at_sources = fixture_view(&own->field);
+    results found = {setup_output(type, n, d * d), setup_output(type, n, 1),
+                     setup_output(type, n, d == 2 ? 1 : 3), setup_output(type, n, d)};
+    const sphg_view at_sources = setup_view(&own->field);
     sphg_field field = {.shape = SPHG_VECTOR, .form = form, .at_sources = &at_sources};
     sphg_sources sources = {.neighbors = own->neighbors};
-    sources.volume = fixture_view(&own->volume);
-    sources.density = fixture_view(&own->density);
-    sources.correction = two_sided ? fixture_view(&own->table) : sphg_absent();
-    field.gradient = fixture_view(&found.gradient);
-    field.divergence = fixture_view(&found.divergence);
-    field.curl = fixture_view(&found.curl);
-    field.value = form == SPHG_DIRECT ? fixture_view(&found.value) : sphg_absent();
+    sources.volume = setup_view(&own->volume);
+    sources.density = setup_view(&own->density);
+    sources.correction = two_sided ? setup_view(&own->table) : sphg_absent();
+    field.gradient = setup_view(&found.gradient);
+    field.divergence = setup_view(&found.divergence);
+    field.curl = setup_view(&found.curl);
+    field.value = form == SPHG_DIRECT ? setup_view(&found.value) : sphg_absent();
     const sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
     return found;
 }
 
-static int same_item(const fixture_array *a, const fixture_array *b, int i)
+static int same_item(const setup_array *a, const setup_array *b, int i)
 {
     const size_t bytes = (size_t)a->width * (a->type == SPHG_F64 ? 8 : 4);
     return memcmp((const char *)a->data + (size_t)i * bytes,
@@ -159,10 +159,10 @@ static int is_reached(const scenery *own, int32_t i)
     return 0;
 }
 
-static int is_finite(const fixture_array *found, int i)
+static int is_finite(const setup_array *found, int i)
 {
     for (int k = 0; k < found->width; k++)
-        if (!isfinite(fixture_get(found, i, k)))
+        if (!isfinite(setup_get(found, i, k)))
             return 0;
     return 1;
 }
@@ -187,7 +187,7 @@ static int require_contained(const scenery *own, const results *clean, const res
 }
 
 /* Spoils all three particles in one array, evaluates, and puts the array back. */
-static void spoil_and_compare(scenery *own, fixture_array *spoilt, sphg_form form,
+static void spoil_and_compare(scenery *own, setup_array *spoilt, sphg_form form,
                               const results *clean, const char *what)
 {
     static const double values[] = {NAN, INFINITY, -INFINITY};

@@ -1,6 +1,6 @@
 /* The reference checked on its own: what the mathematics promises, it keeps to quadruple
  * precision. No call of the library here. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include "support/oracle.h"
 
 static const double quad_unit = 0x1p-113;
@@ -114,7 +114,7 @@ static bench make_bench(const test_case *test, cloud points, double support)
     random_state random = random_seeded(7);
     bench made = {.points = points};
     oracle_scene *scene = &made.scene;
-    scene->scheme = fixture_scheme(test, support);
+    scene->scheme = setup_scheme(test, support);
     scene->unit = quad_unit;
     scene->source_count = scene->target_count = points.count;
     scene->sources = made.points.x;

@@ -1,33 +1,33 @@
 /* Pairs and their gradients as CSR, for loops of the host: whose they are, which of their arrays
  * are wanted, and which targets. Their values are compared with the oracle in test_accuracy.c. */
-#include "support/pairs.h"
-#include "support/stage.h"
+#include "support/brute_force.h"
+#include "support/comparison.h"
 #include <math.h>
 
 enum { PROBES = 40 };
 
 /* A block, and targets elsewhere in it. */
 typedef struct targets {
-    stage on;
+    comparison on;
     const sphg_neighbors *neighbors;
     int count, are_sources;
-    fixture_array table;
+    setup_array table;
 } targets;
 
-static fixture_array table_of(const targets *own)
+static setup_array table_of(const targets *own)
 {
-    const stage *on = &own->on;
+    const comparison *on = &own->on;
     const int width = sphg_correction_width(&on->scheme);
-    const fixture_array table = fixture_output(test_field_type(on->test), own->count, width);
-    sphg_sources sources = stage_sources(on);
+    const setup_array table = setup_output(test_field_type(on->test), own->count, width);
+    sphg_sources sources = comparison_sources(on);
     sources.neighbors = own->neighbors;
-    const fixture_array volume = fixture_numbers(table.type, own->count, 1, on->scene.volume);
+    const setup_array volume = setup_numbers(table.type, own->count, 1, on->scene.volume);
     const sphg_request request = {.sources = &sources,
                                   .set_count = 1,
-                                  .target_volume = fixture_view(&volume),
-                                  .correction = fixture_view(&table)};
+                                  .target_volume = setup_view(&volume),
+                                  .correction = setup_view(&table)};
     if (width > 0)
-        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return table;
 }
 
@@ -36,17 +36,18 @@ static targets targets_of(const test_case *test, int are_sources)
     const int d = test->dimension;
     random_state random = random_seeded(95);
     const cloud points = cloud_jittered(d, d == 2 ? 8 : 5, .125, .25, &random);
-    targets own = {.on = stage_of(test, "block", points, 2.5 * .125), .are_sources = are_sources};
+    targets own = {.on = comparison_of(test, "block", points, 2.5 * .125),
+                   .are_sources = are_sources};
     own.neighbors = own.on.neighbors;
     own.count = points.count;
     if (!are_sources) {
         cloud probes = cloud_random(d, PROBES, .5, &random);
-        const fixture_array at = fixture_positions(test, &own.on.points);
-        const fixture_array places = fixture_positions(test, &probes);
-        sphg_geometry geometry = fixture_geometry(test, &own.on.points, &at);
-        geometry.targets = fixture_view(&places);
+        const setup_array at = setup_positions(test, &own.on.points);
+        const setup_array places = setup_positions(test, &probes);
+        sphg_geometry geometry = setup_geometry(test, &own.on.points, &at);
+        geometry.targets = setup_view(&places);
         geometry.target_count = own.count = PROBES;
-        own.neighbors = fixture_search(own.on.context, &own.on.scheme, &geometry);
+        own.neighbors = setup_search(own.on.context, &own.on.scheme, &geometry);
     }
     own.table = table_of(&own);
     return own;
@@ -54,30 +55,30 @@ static targets targets_of(const test_case *test, int are_sources)
 
 typedef struct pair_rows {
     rows listed;
-    fixture_array gradient;
+    setup_array gradient;
 } pair_rows;
 
 /* The count first, then what is wanted. */
 static pair_rows pairs_in_order(const targets *own, const sphg_subset *subset, int with_gradients,
                                 int any_order)
 {
-    const stage *on = &own->on;
-    sphg_sources sources = stage_sources(on);
+    const comparison *on = &own->on;
+    sphg_sources sources = comparison_sources(on);
     sources.neighbors = own->neighbors;
     pair_rows found = {{own->count, test_memory(((size_t)own->count + 1) * 8), NULL}, {0}};
     sphg_pairs pairs = {.offsets = found.listed.offsets, .any_order = any_order};
-    const sphg_view table = stage_table_view(on, &own->table);
-    FIXTURE_OK(on->context,
-               sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
+    const sphg_view table = comparison_table_view(on, &own->table);
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
     found.listed.indices = test_memory((size_t)pairs.count * sizeof(int32_t));
-    found.gradient = fixture_output(test_field_type(on->test), (int)pairs.count,
-                                    with_gradients ? on->points.dimension : 0);
+    found.gradient = setup_output(test_field_type(on->test), (int)pairs.count,
+                                  with_gradients ? on->points.dimension : 0);
     pairs.indices = found.listed.indices;
     pairs.capacity = pairs.count;
     if (with_gradients)
-        pairs.gradient = fixture_view(&found.gradient);
-    FIXTURE_OK(on->context,
-               sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
+        pairs.gradient = setup_view(&found.gradient);
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
     return found;
 }
 
@@ -89,7 +90,7 @@ static pair_rows pairs_of(const targets *own, const sphg_subset *subset, int wit
 /* A target stands among its own pairs where the method has a gradient for it. */
 static void require_searched(const targets *own, const rows *found)
 {
-    const stage *on = &own->on;
+    const comparison *on = &own->on;
     const rows expected = rows_listed(on->context, own->neighbors, &on->scheme, NULL);
     const int self = own->are_sources && test_is_classic(on->test);
     for (int i = 0; i < own->count; i++) {
@@ -123,8 +124,8 @@ static void require_row(const pair_rows *all, int target, const pair_rows *some,
     for (int64_t k = 0; k < length; k++) {
         assert_int_equal(some->listed.indices[at + k], all->listed.indices[first + k]);
         for (int c = 0; c < all->gradient.width; c++)
-            TEST_REQUIRE(fixture_get(&some->gradient, (int)(at + k), c) ==
-                             fixture_get(&all->gradient, (int)(first + k), c),
+            TEST_REQUIRE(setup_get(&some->gradient, (int)(at + k), c) ==
+                             setup_get(&all->gradient, (int)(first + k), c),
                          "target %d: other bits", target);
     }
 }
@@ -154,8 +155,8 @@ static void pairs_in_any_order_are_those_in_order(const test_case *test)
                              "row %d: %d is no pair, or twice", i, any.listed.indices[k]);
                 moved += at != k;
                 for (int c = 0; c < any.gradient.width; c++)
-                    TEST_REQUIRE(fixture_get(&any.gradient, (int)k, c) ==
-                                     fixture_get(&sorted.gradient, (int)at, c),
+                    TEST_REQUIRE(setup_get(&any.gradient, (int)k, c) ==
+                                     setup_get(&sorted.gradient, (int)at, c),
                                  "row %d: other bits", i);
             }
         }
@@ -184,7 +185,7 @@ static void masked_targets_have_the_pairs_they_have_among_all(const test_case *t
  * Who forgets the corrections gets something else, but a number. */
 static void single_pairs_have_as_many_components_as_the_scheme(const test_case *test)
 {
-    const sphg_scheme scheme = fixture_scheme(test, 1);
+    const sphg_scheme scheme = setup_scheme(test, 1);
     const double x_ij[3] = {.25, -.125, .5};
     double gradient[3] = {-7, -7, -7};
     sphg_pair_gradient(&scheme, NULL, .01, NULL, gradient);

@@ -1,7 +1,7 @@
 /* Periodic axes far from their box: escapees cost nothing and keep the pairs of brute force, and a
  * skin does not care whether its host wraps positions. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -54,13 +54,13 @@ static void require_lists_agree(sphg_context *context, const scene *particles, c
     lists.offsets = offsets;
     lists.indices = indices;
     const sphg_geometry geometry = scene_geometry(particles);
-    const sphg_neighbors *brought = fixture_lists(context, &scheme, &geometry, &lists);
+    const sphg_neighbors *brought = setup_lists(context, &scheme, &geometry, &lists);
     const rows found = rows_listed(context, brought, &scheme, NULL);
     const rows expected = rows_by_brute_force(particles, 1);
     rows_require_equal(&found, &expected, where);
     int32_t order[MANY];
     char seen[MANY] = {0};
-    FIXTURE_OK(context, sphg_neighbors_get_order(context, brought, order));
+    SETUP_OK(context, sphg_neighbors_get_order(context, brought, order));
     for (int k = 0; k < MANY; k++)
         seen[order[k]]++;
     for (int k = 0; k < MANY; k++)
@@ -71,7 +71,7 @@ static void require_lists_agree(sphg_context *context, const scene *particles, c
 static void check_supplies(sphg_context *context, scene particles, double *targets,
                            const char *where)
 {
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     rows_require_search_exact(context, neighbors, &particles, 1, where);
     require_lists_agree(context, &particles, where);
     particles.list_free = 1;
@@ -105,7 +105,7 @@ static void escapees_have_the_pairs_of_brute_force(const test_case *test)
 {
     static const sphg_isa sets[] = {SPHG_ISA_BASE, SPHG_ISA_X86_V3, SPHG_ISA_X86_V4};
     for (int k = 0; k < 3; k++) {
-        sphg_context *context = fixture_context_on(sets[k]);
+        sphg_context *context = setup_context_on(sets[k]);
         for (int far = 0; far < FAR_COUNT && context; far++) {
             check_escapees(test, context, far, 1 << far % test->dimension);
             check_escapees(test, context, far, (1 << test->dimension) - 1);
@@ -119,7 +119,7 @@ static void escapees_have_the_pairs_of_brute_force(const test_case *test)
 static void escapees_leave_the_grid_as_it_is(const test_case *test)
 {
     enum { COUNT = 3000 };
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(97);
     scene particles = scene_empty(test, COUNT);
     static int32_t before[COUNT], after[COUNT];
@@ -132,15 +132,15 @@ static void escapees_leave_the_grid_as_it_is(const test_case *test)
     for (int a = 0; a < test->dimension; a++)
         particles.sources[1000 * test->dimension + a] = 0;
     sphg_geometry geometry = scene_geometry(&particles);
-    const sphg_neighbors *neighbors = fixture_search(context, &scheme, &geometry);
-    FIXTURE_OK(context, sphg_neighbors_get_order(context, neighbors, before));
+    const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
+    SETUP_OK(context, sphg_neighbors_get_order(context, neighbors, before));
     const int doublings[] = {20, 23, 30, 60, 100, 120, 500, 1000};
     for (int k = 0; k < (particles.is_double ? 8 : 6); k++) {
         for (int a = 0; a < (k % 2 ? 1 : test->dimension); a++)
             particles.sources[1000 * test->dimension + a] = ldexp(-12, doublings[k]);
         geometry = scene_geometry(&particles);
-        neighbors = fixture_search(context, &scheme, &geometry);
-        FIXTURE_OK(context, sphg_neighbors_get_order(context, neighbors, after));
+        neighbors = setup_search(context, &scheme, &geometry);
+        SETUP_OK(context, sphg_neighbors_get_order(context, neighbors, after));
         TEST_REQUIRE(!memcmp(before, after, sizeof before), "2^%d periods away: another order",
                      doublings[k]);
     }
@@ -149,8 +149,8 @@ static void escapees_leave_the_grid_as_it_is(const test_case *test)
 /* Pairs a rounding inside and outside of H, at borders of cells, each partner in another image. */
 static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(101);
     for (int round = 0; round < 60; round++) {
         scene particles = scene_empty(test, MANY);
@@ -178,8 +178,8 @@ static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test
 
 static void periods_without_room_for_differences_are_refused(const test_case *test)
 {
-    sphg_context *context = fixture_context();
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context();
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     scene particles = scene_empty(test, 4);
     const double most = (particles.is_double ? DBL_MAX : (double)FLT_MAX) / 4;
     particles.sources[0] = most;
@@ -212,8 +212,8 @@ static double wrapped_by(enum host host, double x, double length)
 static int rebuilds_of(const test_case *test, enum host host, int axes, int own_targets)
 {
     enum { WALKERS = 100, STEPS = 33 };
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(103);
     scene particles = scene_empty(test, WALKERS);
     const int d = test->dimension;
@@ -238,7 +238,7 @@ static int rebuilds_of(const test_case *test, enum host host, int axes, int own_
         rows_require_search_exact(context, neighbors, &particles, 1,
                                   test_text("host %d, axes %d, step %d", host, axes, step));
         sphg_neighbors_info info = {0};
-        FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+        SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
         rebuilt += info.rebuilt;
     }
     return rebuilt;
@@ -255,11 +255,11 @@ static void skins_hold_whether_the_host_wraps_or_not(const test_case *test)
  * still hold every pair. */
 static void skins_leave_room_for_rounding(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
+    sphg_context *context = setup_context_of(1);
     random_state random = random_seeded(107);
     int kept = 0;
     for (int round = 0; round < 120; round++) {
-        sphg_neighbors *neighbors = pairs_neighbors(context);
+        sphg_neighbors *neighbors = brute_force_neighbors(context);
         scene particles = scene_empty(test, MANY);
         const int d = test->dimension;
         const double unit = particles.is_double ? 0x1p-53 : 0x1p-24;
@@ -282,7 +282,7 @@ static void skins_leave_room_for_rounding(const test_case *test)
         for (int step = 0; step < 4; step++) {
             sphg_neighbors_info info = {0};
             rows_require_search_exact(context, neighbors, &particles, 1, "rounded");
-            FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+            SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
             kept += !info.rebuilt;
             for (int i = 0; i < MANY; i++) /* towards each other */
                 particles.sources[i * d] = scene_rounded(

@@ -1,6 +1,6 @@
 /* Order 2: against the oracle, exact on quadratic fields where the rank says so, on linear ones
  * wherever order 1 is, continuous, and never worse than finite. */
-#include "support/curved.h"
+#include "support/second_order.h"
 #include "support/scenes.h"
 #include <string.h>
 
@@ -8,28 +8,29 @@ enum { PAIRS_MOST = 6 };
 
 static int full_rank(int d)
 {
-    return d + curved_pairs(d);
+    return d + second_order_pairs(d);
 }
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
 
-static void compare(const stage *on, sphg_shape shape, const curved *found, const double *numbers,
-                    int i)
+static void compare(const comparison *on, sphg_shape shape, const second_order *found,
+                    const double *numbers, int i)
 {
     const oracle_field field = {shape, SPHG_DIFFERENCE, numbers, NULL};
     const oracle_curved exact = oracle_apply_second(on->reference, &field, i);
-    curved_compare(on, found, &exact, i,
-                   exact.touched ? TEST_TOLERANCE_quadratic_ratio_touched
-                                 : TEST_TOLERANCE_quadratic_ratio_full);
+    second_order_compare(on, found, &exact, i,
+                         exact.touched ? TEST_TOLERANCE_quadratic_ratio_touched
+                                       : TEST_TOLERANCE_quadratic_ratio_full);
 }
 
 static void results_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
+        const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
         for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
-            const double *numbers = stage_random_field(&on, (sphg_shape)shape, 3);
-            const curved found = curved_apply(&on, (sphg_shape)shape, numbers, (curved_how){0});
+            const double *numbers = comparison_random_field(&on, (sphg_shape)shape, 3);
+            const second_order found =
+                second_order_apply(&on, (sphg_shape)shape, numbers, (second_order_how){0});
             const int step =
                 test_reference_stride() * (on.points.count < 6 ? 1 : on.points.count / 6);
             for (int i = 0; i < on.points.count; i += step)
@@ -42,25 +43,25 @@ static void results_match_the_oracle(const test_case *test)
 static void two_sided_forms_match_the_oracle(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
-        const fixture_array table = stage_table(&on);
+        const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
+        const setup_array table = comparison_table(&on);
         for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
             const sphg_form form = (sphg_form)(shape % 2 ? SPHG_ADJOINT : SPHG_SYMMETRIC);
-            const stage_field field = {(sphg_shape)shape, form,
-                                       stage_random_field(&on, (sphg_shape)shape, 21)};
-            const stage_result found = stage_apply(&on, &field, &table);
+            const comparison_field field = {(sphg_shape)shape, form,
+                                            comparison_random_field(&on, (sphg_shape)shape, 21)};
+            const comparison_result found = comparison_apply(&on, &field, &table);
             const oracle_field asked = {field.shape, form, field.numbers, NULL};
             const int step = test_reference_stride() * (1 + on.points.count / 4);
             for (int i = 0; i < on.points.count; i += step) {
                 const oracle_curved exact = oracle_apply_second_two_sided(on.reference, &asked, i);
                 if (exact.undecided)
                     continue;
-                const fixture_array *const arrays[] = {&found.gradient, &found.divergence,
-                                                       &found.curl};
+                const setup_array *const arrays[] = {&found.gradient, &found.divergence,
+                                                     &found.curl};
                 const quad *const numbers[] = {exact.gradient, exact.divergence, exact.curl};
                 for (int k = 0; k < 3; k++)
                     TEST_WITHIN(quadratic_two_sided,
-                                curved_ratio(arrays[k], i, numbers[k], exact.gradient_bound),
+                                second_order_ratio(arrays[k], i, numbers[k], exact.gradient_bound),
                                 test_text("result %d of particle %d, %s, %s", k, i, on.name,
                                           test_method_name(test->method)));
             }
@@ -74,14 +75,16 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
     for (int s = 0; s < 3; s++)
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
             for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
-                const stage made = stage_of_scene(test, &scenes_hard[chosen[s]]);
-                stage on = curved_stage(stage_under(&made, (sphg_policy)policy, .0625));
-                on.context = fixture_context_on((sphg_isa)isa);
+                const comparison made = comparison_of_scene(test, &scenes_hard[chosen[s]]);
+                comparison on =
+                    second_order_comparison(comparison_under(&made, (sphg_policy)policy, .0625));
+                on.context = setup_context_on((sphg_isa)isa);
                 if (!on.context)
                     continue;
-                on.neighbors = fixture_neighbors(on.context, test, &on.scheme, &on.points);
-                const double *numbers = stage_random_field(&on, SPHG_VECTOR, 5);
-                const curved found = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
+                on.neighbors = setup_neighbors(on.context, test, &on.scheme, &on.points);
+                const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 5);
+                const second_order found =
+                    second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
                 for (int i = 0; i < on.points.count;
                      i += test_reference_stride() * (1 + on.points.count / 4))
                     compare(&on, SPHG_VECTOR, &found, numbers, i);
@@ -91,14 +94,14 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
 /* Where a few volumes outweigh the others, rounding of the large moments raises the threshold. */
 static void uneven_volumes_match_the_oracle(const test_case *test)
 {
-    const stage even = stage_of_scene(test, &scenes_hard[0]);
+    const comparison even = comparison_of_scene(test, &scenes_hard[0]);
     const double heavy = test_unit_roundoff(test) > 1e-10 ? 0x1p17 : 0x1p46;
     double *volumes = test_memory((size_t)even.points.count * sizeof *volumes);
     for (int i = 0; i < even.points.count; i++)
-        volumes[i] = fixture_get(&even.volume, i, 0) * (i % 9 == 4 ? heavy : 1);
-    const stage on = curved_stage(stage_with_volumes(&even, volumes));
-    const double *numbers = stage_random_field(&on, SPHG_VECTOR, 15);
-    const curved found = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
+        volumes[i] = setup_get(&even.volume, i, 0) * (i % 9 == 4 ? heavy : 1);
+    const comparison on = second_order_comparison(comparison_with_volumes(&even, volumes));
+    const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 15);
+    const second_order found = second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
     int raised = 0;
     for (int i = 0; i < on.points.count; i += 3) {
         oracle_second second;
@@ -115,46 +118,47 @@ static void volumes_that_are_alike_need_not_be_told(const test_case *test)
     random_state random = random_seeded(17);
     const int d = test->dimension;
     const cloud points = cloud_jittered(d, d == 2 ? 9 : 5, .25, .1, &random);
-    const stage on = curved_stage(stage_of(test, "like volumes", points, .75));
+    const comparison on = second_order_comparison(comparison_of(test, "like volumes", points, .75));
     const double volume = pow(.25, d);
     const float narrow = (float)volume;
     const int f64 = test_field_type(test) == SPHG_F64;
-    const fixture_array values = fixture_numbers(test_field_type(test), points.count, 1,
-                                                 stage_random_field(&on, SPHG_SCALAR, 16));
-    const sphg_view at_sources = fixture_view(&values);
-    curved found[2];
+    const setup_array values = setup_numbers(test_field_type(test), points.count, 1,
+                                             comparison_random_field(&on, SPHG_SCALAR, 16));
+    const sphg_view at_sources = setup_view(&values);
+    second_order found[2];
     for (int mean = 0; mean < 2; mean++) {
-        found[mean] = curved_outputs(&on, SPHG_SCALAR, 0);
+        found[mean] = second_order_outputs(&on, SPHG_SCALAR, 0);
         const sphg_view same = f64 ? sphg_same_f64(&volume) : sphg_same_f32(&narrow);
-        fixture_array positions = fixture_positions(test, (cloud *)&on.points);
-        sphg_geometry geometry = sphg_targets_apart(fixture_view(&positions), points.count,
-                                                    fixture_view(&positions), points.count);
+        setup_array positions = setup_positions(test, (cloud *)&on.points);
+        sphg_geometry geometry = sphg_targets_apart(setup_view(&positions), points.count,
+                                                    setup_view(&positions), points.count);
         geometry.precision = test_field_type(test);
-        const sphg_sources sources = {
-            .neighbors = fixture_search(on.context, &on.scheme, &geometry), .volume = same};
+        const sphg_sources sources = {.neighbors = setup_search(on.context, &on.scheme, &geometry),
+                                      .volume = same};
         sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
         field.at_targets = at_sources;
-        field.gradient = fixture_view(&found[mean].gradient);
-        field.hessian = fixture_view(&found[mean].hessian);
+        field.gradient = setup_view(&found[mean].gradient);
+        field.hessian = setup_view(&found[mean].hessian);
         sphg_request request = {
             .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
         request.target_volume = mean ? sphg_absent() : same;
-        FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+        SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
     }
-    fixture_require_close(&found[0].gradient, &found[1].gradient, "gradient by mean volumes");
-    fixture_require_close(&found[0].hessian, &found[1].hessian, "Hessian by mean volumes");
+    setup_require_close(&found[0].gradient, &found[1].gradient, "gradient by mean volumes");
+    setup_require_close(&found[0].hessian, &found[1].hessian, "Hessian by mean volumes");
 }
 
 static void rank_is_the_oracles(const test_case *test)
 {
     int open = 0, all = 0;
     for (int s = 0; s < scenes_hard_count; s++) {
-        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
-        const double *numbers = stage_random_field(&on, SPHG_SCALAR, 4);
-        const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+        const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
+        const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 4);
+        const second_order found =
+            second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
         int64_t full = 0;
         for (int i = 0; i < on.points.count; i++)
-            full += fixture_get(&found.rank, i, 0) == full_rank(on.points.dimension);
+            full += setup_get(&found.rank, i, 0) == full_rank(on.points.dimension);
         TEST_REQUIRE(found.stats.quadratic == full, "%lld of %lld, %s",
                      (long long)found.stats.quadratic, (long long)full, on.name);
         for (int i = 0; i < on.points.count; i += 1 + on.points.count / 9, all++) {
@@ -169,8 +173,8 @@ static void rank_is_the_oracles(const test_case *test)
             if (oracle_rank_is_open(&on.scene, point) || near_limit)
                 open++;
             else
-                TEST_REQUIRE(fixture_get(&found.rank, i, 0) == second.rank,
-                             "%g, not %d: particle %d, %s", fixture_get(&found.rank, i, 0),
+                TEST_REQUIRE(setup_get(&found.rank, i, 0) == second.rank,
+                             "%g, not %d: particle %d, %s", setup_get(&found.rank, i, 0),
                              second.rank, i, on.name);
         }
     }
@@ -179,21 +183,22 @@ static void rank_is_the_oracles(const test_case *test)
 
 /* ---- Exactness ------------------------------------------------------------------------------- */
 
-static double distance_to(const fixture_array *found, int i, const double *exact)
+static double distance_to(const setup_array *found, int i, const double *exact)
 {
     double square = 0;
     for (int k = 0; k < found->width; k++)
-        square += pow(fixture_get(found, i, k) - exact[k], 2);
+        square += pow(setup_get(found, i, k) - exact[k], 2);
     return sqrt(square);
 }
 
-static stage exact_stage(const test_case *test, double jitter, double support)
+static comparison exact_stage(const test_case *test, double jitter, double support)
 {
     random_state random = random_seeded(99);
     const int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 9 : 6, .25, jitter, &random);
     cloud_snap(&points, 0x1p-6);
-    return curved_stage(stage_of(test, test_text("jitter %g", jitter), points, support * .25));
+    return second_order_comparison(
+        comparison_of(test, test_text("jitter %g", jitter), points, support * .25));
 }
 
 /* In units of u / lambda_q, which t bounds, the gradient over H times the curvature. */
@@ -202,26 +207,27 @@ static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
     static const double jitters[] = {0, .2, .4}, supports[] = {2, 2.5, 3};
     const double size = 15;
     for (int k = 0; k < 9; k++) {
-        const stage on = exact_stage(test, jitters[k % 3], supports[k / 3]);
+        const comparison on = exact_stage(test, jitters[k % 3], supports[k / 3]);
         const int n = on.points.count, d = on.points.dimension;
         const double h = on.scheme.support_radius;
-        const curved found =
-            curved_apply(&on, SPHG_SCALAR, curved_polynomial(&on.points, 2), (curved_how){0});
+        const second_order found = second_order_apply(
+            &on, SPHG_SCALAR, second_order_polynomial(&on.points, 2), (second_order_how){0});
         int full = 0;
         for (int i = 0; i < n; i++) {
             double exact[3];
             oracle_second second;
-            if (fixture_get(&found.rank, i, 0) < full_rank(d))
+            if (setup_get(&found.rank, i, 0) < full_rank(d))
                 continue;
             if (full++ % (3 * test_reference_stride()))
                 continue;
-            curved_slope_at(&on.points, i, exact);
+            second_order_slope_at(&on.points, i, exact);
             oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
             const double scale = on.scene.unit / (double)second.t;
             const double slope = distance_to(&found.gradient, i, exact) / (h * size + 6 * h);
             TEST_WITHIN(quadratic_exactness, slope / scale / 4, test_text("gradient, %s", on.name));
             TEST_WITHIN(quadratic_exactness,
-                        distance_to(&found.hessian, i, curved_second) / (size + 24 / h) / scale / 4,
+                        distance_to(&found.hessian, i, second_order_second) / (size + 24 / h) /
+                            scale / 4,
                         test_text("Hessian, %s", on.name));
         }
         TEST_REQUIRE(full > (supports[k / 3] > 2.4 ? .9 : .2) * n, "only %d of %d, %s, H %g", full,
@@ -232,13 +238,13 @@ static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
 static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
 {
     for (int k = 0; k < 3; k++) {
-        const stage on = exact_stage(test, .2 * k, 2);
-        const curved found =
-            curved_apply(&on, SPHG_SCALAR, curved_polynomial(&on.points, 1), (curved_how){0});
+        const comparison on = exact_stage(test, .2 * k, 2);
+        const second_order found = second_order_apply(
+            &on, SPHG_SCALAR, second_order_polynomial(&on.points, 1), (second_order_how){0});
         const double none[PAIRS_MOST] = {0}, h = on.scheme.support_radius;
         int partial = 0;
         for (int i = 0; i < on.points.count; i++) {
-            const int rank = (int)fixture_get(&found.rank, i, 0);
+            const int rank = (int)setup_get(&found.rank, i, 0);
             oracle_second second;
             if (rank < on.points.dimension)
                 continue;
@@ -248,7 +254,7 @@ static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
             oracle_solve_second(&on.scene, oracle_at(on.reference, i), &second);
             const double scale = on.scene.unit * (1 + (double)second.norm_f);
             TEST_WITHIN(quadratic_exactness,
-                        distance_to(&found.gradient, i, curved_slopes) / scale / 4,
+                        distance_to(&found.gradient, i, second_order_slopes) / scale / 4,
                         test_text("gradient, %s", on.name));
             TEST_WITHIN(quadratic_exactness, distance_to(&found.hessian, i, none) * h / scale / 24,
                         test_text("Hessian, %s", on.name));
@@ -259,16 +265,16 @@ static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
 
 static void constants_have_exactly_no_derivative(const test_case *test)
 {
-    const stage on = exact_stage(test, .2, 2);
+    const comparison on = exact_stage(test, .2, 2);
     double *numbers = test_memory((size_t)on.points.count * sizeof *numbers);
     for (int i = 0; i < on.points.count; i++)
         numbers[i] = .1;
-    const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const second_order found = second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
     for (int i = 0; i < on.points.count; i++)
         for (int k = 0; k < found.hessian.width; k++)
-            assert_true(fixture_get(&found.hessian, i, k) == 0 &&
-                        fixture_get(&found.gradient, i, k % test->dimension) == 0 &&
-                        fixture_get(&found.laplacian, i, 0) == 0);
+            assert_true(setup_get(&found.hessian, i, k) == 0 &&
+                        setup_get(&found.gradient, i, k % test->dimension) == 0 &&
+                        setup_get(&found.laplacian, i, 0) == 0);
 }
 
 /* ---- Gates: errors on a lattice, by an implementation of its own ----------------------------- */
@@ -294,21 +300,22 @@ static double volume_of(const cloud *points, const sphg_scheme *scheme, int i)
 }
 
 /* per_axis^d particles on [-1, 1]^d with V = 1 / sum W. */
-static stage gate_stage(const test_case *test, int per_axis, double support)
+static comparison gate_stage(const test_case *test, int per_axis, double support)
 {
     const int d = test->dimension;
     const double spacing = 2. / per_axis;
     cloud points = cloud_lattice(d, per_axis, spacing);
     for (int k = 0; k < points.count * d; k++)
         points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing;
-    stage on = curved_stage(stage_of(test, "lattice", points, support * spacing * (1 + 1e-6)));
+    comparison on = second_order_comparison(
+        comparison_of(test, "lattice", points, support * spacing * (1 + 1e-6)));
     double *volumes = test_memory((size_t)points.count * sizeof *volumes);
     for (int i = 0; i < points.count; i++)
         volumes[i] = volume_of(&on.points, &on.scheme, i);
-    return stage_with_volumes(&on, volumes);
+    return comparison_with_volumes(&on, volumes);
 }
 
-static int is_boundary(const stage *on, int i, int layers)
+static int is_boundary(const comparison *on, int i, int layers)
 {
     const int d = on->points.dimension;
     for (int a = 0; a < d; a++)
@@ -338,14 +345,14 @@ static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
     for (size_t g = 0; g < sizeof gates / sizeof *gates; g++) {
         if (gates[g].method != test->method)
             continue;
-        const stage on = gate_stage(test, 40, gates[g].support);
+        const comparison on = gate_stage(test, 40, gates[g].support);
         double *v = test_memory((size_t)on.points.count * 2 * sizeof *v);
         for (int i = 0; i < on.points.count; i++) {
             const double *x = on.points.x + 2 * i;
             v[2 * i] = cos(2 * x[0]);
             v[2 * i + 1] = cos(x[1]) - sin(3 * x[0]);
         }
-        const curved found = curved_apply(&on, SPHG_VECTOR, v, (curved_how){0});
+        const second_order found = second_order_apply(&on, SPHG_VECTOR, v, (second_order_how){0});
         double gradient[2] = {0}, hessian[2] = {0}, laplacian[2] = {0};
         for (int i = 0; i < on.points.count; i++) {
             const double x = on.points.x[2 * i], y = on.points.x[2 * i + 1];
@@ -354,9 +361,9 @@ static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
             const int inside = !is_boundary(&on, i, 2);
             double square = 0, l = 0;
             for (int k = 0; k < 6; k++)
-                square += pow(fixture_get(&found.hessian, i, k) - h[k], 2) * (k % 3 == 1 ? 2 : 1);
+                square += pow(setup_get(&found.hessian, i, k) - h[k], 2) * (k % 3 == 1 ? 2 : 1);
             for (int c = 0; c < 2; c++)
-                l = fmax(l, fabs(fixture_get(&found.laplacian, i, c) - h[3 * c] - h[3 * c + 2]));
+                l = fmax(l, fabs(setup_get(&found.laplacian, i, c) - h[3 * c] - h[3 * c + 2]));
             gradient[inside] = fmax(gradient[inside], distance_to(&found.gradient, i, j));
             hessian[inside] = fmax(hessian[inside], sqrt(square));
             laplacian[inside] = fmax(laplacian[inside], l);
@@ -382,20 +389,20 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
     for (size_t g = 0; g < sizeof gates / sizeof *gates; g++) {
         if (gates[g].method != test->method)
             continue;
-        const stage on = gate_stage(test, 12, gates[g].support);
+        const comparison on = gate_stage(test, 12, gates[g].support);
         double *a = test_memory((size_t)on.points.count * sizeof *a), worst[2] = {0}, l = 0;
         for (int i = 0; i < on.points.count; i++) {
             const double *x = on.points.x + 3 * i;
             a[i] = cos(x[1]) - sin(3 * x[0]) + cos(2 * x[2]);
         }
-        const curved found = curved_apply(&on, SPHG_SCALAR, a, (curved_how){0});
+        const second_order found = second_order_apply(&on, SPHG_SCALAR, a, (second_order_how){0});
         for (int i = 0; i < on.points.count; i++) {
             const double *x = on.points.x + 3 * i;
             const double exact[] = {-3 * cos(3 * x[0]), -sin(x[1]), -2 * sin(2 * x[2])};
             const double trace = -cos(x[1]) + 9 * sin(3 * x[0]) - 4 * cos(2 * x[2]);
             const int inside = !is_boundary(&on, i, 2);
             worst[inside] = test_larger(worst[inside], distance_to(&found.gradient, i, exact));
-            l = fmax(l, fabs(fixture_get(&found.laplacian, i, 0) - trace));
+            l = fmax(l, fabs(setup_get(&found.laplacian, i, 0) - trace));
         }
         TEST_REQUIRE(relative(worst[0], gates[g].gradient_boundary) < 3e-4 &&
                          relative(worst[1], gates[g].gradient_inside) < 3e-4 &&
@@ -413,114 +420,118 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
 static void tables_give_the_bits_of_one_sweep(const test_case *test)
 {
     for (int s = 0; s < scenes_hard_count; s += 5) {
-        const stage on = curved_stage(stage_of_scene(test, &scenes_hard[s]));
-        const double *numbers = stage_random_field(&on, SPHG_VECTOR, 6);
-        const curved fused = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){.no_table = 1});
-        const curved found = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
-        const curved read =
-            curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){.table = &found.table});
-        curved_require_same_bits(&fused, &found, on.name);
-        curved_require_same_bits(&found, &read, on.name);
+        const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
+        const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 6);
+        const second_order fused =
+            second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){.no_table = 1});
+        const second_order found =
+            second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
+        const second_order read = second_order_apply(&on, SPHG_VECTOR, numbers,
+                                                     (second_order_how){.table = &found.table});
+        second_order_require_same_bits(&fused, &found, on.name);
+        second_order_require_same_bits(&found, &read, on.name);
     }
 }
 
 static void laplacians_are_traces_of_hessians(const test_case *test)
 {
-    const stage on = exact_stage(test, .3, 2.5);
-    const int d = test->dimension, step = curved_pairs(d);
-    const curved found =
-        curved_apply(&on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 7), (curved_how){0});
+    const comparison on = exact_stage(test, .3, 2.5);
+    const int d = test->dimension, step = second_order_pairs(d);
+    const second_order found = second_order_apply(
+        &on, SPHG_VECTOR, comparison_random_field(&on, SPHG_VECTOR, 7), (second_order_how){0});
     for (int i = 0; i < on.points.count; i++)
         for (int c = 0; c < d; c++) {
-            double trace = fixture_get(&found.hessian, i, c * step);
+            double trace = setup_get(&found.hessian, i, c * step);
             for (int a = 1; a < d; a++) {
                 const int k = c * step + a * d - a * (a - 1) / 2;
-                trace += fixture_get(&found.hessian, i, k);
+                trace += setup_get(&found.hessian, i, k);
                 if (test_field_type(test) == SPHG_F32)
                     trace = (double)(float)trace;
             }
-            TEST_REQUIRE(trace == fixture_get(&found.laplacian, i, c), "particle %d", i);
+            TEST_REQUIRE(trace == setup_get(&found.laplacian, i, c), "particle %d", i);
         }
 }
 
 static void pairs_found_anew_give_the_same_bits(const test_case *test)
 {
-    const stage on = exact_stage(test, .3, 2.5);
-    stage other = on;
-    const double *numbers = stage_random_field(&on, SPHG_VECTOR, 8);
-    const curved kept = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){0});
-    const fixture_array positions = fixture_positions(test, &other.points);
-    sphg_geometry geometry = fixture_geometry(test, &on.points, &positions);
+    const comparison on = exact_stage(test, .3, 2.5);
+    comparison other = on;
+    const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 8);
+    const second_order kept = second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
+    const setup_array positions = setup_positions(test, &other.points);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &positions);
     geometry.list_free = 1;
-    other.neighbors = fixture_search(on.context, &on.scheme, &geometry);
-    const curved again = curved_apply(&other, SPHG_VECTOR, numbers, (curved_how){0});
-    curved_require_same_bits(&kept, &again, "list-free");
-    TEST_REQUIRE(fixture_same_bits(&kept.table, &again.table), "tables");
+    other.neighbors = setup_search(on.context, &on.scheme, &geometry);
+    const second_order again =
+        second_order_apply(&other, SPHG_VECTOR, numbers, (second_order_how){0});
+    second_order_require_same_bits(&kept, &again, "list-free");
+    TEST_REQUIRE(setup_same_bits(&kept.table, &again.table), "tables");
     int32_t chosen[12];
     for (int k = 0; k < 12; k++)
         chosen[k] = k * 3;
     const sphg_subset few = sphg_listed(chosen, 12);
-    const curved some = curved_apply(&on, SPHG_VECTOR, numbers, (curved_how){.subset = &few});
+    const second_order some =
+        second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){.subset = &few});
     for (int k = 0; k < 12; k++)
         for (int c = 0; c < some.hessian.width; c++)
-            TEST_REQUIRE(fixture_get(&some.hessian, chosen[k], c) ==
-                             fixture_get(&kept.hessian, chosen[k], c),
+            TEST_REQUIRE(setup_get(&some.hessian, chosen[k], c) ==
+                             setup_get(&kept.hessian, chosen[k], c),
                          "target %d", chosen[k]);
-    TEST_REQUIRE(fixture_is_canary(&some.hessian, 1), "who is not selected is written");
+    TEST_REQUIRE(setup_is_canary(&some.hessian, 1), "who is not selected is written");
 }
 
 /* Forms of both sides: by themselves or beside a difference, all targets or a few, whose sources'
  * rows are copied one by one. */
 static void two_sided_forms_have_the_same_bits_in_any_company(const test_case *test)
 {
-    const stage on = exact_stage(test, .3, 2.5);
-    const fixture_array table = stage_table(&on);
-    const stage_field stress = {SPHG_SCALAR, SPHG_ADJOINT,
-                                stage_random_field(&on, SPHG_SCALAR, 22)};
-    const stage_result alone = stage_apply(&on, &stress, &table);
-    const fixture_array values =
-        fixture_numbers(test_field_type(test), on.points.count, 1, stress.numbers);
-    const sphg_view at_sources = fixture_view(&values);
-    const stage_result force = stage_outputs(&on, &stress, on.points.count);
-    const curved slope = curved_outputs(&on, SPHG_SCALAR, 0);
-    const curved expected =
-        curved_apply(&on, SPHG_SCALAR, stress.numbers, (curved_how){.table = &table});
+    const comparison on = exact_stage(test, .3, 2.5);
+    const setup_array table = comparison_table(&on);
+    const comparison_field stress = {SPHG_SCALAR, SPHG_ADJOINT,
+                                     comparison_random_field(&on, SPHG_SCALAR, 22)};
+    const comparison_result alone = comparison_apply(&on, &stress, &table);
+    const setup_array values =
+        setup_numbers(test_field_type(test), on.points.count, 1, stress.numbers);
+    const sphg_view at_sources = setup_view(&values);
+    const comparison_result force = comparison_outputs(&on, &stress, on.points.count);
+    const second_order slope = second_order_outputs(&on, SPHG_SCALAR, 0);
+    const second_order expected =
+        second_order_apply(&on, SPHG_SCALAR, stress.numbers, (second_order_how){.table = &table});
     sphg_field fields[2] = {{.shape = SPHG_SCALAR, .at_sources = &at_sources},
                             {.shape = SPHG_SCALAR, .at_sources = &at_sources}};
     fields[0].form = SPHG_ADJOINT;
-    fields[0].gradient = fixture_view(&force.gradient);
-    fields[1].gradient = fixture_view(&slope.gradient);
-    fields[1].hessian = fixture_view(&slope.hessian);
-    sphg_sources sources = stage_sources(&on);
-    sources.correction = fixture_view(&table);
+    fields[0].gradient = setup_view(&force.gradient);
+    fields[1].gradient = setup_view(&slope.gradient);
+    fields[1].hessian = setup_view(&slope.hessian);
+    sphg_sources sources = comparison_sources(&on);
+    sources.correction = setup_view(&table);
     sphg_request request = {
         .sources = &sources, .fields = fields, .set_count = 1, .field_count = 2};
-    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    TEST_REQUIRE(fixture_same_bits(&alone.gradient, &force.gradient), "force in company");
-    TEST_REQUIRE(fixture_same_bits(&expected.gradient, &slope.gradient), "gradient in company");
-    TEST_REQUIRE(fixture_same_bits(&expected.hessian, &slope.hessian), "Hessian in company");
+    SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    TEST_REQUIRE(setup_same_bits(&alone.gradient, &force.gradient), "force in company");
+    TEST_REQUIRE(setup_same_bits(&expected.gradient, &slope.gradient), "gradient in company");
+    TEST_REQUIRE(setup_same_bits(&expected.hessian, &slope.hessian), "Hessian in company");
     const int32_t chosen[] = {0, 7, on.points.count - 1};
     const sphg_subset few = sphg_listed(chosen, 3);
-    const stage_result some = stage_apply_to(&on, &stress, &table, &few);
+    const comparison_result some = comparison_apply_to(&on, &stress, &table, &few);
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < test->dimension; a++)
-            TEST_REQUIRE(fixture_get(&some.gradient, chosen[k], a) ==
-                             fixture_get(&alone.gradient, chosen[k], a),
+            TEST_REQUIRE(setup_get(&some.gradient, chosen[k], a) ==
+                             setup_get(&alone.gradient, chosen[k], a),
                          "target %d", chosen[k]);
 }
 
 /* Half of the particles each: sums of both, moments of third and fourth order included. */
 static void two_source_sets_are_one_cloud(const test_case *test)
 {
-    const stage on = exact_stage(test, .1, 3);
+    const comparison on = exact_stage(test, .1, 3);
     const int n = on.points.count, half = n / 2;
-    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 9);
-    const curved whole = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-    const curved found = curved_outputs(&on, SPHG_SCALAR, 0);
-    stage moved = on;
-    const fixture_array positions = fixture_positions(test, &moved.points);
-    const fixture_array values = fixture_numbers(test_field_type(test), n, 1, numbers);
-    const sphg_view all = fixture_view(&positions), volume = fixture_view(&on.volume);
+    const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 9);
+    const second_order whole = second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+    const second_order found = second_order_outputs(&on, SPHG_SCALAR, 0);
+    comparison moved = on;
+    const setup_array positions = setup_positions(test, &moved.points);
+    const setup_array values = setup_numbers(test_field_type(test), n, 1, numbers);
+    const sphg_view all = setup_view(&positions), volume = setup_view(&on.volume);
     sphg_sources sets[2] = {{0}, {0}};
     sphg_view at_sources[2];
     for (int s = 0; s < 2; s++) {
@@ -529,44 +540,44 @@ static void two_source_sets_are_one_cloud(const test_case *test)
         part.x = (const char *)all.x + first * all.stride;
         sphg_geometry geometry = sphg_targets_apart(all, n, part, count);
         geometry.precision = test_field_type(test);
-        sets[s].neighbors = fixture_search(on.context, &on.scheme, &geometry);
+        sets[s].neighbors = setup_search(on.context, &on.scheme, &geometry);
         sets[s].volume = volume;
         sets[s].volume.x = (const char *)volume.x + first * volume.stride;
-        at_sources[s] = fixture_view(&values);
+        at_sources[s] = setup_view(&values);
         at_sources[s].x = (const char *)at_sources[s].x + first * at_sources[s].stride;
     }
     sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources};
-    field.at_targets = fixture_view(&values);
-    field.gradient = fixture_view(&found.gradient);
-    field.hessian = fixture_view(&found.hessian);
+    field.at_targets = setup_view(&values);
+    field.gradient = setup_view(&found.gradient);
+    field.hessian = setup_view(&found.hessian);
     sphg_request request = {.sources = sets, .fields = &field, .set_count = 2, .field_count = 1};
     request.target_volume = volume;
-    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    fixture_require_close(&whole.gradient, &found.gradient, "gradient of two sets");
-    fixture_require_close(&whole.hessian, &found.hessian, "Hessian of two sets");
+    SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    setup_require_close(&whole.gradient, &found.gradient, "gradient of two sets");
+    setup_require_close(&whole.hessian, &found.hessian, "Hessian of two sets");
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
 
 static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
 {
-    const stage on = exact_stage(test, .3, 2.5);
+    const comparison on = exact_stage(test, .3, 2.5);
     const int n = on.points.count, d = test->dimension;
-    const double *numbers = stage_random_field(&on, SPHG_SCALAR, 10);
-    const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
+    const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 10);
+    const second_order found = second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
     int64_t *offsets = test_memory((size_t)(n + 1) * sizeof *offsets);
     sphg_pairs pairs = {.offsets = offsets, .capacity = 0};
-    sphg_sources sources = stage_sources(&on);
-    FIXTURE_OK(on.context,
-               sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
-    fixture_array gradients = fixture_output(test_field_type(test), (int)pairs.count, d);
+    sphg_sources sources = comparison_sources(&on);
+    SETUP_OK(on.context,
+             sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
+    setup_array gradients = setup_output(test_field_type(test), (int)pairs.count, d);
     pairs.capacity = pairs.count;
     pairs.indices = test_memory((size_t)pairs.count * sizeof *pairs.indices);
-    pairs.gradient = fixture_view(&gradients);
-    FIXTURE_OK(on.context, sphg_pair_gradients(on.context, &on.scheme, &sources, NULL,
-                                               fixture_view(&found.table), &pairs));
-    fixture_array sums = fixture_output(SPHG_F64, n, d), alone = fixture_output(SPHG_F64, n, d);
-    const double *table = fixture_doubles(&found.table);
+    pairs.gradient = setup_view(&gradients);
+    SETUP_OK(on.context, sphg_pair_gradients(on.context, &on.scheme, &sources, NULL,
+                                             setup_view(&found.table), &pairs));
+    setup_array sums = setup_output(SPHG_F64, n, d), alone = setup_output(SPHG_F64, n, d);
+    const double *table = setup_doubles(&found.table);
     for (int i = 0; i < n; i++)
         for (int a = 0; a < d; a++) {
             double sum = 0, one[3], x_ij[3], other = 0;
@@ -574,22 +585,22 @@ static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
                 const int j = pairs.indices[k];
                 for (int b = 0; b < d; b++)
                     x_ij[b] = on.points.x[i * d + b] - on.points.x[j * d + b];
-                sphg_pair_gradient(&on.scheme, x_ij, fixture_get(&on.volume, j, 0),
+                sphg_pair_gradient(&on.scheme, x_ij, setup_get(&on.volume, j, 0),
                                    table + (ptrdiff_t)i * found.table.width, one);
-                sum += (numbers[j] - numbers[i]) * fixture_get(&gradients, (int)k, a);
+                sum += (numbers[j] - numbers[i]) * setup_get(&gradients, (int)k, a);
                 other += (numbers[j] - numbers[i]) * one[a];
             }
-            fixture_put(&sums, i * d + a, sum);
-            fixture_put(&alone, i * d + a, other);
+            setup_put(&sums, i * d + a, sum);
+            setup_put(&alone, i * d + a, other);
         }
-    const fixture_array f64 = fixture_numbers(SPHG_F64, n, d, fixture_doubles(&found.gradient));
+    const setup_array f64 = setup_numbers(SPHG_F64, n, d, setup_doubles(&found.gradient));
     double worst = 0, size = 0;
     for (int i = 0; i < n; i++)
         for (int a = 0; a < d; a++) {
-            const double g = fixture_get(&f64, i, a);
+            const double g = setup_get(&f64, i, a);
             size = fmax(size, fabs(g));
-            worst = test_larger(worst, fmax(fabs(fixture_get(&sums, i, a) - g),
-                                            fabs(fixture_get(&alone, i, a) - g)));
+            worst = test_larger(
+                worst, fmax(fabs(setup_get(&sums, i, a) - g), fabs(setup_get(&alone, i, a) - g)));
         }
     TEST_WITHIN(order_of_summation, worst / size / on.scene.unit, "gradients of pairs");
 }
@@ -612,15 +623,15 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
     cloud points = {.dimension = d, .count = n, .spacing = .5};
     points.x = test_memory((size_t)(n * d) * sizeof *points.x);
     memcpy(points.x, block.x, (size_t)((n - 1) * d) * sizeof *points.x);
-    sphg_context *context = fixture_context_of(1);
-    sphg_scheme scheme = fixture_scheme(test, 1.05);
+    sphg_context *context = setup_context_of(1);
+    sphg_scheme scheme = setup_scheme(test, 1.05);
     scheme.order = 2;
     scheme.policy = policy;
     const double h = scheme.support_radius;
     double value[10], gradient[10][3], hessian[10][6], before[10][9], worst = 0;
     const double volume = d == 2 ? .25 : .125;
     sphg_neighbors *neighbors = NULL;
-    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+    SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
     for (int step = 0; step <= steps; step++) {
         for (int a = 0; a < d; a++)
             points.x[(n - 1) * d + a] = a ? .31 : 2.5 - 2.2 * step / steps;
@@ -628,7 +639,7 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
             value[i] = smooth_field(d, points.x + i * d);
         sphg_geometry geometry = sphg_all(sphg_view_f64(points.x, 8 * d), n);
         geometry.list_free = 1;
-        FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+        SETUP_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
         const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f64(&volume)};
         const sphg_view at_sources = sphg_view_f64(value, 8);
         sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
@@ -636,9 +647,9 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
         field.hessian = sphg_view_f64(hessian[0], sizeof hessian[0]);
         const sphg_request request = {
             .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-        FIXTURE_OK(context, sphg_evaluate(context, &scheme, &request));
+        SETUP_OK(context, sphg_evaluate(context, &scheme, &request));
         for (int i = 0; i < n; i++)
-            for (int k = 0; k < d + curved_pairs(d); k++) {
+            for (int k = 0; k < d + second_order_pairs(d); k++) {
                 const double now = k < d ? gradient[i][k] : h * h * hessian[i][k - d] / 5;
                 if (step)
                     worst = test_larger(worst, fabs(now - before[i][k]));
@@ -661,18 +672,18 @@ static void a_sliding_neighbour_makes_no_jump(const test_case *test)
 
 /* ---- Degenerate clouds ----------------------------------------------------------------------- */
 
-static void require_finite(const fixture_array *found, const char *where)
+static void require_finite(const setup_array *found, const char *where)
 {
     for (int k = 0; k < found->count * found->width; k++)
-        TEST_REQUIRE(isfinite(fixture_get(found, k / found->width, k % found->width)), "%s", where);
+        TEST_REQUIRE(isfinite(setup_get(found, k / found->width, k % found->width)), "%s", where);
 }
 
 /* Zeros included. */
-static void require_close(const fixture_array *a, const fixture_array *b, const char *where)
+static void require_close(const setup_array *a, const setup_array *b, const char *where)
 {
     if (memcmp(a->data, b->data, (size_t)(a->count * a->width) * (a->type == SPHG_F64 ? 8 : 4)) !=
         0)
-        fixture_require_close(a, b, where);
+        setup_require_close(a, b, where);
 }
 
 /* Where the linear rank is short, order 2 is order 1. */
@@ -686,21 +697,21 @@ static void degenerate_clouds_have_the_result_of_order_1(const test_case *test)
                             cloud_coincident(d, 4, 0, .25),
                             cloud_coincident(d, 3, 1, .25)};
     for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
-        const stage made = stage_of(test, test_text("cloud %d", (int)c), clouds[c], .6);
-        const stage on = curved_stage(made);
-        const double *numbers = stage_random_field(&on, SPHG_SCALAR, 11);
-        const curved found = curved_apply(&on, SPHG_SCALAR, numbers, (curved_how){0});
-        const stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
-        const stage_result linear = stage_apply(&made, &field, NULL);
+        const comparison made = comparison_of(test, test_text("cloud %d", (int)c), clouds[c], .6);
+        const comparison on = second_order_comparison(made);
+        const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 11);
+        const second_order found =
+            second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
+        const comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
+        const comparison_result linear = comparison_apply(&made, &field, NULL);
         require_finite(&found.gradient, on.name);
         require_finite(&found.hessian, on.name);
         require_finite(&found.table, on.name);
         require_close(&linear.gradient, &found.gradient, on.name);
         for (int i = 0; i < on.points.count; i++) {
-            TEST_REQUIRE(fixture_get(&found.rank, i, 0) < d, "rank of %d, %s", i, on.name);
+            TEST_REQUIRE(setup_get(&found.rank, i, 0) < d, "rank of %d, %s", i, on.name);
             for (int k = 0; k < found.hessian.width; k++)
-                TEST_REQUIRE(fixture_get(&found.hessian, i, k) == 0, "Hessian of %d, %s", i,
-                             on.name);
+                TEST_REQUIRE(setup_get(&found.hessian, i, k) == 0, "Hessian of %d, %s", i, on.name);
         }
     }
 }
@@ -711,27 +722,27 @@ static void few_neighbours_give_numbers(const test_case *test)
     const int d = test->dimension;
     for (int count = 2; count < 14; count++) {
         random_state random = random_seeded((uint64_t)count);
-        const stage on = curved_stage(
-            stage_of(test, test_text("%d", count), cloud_random(d, count, 1, &random), 3));
-        const curved found = curved_apply(
-            &on, SPHG_VECTOR, stage_random_field(&on, SPHG_VECTOR, 12), (curved_how){0});
+        const comparison on = second_order_comparison(
+            comparison_of(test, test_text("%d", count), cloud_random(d, count, 1, &random), 3));
+        const second_order found = second_order_apply(
+            &on, SPHG_VECTOR, comparison_random_field(&on, SPHG_VECTOR, 12), (second_order_how){0});
         require_finite(&found.gradient, on.name);
         require_finite(&found.hessian, on.name);
         for (int i = 0; i < count; i++)
-            TEST_REQUIRE(fixture_get(&found.rank, i, 0) <= count - 1, "rank of %d, %s", i, on.name);
+            TEST_REQUIRE(setup_get(&found.rank, i, 0) <= count - 1, "rank of %d, %s", i, on.name);
     }
 }
 
 /* ---- What is refused ------------------------------------------------------------------------- */
 
-static void require_refused(const stage *on, sphg_field field, sphg_scheme scheme,
+static void require_refused(const comparison *on, sphg_field field, sphg_scheme scheme,
                             const char *words)
 {
-    const fixture_array values =
-        fixture_numbers(test_field_type(on->test), on->points.count, PAIRS_MOST,
-                        stage_random_field(on, SPHG_SYM_TENSOR, 13));
-    const sphg_view at_sources = fixture_view(&values);
-    const sphg_sources sources = stage_sources(on);
+    const setup_array values =
+        setup_numbers(test_field_type(on->test), on->points.count, PAIRS_MOST,
+                      comparison_random_field(on, SPHG_SYM_TENSOR, 13));
+    const sphg_view at_sources = setup_view(&values);
+    const sphg_sources sources = comparison_sources(on);
     field.at_sources = &at_sources;
     const sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
@@ -743,29 +754,29 @@ static void require_refused(const stage *on, sphg_field field, sphg_scheme schem
 
 static void what_order_2_lacks_is_refused_by_name(const test_case *test)
 {
-    const stage on = exact_stage(test, .2, 2);
-    const curved found = curved_outputs(&on, SPHG_SCALAR, 0);
+    const comparison on = exact_stage(test, .2, 2);
+    const second_order found = second_order_outputs(&on, SPHG_SCALAR, 0);
     sphg_scheme first = on.scheme;
     first.order = 1;
-    sphg_field field = {.shape = SPHG_SCALAR, .hessian = fixture_view(&found.hessian)};
+    sphg_field field = {.shape = SPHG_SCALAR, .hessian = setup_view(&found.hessian)};
     require_refused(&on, field, first, "hessian needs scheme.order 2");
-    field = (sphg_field){.shape = SPHG_SCALAR, .laplacian = fixture_view(&found.laplacian)};
+    field = (sphg_field){.shape = SPHG_SCALAR, .laplacian = setup_view(&found.laplacian)};
     require_refused(&on, field, first, "laplacian needs scheme.order 2");
-    field = (sphg_field){.shape = SPHG_SCALAR, .gradient = fixture_view(&found.gradient)};
+    field = (sphg_field){.shape = SPHG_SCALAR, .gradient = setup_view(&found.gradient)};
     field.form = SPHG_DIRECT;
     require_refused(&on, field, on.scheme, "direct");
     field.form = SPHG_ADJOINT;
-    field.hessian = fixture_view(&found.hessian);
+    field.hessian = setup_view(&found.hessian);
     require_refused(&on, field, on.scheme, "hessian outside the difference form");
     field.hessian = sphg_absent();
     field.form = SPHG_SYMMETRIC;
-    field.laplacian = fixture_view(&found.laplacian);
+    field.laplacian = setup_view(&found.laplacian);
     require_refused(&on, field, on.scheme, "laplacian outside the difference form");
-    field = (sphg_field){.shape = SPHG_SYM_TENSOR, .hessian = fixture_view(&found.hessian)};
+    field = (sphg_field){.shape = SPHG_SYM_TENSOR, .hessian = setup_view(&found.hessian)};
     require_refused(&on, field, on.scheme, "hessian of a tensor");
     sphg_scheme other = on.scheme;
     other.method = SPHG_CMLS;
-    field = (sphg_field){.shape = SPHG_SCALAR, .gradient = fixture_view(&found.gradient)};
+    field = (sphg_field){.shape = SPHG_SCALAR, .gradient = setup_view(&found.gradient)};
     require_refused(&on, field, other, "KGC, MLS and RKPM");
 }
 

@@ -1,7 +1,7 @@
 /* A support radius per particle: the pairs of brute force, results against the oracle, and the same
  * bits as with one radius where all are the same. */
-#include "support/pairs.h"
-#include "support/stage.h"
+#include "support/brute_force.h"
+#include "support/comparison.h"
 #include <math.h>
 #include <string.h>
 
@@ -56,8 +56,8 @@ static scene random_scene(const test_case *test, random_state *random)
 
 static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(2);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(2);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(311 + (uint64_t)test->precision);
     int64_t pairs = 0;
     for (int k = 0; k < 150; k++) {
@@ -99,12 +99,13 @@ static graded graded_block(int d, double ratio, double support)
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
 
-static void compare(const stage *on, sphg_shape shape, sphg_form form, const fixture_array *table)
+static void compare(const comparison *on, sphg_shape shape, sphg_form form,
+                    const setup_array *table)
 {
-    stage_field field = {shape, form, stage_random_field(on, shape, 3)};
-    stage_result found = stage_apply(on, &field, table);
+    comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
+    comparison_result found = comparison_apply(on, &field, table);
     for (int i = 0; i < on->points.count; i += on->points.count / 7)
-        stage_compare(on, &field, &found, i);
+        comparison_compare(on, &field, &found, i);
 }
 
 static void operators_match_the_oracle(const test_case *test)
@@ -112,8 +113,9 @@ static void operators_match_the_oracle(const test_case *test)
     static const double ratios[] = {1.5, 8, 64};
     for (int k = 0; k < 3; k++) {
         graded block = graded_block(test->dimension, ratios[k], 2.5);
-        stage on = stage_of_radii(test, "graded block", block.points, block.radii, k == 1);
-        fixture_array table = stage_table(&on);
+        comparison on =
+            comparison_of_radii(test, "graded block", block.points, block.radii, k == 1);
+        setup_array table = comparison_table(&on);
         compare(&on, SPHG_SCALAR, SPHG_DIFFERENCE, NULL);
         compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table);
         compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table);
@@ -128,8 +130,8 @@ static void both_sides_match_the_oracle(const test_case *test)
     static const double ratios[] = {1.5, 8, 64};
     for (int k = 0; k < 3; k++) {
         graded block = graded_block(test->dimension, ratios[k], 2.5);
-        stage on = stage_of_radii(test, "graded block", block.points, block.radii, 1);
-        fixture_array table = stage_table(&on);
+        comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 1);
+        setup_array table = comparison_table(&on);
         for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++)
             for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
                 if (shape - 1 == k || k == 1)
@@ -140,17 +142,17 @@ static void both_sides_match_the_oracle(const test_case *test)
 static void two_sided_forms_conserve_momentum(const test_case *test)
 {
     graded block = graded_block(test->dimension, 8, 2.5);
-    stage on = stage_of_radii(test, "graded block", block.points, block.radii, 1);
+    comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 1);
     const int d = test->dimension;
-    fixture_array table = stage_table(&on);
+    setup_array table = comparison_table(&on);
     for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
-        stage_field field = {SPHG_SYM_TENSOR, (sphg_form)form,
-                             stage_random_field(&on, SPHG_SYM_TENSOR, 5)};
-        stage_result found = stage_apply(&on, &field, &table);
+        comparison_field field = {SPHG_SYM_TENSOR, (sphg_form)form,
+                                  comparison_random_field(&on, SPHG_SYM_TENSOR, 5)};
+        comparison_result found = comparison_apply(&on, &field, &table);
         double sum[3] = {0}, size = 0;
         for (int i = 0; i < on.points.count; i++)
             for (int a = 0; a < d; a++) {
-                const double f = fixture_get(&found.divergence, i, a) *
+                const double f = setup_get(&found.divergence, i, a) *
                                  (form == SPHG_SYMMETRIC ? on.scene.volume[i] : 1);
                 sum[a] += f;
                 size += fabs(f);
@@ -163,14 +165,16 @@ static void two_sided_forms_conserve_momentum(const test_case *test)
 
 /* ---- The same bits --------------------------------------------------------------------------- */
 
-static void require_same_bits(const stage *a, const stage *b, const char *where)
+static void require_same_bits(const comparison *a, const comparison *b, const char *where)
 {
-    const fixture_array table = stage_table(a), other = stage_table(b);
-    TEST_REQUIRE(fixture_same_bits(&table, &other), "table, %s", where);
+    const setup_array table = comparison_table(a), other = comparison_table(b);
+    TEST_REQUIRE(setup_same_bits(&table, &other), "table, %s", where);
     for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; form++) {
-        stage_field field = {SPHG_SCALAR, (sphg_form)form, stage_random_field(a, SPHG_SCALAR, 3)};
-        const stage_result one = stage_apply(a, &field, NULL), two = stage_apply(b, &field, NULL);
-        TEST_REQUIRE(stage_results_have_same_bits(&one, &two), "form %d, %s", form, where);
+        comparison_field field = {SPHG_SCALAR, (sphg_form)form,
+                                  comparison_random_field(a, SPHG_SCALAR, 3)};
+        const comparison_result one = comparison_apply(a, &field, NULL),
+                                two = comparison_apply(b, &field, NULL);
+        TEST_REQUIRE(comparison_results_have_same_bits(&one, &two), "form %d, %s", form, where);
     }
 }
 
@@ -179,21 +183,22 @@ static void same_radii_give_the_bits_of_one(const test_case *test)
 {
     random_state random = random_seeded(9);
     const int d = test->dimension;
-    stage one = stage_of(test, "block", cloud_jittered(d, d == 2 ? 9 : 5, .125, .3, &random), .275);
+    comparison one =
+        comparison_of(test, "block", cloud_jittered(d, d == 2 ? 9 : 5, .125, .3, &random), .275);
     double *radii = test_memory((size_t)one.points.count * sizeof *radii);
     for (int i = 0; i < one.points.count; i++)
         radii[i] = one.scheme.support_radius;
-    const fixture_array x = fixture_positions(test, &one.points);
-    const fixture_array h = fixture_numbers(test_position_type(test), one.points.count, 1, radii);
+    const setup_array x = setup_positions(test, &one.points);
+    const setup_array h = setup_numbers(test_position_type(test), one.points.count, 1, radii);
     for (int way = 0; way < 8; way++) {
-        stage same = one;
-        sphg_geometry geometry = fixture_geometry(test, &one.points, &x);
-        geometry.source_support = fixture_view(&h);
+        comparison same = one;
+        sphg_geometry geometry = setup_geometry(test, &one.points, &x);
+        geometry.source_support = setup_view(&h);
         geometry.source_support.stride *= way & 1;
         geometry.mutual = way >> 1 & 1;
         geometry.list_free = way >> 2;
         same.scheme.support_radius = way & 1 ? 0 : 17;
-        same.neighbors = fixture_search(one.context, &same.scheme, &geometry);
+        same.neighbors = setup_search(one.context, &same.scheme, &geometry);
         require_same_bits(&one, &same, test_text("way %d", way));
     }
 }
@@ -203,7 +208,8 @@ static void results_scale_with_the_unit_of_length(const test_case *test)
 {
     for (int k = -3; k <= 5; k += 4) {
         graded block = graded_block(test->dimension, 8, 2.2), other = block;
-        const stage on = stage_of_radii(test, "graded block", block.points, block.radii, 0);
+        const comparison on =
+            comparison_of_radii(test, "graded block", block.points, block.radii, 0);
         other.points = cloud_copy(&on.points);
         other.radii = test_memory((size_t)on.points.count * sizeof *other.radii);
         for (int i = 0; i < on.points.count * test->dimension; i++)
@@ -211,69 +217,71 @@ static void results_scale_with_the_unit_of_length(const test_case *test)
         for (int i = 0; i < on.points.count; i++)
             other.radii[i] = ldexp(on.scene.support[i], k);
         other.points.spacing = ldexp(other.points.spacing, k);
-        const stage scaled = stage_of_radii(test, "scaled block", other.points, other.radii, 0);
-        stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(&on, SPHG_SCALAR, 3)};
-        const stage_result a = stage_apply(&on, &field, NULL);
-        const stage_result b = stage_apply(&scaled, &field, NULL);
+        const comparison scaled =
+            comparison_of_radii(test, "scaled block", other.points, other.radii, 0);
+        comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                                  comparison_random_field(&on, SPHG_SCALAR, 3)};
+        const comparison_result a = comparison_apply(&on, &field, NULL);
+        const comparison_result b = comparison_apply(&scaled, &field, NULL);
         for (int i = 0; i < on.points.count; i++)
             for (int c = 0; c < test->dimension; c++)
-                TEST_REQUIRE(fixture_get(&a.gradient, i, c) ==
-                                 ldexp(fixture_get(&b.gradient, i, c), k),
+                TEST_REQUIRE(setup_get(&a.gradient, i, c) == ldexp(setup_get(&b.gradient, i, c), k),
                              "particle %d, 2^%d", i, k);
     }
 }
 
 /* ---- Ways to the same result ----------------------------------------------------------------- */
 
-static stage graded_stage(const test_case *test, int mutual)
+static comparison graded_stage(const test_case *test, int mutual)
 {
     graded block = graded_block(test->dimension, 8, 2.2);
-    return stage_of_radii(test, "graded block", block.points, block.radii, mutual);
+    return comparison_of_radii(test, "graded block", block.points, block.radii, mutual);
 }
 
 static void tables_subsets_and_lists_give_the_same_bits(const test_case *test)
 {
-    const stage on = graded_stage(test, 0), mutual = graded_stage(test, 1);
-    const fixture_array table = stage_table(&on);
+    const comparison on = graded_stage(test, 0), mutual = graded_stage(test, 1);
+    const setup_array table = comparison_table(&on);
     for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; form++) {
-        stage_field field = {SPHG_VECTOR, (sphg_form)form, stage_random_field(&on, SPHG_VECTOR, 4)};
-        const stage_result fused = stage_apply(&on, &field, NULL);
-        const stage_result given = stage_apply(&on, &field, &table);
-        const stage_result wide = stage_apply(&mutual, &field, NULL);
-        assert_true(stage_results_have_same_bits(&fused, &given));
+        comparison_field field = {SPHG_VECTOR, (sphg_form)form,
+                                  comparison_random_field(&on, SPHG_VECTOR, 4)};
+        const comparison_result fused = comparison_apply(&on, &field, NULL);
+        const comparison_result given = comparison_apply(&on, &field, &table);
+        const comparison_result wide = comparison_apply(&mutual, &field, NULL);
+        assert_true(comparison_results_have_same_bits(&fused, &given));
         for (int i = 0; i < on.points.count; i++) { /* other lists: another order of the sums */
-            stage_compare(&on, &field, &wide, i);
+            comparison_compare(&on, &field, &wide, i);
             i += on.points.count / 4;
         }
         const sphg_subset one = sphg_range(on.points.count / 2, on.points.count / 2 + 1);
-        const stage_result alone = stage_apply_to(&on, &field, NULL, &one);
+        const comparison_result alone = comparison_apply_to(&on, &field, NULL, &one);
         for (int k = 0; k < alone.gradient.width; k++)
-            assert_true(fixture_get(&alone.gradient, one.begin, k) ==
-                        fixture_get(&fused.gradient, one.begin, k));
+            assert_true(setup_get(&alone.gradient, one.begin, k) ==
+                        setup_get(&fused.gradient, one.begin, k));
     }
 }
 
 /* Targets left out here and there: what is left of each group has its own radii. */
 static void masks_give_the_same_bits(const test_case *test)
 {
-    const stage on = graded_stage(test, 1);
+    const comparison on = graded_stage(test, 1);
     const int n = on.points.count;
-    const fixture_array table = stage_table(&on);
+    const setup_array table = comparison_table(&on);
     uint8_t *mask = test_memory((size_t)n);
     for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
         if (form >= SPHG_SYMMETRIC && test_is_classic(test))
             continue;
-        stage_field field = {SPHG_VECTOR, (sphg_form)form, stage_random_field(&on, SPHG_VECTOR, 4)};
-        const stage_result all = stage_apply(&on, &field, &table);
+        comparison_field field = {SPHG_VECTOR, (sphg_form)form,
+                                  comparison_random_field(&on, SPHG_VECTOR, 4)};
+        const comparison_result all = comparison_apply(&on, &field, &table);
         for (int every = 2; every < 9; every += 3) {
             for (int i = 0; i < n; i++)
                 mask[i] = i * 7 % every != 0;
             const sphg_subset some = sphg_masked(mask, n);
-            const stage_result found = stage_apply_to(&on, &field, &table, &some);
+            const comparison_result found = comparison_apply_to(&on, &field, &table, &some);
             for (int i = 0; i < n; i++)
                 for (int k = 0; k < found.gradient.width && mask[i]; k++)
-                    TEST_REQUIRE(fixture_get(&found.gradient, i, k) ==
-                                     fixture_get(&all.gradient, i, k),
+                    TEST_REQUIRE(setup_get(&found.gradient, i, k) == setup_get(&all.gradient, i, k),
                                  "form %d, particle %d", form, i);
         }
     }
@@ -282,22 +290,22 @@ static void masks_give_the_same_bits(const test_case *test)
 /* What is farther than H_i does not count, whatever it is. */
 static void nothing_comes_from_beyond_the_targets_radius(const test_case *test)
 {
-    const stage on = graded_stage(test, 1);
+    const comparison on = graded_stage(test, 1);
     const int n = on.points.count, d = on.points.dimension;
-    double *numbers = stage_random_field(&on, SPHG_SCALAR, 5);
+    double *numbers = comparison_random_field(&on, SPHG_SCALAR, 5);
     int largest = 0, touched = 0;
     for (int i = 1; i < n; i++)
         largest = on.scene.support[i] > on.scene.support[largest] ? i : largest;
     numbers[largest] = (double)NAN;
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
-    const stage_result found = stage_apply(&on, &field, NULL);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
+    const comparison_result found = comparison_apply(&on, &field, NULL);
     for (int i = 0; i < n; i++) {
         double square = 0;
         for (int a = 0; a < d; a++)
             square += pow(on.points.x[i * d + a] - on.points.x[largest * d + a], 2);
         const int near = sqrt(square) < on.scene.support[i] * (1 + 1e-6);
         touched += near;
-        TEST_REQUIRE(near || isfinite(fixture_get(&found.gradient, i, 0)), "particle %d", i);
+        TEST_REQUIRE(near || isfinite(setup_get(&found.gradient, i, 0)), "particle %d", i);
     }
     assert_true(touched > 1);
 }
@@ -326,7 +334,7 @@ static void move_all(scene *particles, const double *radii, double share, random
 /* What is evaluated is what brute force finds now, whether lists were kept or not. */
 static void skins_in_proportion_miss_no_pair(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(2);
+    sphg_context *context = setup_context_of(2);
     random_state random = random_seeded(41);
     int kept = 0, rebuilt = 0;
     for (int k = 0; k < 12; k++) {
@@ -340,13 +348,13 @@ static void skins_in_proportion_miss_no_pair(const test_case *test)
         radii[0] = particles.support[0] = 1;
         particles.period[0] = k & 2 ? side : 0;
         particles.skin = .3;
-        sphg_neighbors *neighbors = pairs_neighbors(context);
+        sphg_neighbors *neighbors = brute_force_neighbors(context);
         rows_require_search_exact(context, neighbors, &particles, 1, "at first");
         move_all(&particles, radii, k & 4 ? 1.2 : .98, &random);
         particles.support[0] = 1;
         rows_require_search_exact(context, neighbors, &particles, 1.2, test_text("moved %d", k));
         sphg_neighbors_info info;
-        FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+        SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
         kept += !info.rebuilt;
         rebuilt += info.rebuilt;
         assert_true(info.skin_left >= 0 && info.skin_left <= .2);
@@ -359,21 +367,21 @@ static void skins_in_proportion_miss_no_pair(const test_case *test)
 
 static void pair_gradients_are_those_of_one_pair(const test_case *test)
 {
-    const stage on = graded_stage(test, 0);
+    const comparison on = graded_stage(test, 0);
     const int n = on.points.count, d = on.points.dimension;
-    const fixture_array table = stage_table(&on);
-    sphg_sources sources = stage_sources(&on);
+    const setup_array table = comparison_table(&on);
+    sphg_sources sources = comparison_sources(&on);
     sphg_pairs pairs = {0};
     int64_t *offsets = test_memory(((size_t)n + 1) * sizeof *offsets);
     pairs.offsets = offsets;
-    FIXTURE_OK(on.context,
-               sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
-    const fixture_array found = fixture_output(test_field_type(test), (int)pairs.count, d);
+    SETUP_OK(on.context,
+             sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
+    const setup_array found = setup_output(test_field_type(test), (int)pairs.count, d);
     pairs.indices = test_memory((size_t)pairs.count * sizeof *pairs.indices);
-    pairs.gradient = fixture_view(&found);
+    pairs.gradient = setup_view(&found);
     pairs.capacity = pairs.count;
-    FIXTURE_OK(on.context,
-               sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
+    SETUP_OK(on.context,
+             sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
     for (int i = 0; i < n; i += 5)
         for (int64_t k = offsets[i]; k < offsets[i + 1]; k++) {
             const int j = pairs.indices[k];
@@ -383,11 +391,11 @@ static void pair_gradients_are_those_of_one_pair(const test_case *test)
             for (int a = 0; a < d; a++)
                 x[a] = on.points.x[i * d + a] - on.points.x[j * d + a];
             for (int c = 0; c < table.width; c++)
-                row[c] = fixture_get(&table, i, c);
+                row[c] = setup_get(&table, i, c);
             sphg_pair_gradient(&own, x, on.scene.volume[j], row, gradient);
             for (int a = 0; a < d && i != j; a++) {
                 size += fabs(gradient[a]);
-                off += fabs(gradient[a] - fixture_get(&found, (int)k, a));
+                off += fabs(gradient[a] - setup_get(&found, (int)k, a));
             }
             TEST_REQUIRE(off <= 4096 * test_unit_roundoff(test) * (size + 1e-3), "pair %d %d", i,
                          j);
@@ -396,9 +404,9 @@ static void pair_gradients_are_those_of_one_pair(const test_case *test)
 
 static void wrong_lists_are_found(const test_case *test)
 {
-    const stage on = graded_stage(test, 1);
+    const comparison on = graded_stage(test, 1);
     sphg_list_fault fault;
-    FIXTURE_OK(on.context, sphg_neighbors_check(on.context, &on.scheme, on.neighbors, &fault));
+    SETUP_OK(on.context, sphg_neighbors_check(on.context, &on.scheme, on.neighbors, &fault));
     assert_int_equal(fault.kind, SPHG_FAULT_NONE);
 }
 
@@ -407,7 +415,7 @@ static void wrong_lists_are_found(const test_case *test)
 /* tr M / (d rho) is 1 + (H / (d rho)) sum m dW/dH, differentiated by a quotient. */
 static void moments_hold_the_grad_h_term(const test_case *test)
 {
-    const stage on = graded_stage(test, 0);
+    const comparison on = graded_stage(test, 0);
     const int d = test->dimension;
     for (int i = 0; i < on.points.count; i += 11) {
         const oracle_point *point = oracle_at(on.reference, i);
@@ -443,45 +451,45 @@ static void moments_hold_the_grad_h_term(const test_case *test)
 static void halves_add_up(const test_case *test)
 {
     graded block = graded_block(test->dimension, 8, 2.2);
-    const stage on = stage_of_radii(test, "graded block", block.points, block.radii, 0);
+    const comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 0);
     const int n = on.points.count, d = on.points.dimension, half = n / 2;
-    const fixture_array x = fixture_positions(test, &block.points);
-    const fixture_array h = fixture_numbers(test_position_type(test), n, 1, block.radii);
-    double *numbers = stage_random_field(&on, SPHG_SCALAR, 6);
-    const fixture_array a = fixture_numbers(test_field_type(test), n, 1, numbers);
+    const setup_array x = setup_positions(test, &block.points);
+    const setup_array h = setup_numbers(test_position_type(test), n, 1, block.radii);
+    double *numbers = comparison_random_field(&on, SPHG_SCALAR, 6);
+    const setup_array a = setup_numbers(test_field_type(test), n, 1, numbers);
     sphg_sources sets[2] = {{0}, {0}};
     sphg_view at_sources[2];
     for (int s = 0; s < 2; s++) {
         const int count = s ? n - half : half;
-        sphg_view places = fixture_view(&x), radii = fixture_view(&h);
-        sphg_view volumes = fixture_view(&on.volume), values = fixture_view(&a);
+        sphg_view places = setup_view(&x), radii = setup_view(&h);
+        sphg_view volumes = setup_view(&on.volume), values = setup_view(&a);
         sphg_view *const views[] = {&places, &radii, &volumes, &values};
         for (int k = 0; k < 4 && s; k++)
             views[k]->x = (const char *)views[k]->x + half * views[k]->stride;
-        sphg_geometry geometry = sphg_targets_apart(fixture_view(&x), n, places, count);
+        sphg_geometry geometry = sphg_targets_apart(setup_view(&x), n, places, count);
         geometry.source_support = radii;
-        geometry.target_support = fixture_view(&h);
+        geometry.target_support = setup_view(&h);
         geometry.precision = test_field_type(test);
-        sets[s].neighbors = fixture_search(on.context, &on.scheme, &geometry);
+        sets[s].neighbors = setup_search(on.context, &on.scheme, &geometry);
         sets[s].volume = volumes;
         at_sources[s] = values;
     }
-    const fixture_array gradient = fixture_output(test_field_type(test), n, d);
+    const setup_array gradient = setup_output(test_field_type(test), n, d);
     sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources};
-    field.at_targets = fixture_view(&a);
-    field.gradient = fixture_view(&gradient);
+    field.at_targets = setup_view(&a);
+    field.gradient = setup_view(&gradient);
     sphg_request request = {.sources = sets, .fields = &field, .set_count = 2, .field_count = 1};
-    request.target_volume = fixture_view(&on.volume);
-    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    stage_field asked = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
-    stage_result both = {.gradient = gradient};
+    request.target_volume = setup_view(&on.volume);
+    SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    comparison_field asked = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
+    comparison_result both = {.gradient = gradient};
     for (int i = 0; i < n; i += n / 9)
-        stage_compare(&on, &asked, &both, i);
+        comparison_compare(&on, &asked, &both, i);
 }
 
 /* ---- What is refused ------------------------------------------------------------------------- */
 
-static void require_refused(const stage *on, sphg_result found, sphg_result expected,
+static void require_refused(const comparison *on, sphg_result found, sphg_result expected,
                             const char *words)
 {
     const char *message = sphg_last_message(on->context);
@@ -491,27 +499,26 @@ static void require_refused(const stage *on, sphg_result found, sphg_result expe
 
 static void what_has_one_radius_says_so(const test_case *test)
 {
-    const stage on = graded_stage(test, 0);
+    const comparison on = graded_stage(test, 0);
     const int n = on.points.count;
-    const fixture_array a =
-        fixture_numbers(test_field_type(test), n, 1, stage_random_field(&on, SPHG_SCALAR, 7));
-    const fixture_array out = fixture_output(test_field_type(test), n, test->dimension);
-    sphg_sources sources = stage_sources(&on);
+    const setup_array a =
+        setup_numbers(test_field_type(test), n, 1, comparison_random_field(&on, SPHG_SCALAR, 7));
+    const setup_array out = setup_output(test_field_type(test), n, test->dimension);
+    sphg_sources sources = comparison_sources(&on);
     sphg_scheme second = on.scheme;
     second.order = 2;
     require_refused(&on,
-                    sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR,
-                               fixture_view(&a), fixture_view(&out)),
+                    sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR, setup_view(&a),
+                               setup_view(&out)),
                     SPHG_ERROR_UNSUPPORTED, "not mutual");
     require_refused(
-        &on,
-        sphg_gradient(on.context, &second, &sources, NULL, fixture_view(&a), fixture_view(&out)),
+        &on, sphg_gradient(on.context, &second, &sources, NULL, setup_view(&a), setup_view(&out)),
         SPHG_ERROR_UNSUPPORTED, "scheme.order");
-    const stage one = stage_of(test, "block", cloud_copy(&on.points), .25);
-    sphg_sources sets[2] = {sources, stage_sources(&one)};
-    sphg_view at_sources[2] = {fixture_view(&a), fixture_view(&a)};
+    const comparison one = comparison_of(test, "block", cloud_copy(&on.points), .25);
+    sphg_sources sets[2] = {sources, comparison_sources(&one)};
+    sphg_view at_sources[2] = {setup_view(&a), setup_view(&a)};
     sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources};
-    field.gradient = fixture_view(&out);
+    field.gradient = setup_view(&out);
     sphg_request request = {.sources = sets, .fields = &field, .set_count = 2, .field_count = 1};
     require_refused(&on, sphg_evaluate(on.context, &on.scheme, &request), SPHG_ERROR_SIZE,
                     "one radius for all");
@@ -519,12 +526,12 @@ static void what_has_one_radius_says_so(const test_case *test)
 
 static void half_given_radii_are_refused(const test_case *test)
 {
-    const stage on = graded_stage(test, 0);
-    const fixture_array x = fixture_positions(test, (cloud *)(uintptr_t)&on.points);
-    const fixture_array h =
-        fixture_numbers(test_position_type(test), on.points.count, 1, on.scene.support);
-    sphg_geometry geometry = fixture_geometry(test, &on.points, &x);
-    geometry.target_support = fixture_view(&h);
+    const comparison on = graded_stage(test, 0);
+    const setup_array x = setup_positions(test, (cloud *)(uintptr_t)&on.points);
+    const setup_array h =
+        setup_numbers(test_position_type(test), on.points.count, 1, on.scene.support);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &x);
+    geometry.target_support = setup_view(&h);
     require_refused(&on, sphg_neighbors_search(on.context, on.neighbors, &on.scheme, &geometry),
                     SPHG_ERROR_ARGUMENT, "part of the sources");
     geometry.targets = geometry.sources;

@@ -1,18 +1,19 @@
 /* Requests that cannot be served: refused with the right code and the argument's name, outputs
  * untouched, and the next call works. */
-#include "support/victim_calls.h"
+#include "support/public_calls.h"
 #include <limits.h>
 #include <math.h>
 #include <string.h>
 
-#define REFUSES(call, expected, words, change) VICTIM_REFUSES(own, call, expected, words, change)
+#define REFUSES(call, expected, words, change)                                                     \
+    VALID_CALL_REFUSES(own, call, expected, words, change)
 
-static sphg_type other_type(const victim *own)
+static sphg_type other_type(const valid_call *own)
 {
     return own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
 }
 
-static ptrdiff_t number_size(const victim *own)
+static ptrdiff_t number_size(const valid_call *own)
 {
     return own->position_view.type == SPHG_F32 ? 4 : 8;
 }
@@ -26,7 +27,7 @@ static const void *moved(sphg_view view, ptrdiff_t bytes)
 
 static void evaluate_refuses_bad_schemes(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const int enums[] = {-1, 7, INT_MAX, INT_MIN};
     for (int k = 0; k < 4; k++) {
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "method",
@@ -57,7 +58,7 @@ static void evaluate_refuses_bad_schemes(const test_case *test)
 
 static void evaluate_refuses_bad_sources(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "sources", own->request.sources = NULL);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = 0);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "set_count", own->request.set_count = -1);
@@ -78,7 +79,7 @@ static void evaluate_refuses_bad_sources(const test_case *test)
 
 static void evaluate_refuses_bad_fields(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "fields", own->request.fields = NULL);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "fields is set, but field_count is 0",
             own->request.field_count = 0);
@@ -116,7 +117,7 @@ static void evaluate_refuses_bad_fields(const test_case *test)
  * it shows. */
 static void evaluate_refuses_differences_to_what_is_absent(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_sources[0] is absent",
             own->at_sources[0] = sphg_absent());
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_sources[0] is absent",
@@ -137,8 +138,8 @@ static void evaluate_refuses_differences_to_what_is_absent(const test_case *test
 /* A mask or a list whose length was forgotten. */
 static void evaluate_refuses_subsets_without_an_end(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    static const uint8_t mask[VICTIM_COUNT] = {1};
+    valid_call *own = valid_call_create_plain(test);
+    static const uint8_t mask[VALID_CALL_COUNT] = {1};
     static const int32_t some[] = {3};
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT,
             "subset.mask is set, but subset.end is 0; sphg_masked(mask, target_count) sets both",
@@ -153,15 +154,15 @@ static void evaluate_refuses_subsets_without_an_end(const test_case *test)
                                  {.begin = 1, .end = 1, .indices = some},
                                  {.begin = 7, .end = 7, .mask = mask}};
     for (size_t k = 0; k < sizeof empty / sizeof *empty; k++) {
-        victim_reset(own);
+        valid_call_reset(own);
         own->subset = empty[k];
-        FIXTURE_OK(own->context, call_evaluate(own));
+        SETUP_OK(own->context, call_evaluate(own));
     }
 }
 
 static void evaluate_refuses_corrections_that_plain_has_not(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     sphg_stats stats;
 #define NOTHING_OF_PLAIN                                                                           \
     own->scheme.method = SPHG_PLAIN;                                                               \
@@ -179,7 +180,7 @@ static void evaluate_refuses_corrections_that_plain_has_not(const test_case *tes
 /* Which results a shape and a form have. */
 static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "gradient", own->field.shape = SPHG_SYM_TENSOR;
             own->at_sources[0] = own->tensors);
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "gradient", own->field.shape = SPHG_TENSOR;
@@ -192,7 +193,7 @@ static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *tes
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "divergence",
             own->field.gradient = sphg_absent();
             own->field.divergence = own->vector_out);
-    REFUSES(call_evaluate, VICTIM_REFUSED, "value", own->field.value = own->scalar_out);
+    REFUSES(call_evaluate, VALID_CALL_REFUSED, "value", own->field.value = own->scalar_out);
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "square", own->field.gradient = sphg_absent();
             own->field.square = own->scalar_out);
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "square", own->field.gradient = sphg_absent();
@@ -203,7 +204,7 @@ static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *tes
 /* ADJOINT and SYMMETRIC read both ends of a pair. */
 static void two_sided_forms_need_tables_and_densities(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
 #define TWO_SIDED                                                                                  \
     own->field.form = (sphg_form)form;                                                             \
@@ -230,7 +231,7 @@ static void two_sided_forms_need_tables_and_densities(const test_case *test)
 
 static void evaluate_refuses_bad_outputs_of_corrections(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     REFUSES(call_evaluate, SPHG_ERROR_TYPE, "rank",
             own->request.rank.type = own->position_view.type);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "rank", own->request.rank.stride = 0);
@@ -239,16 +240,18 @@ static void evaluate_refuses_bad_outputs_of_corrections(const test_case *test)
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "correction", own->request.correction.stride = 0);
     REFUSES(call_evaluate, SPHG_ERROR_TYPE, "correction",
             own->request.correction.type = other_type(own));
-    REFUSES(call_evaluate, VICTIM_REFUSED, "correction", own->sources[0].correction = own->table);
-    REFUSES(call_evaluate, VICTIM_REFUSED, "correction",
+    REFUSES(call_evaluate, VALID_CALL_REFUSED, "correction",
+            own->sources[0].correction = own->table);
+    REFUSES(call_evaluate, VALID_CALL_REFUSED, "correction",
             own->request.target_correction = own->table);
 }
 
 /* An output that overlaps an input or another output, by one byte, from either side. */
 static void overlapping_outputs_are_refused(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    const ptrdiff_t size = number_size(own), items = (VICTIM_COUNT - 1) * own->vector_out.stride;
+    valid_call *own = valid_call_create_plain(test);
+    const ptrdiff_t size = number_size(own),
+                    items = (VALID_CALL_COUNT - 1) * own->vector_out.stride;
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "gradient",
             own->request.correction.x = own->vector_out.x);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "",
@@ -267,31 +270,31 @@ static void overlapping_outputs_are_refused(const test_case *test)
 /* Interleaved members of one record touch each other's span, but not each other. */
 static void members_of_one_record_do_not_overlap(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const ptrdiff_t size = number_size(own), record = 12 * size;
     const int d = test->dimension;
-    char *memory = test_memory(VICTIM_COUNT * 12 * sizeof(double));
+    char *memory = test_memory(VALID_CALL_COUNT * 12 * sizeof(double));
     own->field.gradient.x = memory;
     own->request.correction.x = memory + d * size;
     own->request.rank = sphg_view_u8((uint8_t *)memory + 10 * size, record);
     own->field.gradient.stride = own->request.correction.stride = record;
-    FIXTURE_OK(own->context, call_evaluate(own));
+    SETUP_OK(own->context, call_evaluate(own));
 }
 
 /* A single item has no stride to speak of: it overlaps a record only where it lies on a member. */
 static void single_item_may_stand_inside_a_record(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const ptrdiff_t size = number_size(own), record = 12 * size;
-    char *memory = memset(test_memory(VICTIM_COUNT * 12 * sizeof(double)), 0,
-                          VICTIM_COUNT * 12 * sizeof(double));
+    char *memory = memset(test_memory(VALID_CALL_COUNT * 12 * sizeof(double)), 0,
+                          VALID_CALL_COUNT * 12 * sizeof(double));
     own->request.correction = own->request.rank = sphg_absent();
     own->field.gradient.x = memory;
     own->field.gradient.stride = record;
     own->geometry.targets = own->position_view;
     own->geometry.source_count = 1;
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, own->lone, &own->scheme, &own->geometry));
+    SETUP_OK(own->context,
+             sphg_neighbors_search(own->context, own->lone, &own->scheme, &own->geometry));
     own->sources[0].neighbors = own->lone;
     own->field.at_targets = own->scalars;
     for (ptrdiff_t at = 0; at < 24; at++) { /* members 0 to d - 1 of records 0 and 1 are written */
@@ -306,7 +309,7 @@ static void single_item_may_stand_inside_a_record(const test_case *test)
 /* Of two sets the second takes part in the difference alone, which reads no corrections of it. */
 static void set_needs_corrections_where_it_is_read_from_the_other_side(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     sphg_view adjoint_sources[2] = {own->scalars, sphg_absent()};
     sphg_field fields[2] = {own->field, own->field};
     fields[1].form = SPHG_ADJOINT;
@@ -317,7 +320,7 @@ static void set_needs_corrections_where_it_is_read_from_the_other_side(const tes
     own->request.correction = own->request.rank = sphg_absent();
     own->request.set_count = own->request.field_count = 2;
     own->request.fields = fields;
-    FIXTURE_OK(own->context, call_evaluate(own));
+    SETUP_OK(own->context, call_evaluate(own));
     adjoint_sources[1] = own->scalars;
     assert_int_equal(call_evaluate(own), SPHG_ERROR_ARGUMENT);
     assert_non_null(strstr(sphg_last_message(own->context), "sources[1].correction"));
@@ -325,10 +328,10 @@ static void set_needs_corrections_where_it_is_read_from_the_other_side(const tes
 
 static void evaluate_refuses_bad_subsets(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    const int32_t picked[] = {3, 5, VICTIM_COUNT}, negative[] = {0, -1, 2};
+    valid_call *own = valid_call_create_plain(test);
+    const int32_t picked[] = {3, 5, VALID_CALL_COUNT}, negative[] = {0, -1, 2};
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "subset is [-1", own->subset.begin = -1);
-    REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "subset", own->subset.end = VICTIM_COUNT + 1);
+    REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "subset", own->subset.end = VALID_CALL_COUNT + 1);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "subset", own->subset.begin = 10;
             own->subset.end = 9);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "indices", own->subset.end = 3;
@@ -339,12 +342,12 @@ static void evaluate_refuses_bad_subsets(const test_case *test)
 
 static void several_sets_must_agree(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     sphg_neighbors *fewer = NULL;
     assert_int_equal(sphg_neighbors_create(own->context, &fewer), SPHG_OK);
-    own->geometry.target_count = VICTIM_COUNT - 1;
-    FIXTURE_OK(own->context,
-               sphg_neighbors_search(own->context, fewer, &own->scheme, &own->geometry));
+    own->geometry.target_count = VALID_CALL_COUNT - 1;
+    SETUP_OK(own->context,
+             sphg_neighbors_search(own->context, fewer, &own->scheme, &own->geometry));
 #define TWO_SETS                                                                                   \
     own->request.set_count = 2;                                                                    \
     own->sources[1] = own->sources[0]
@@ -352,9 +355,9 @@ static void several_sets_must_agree(const test_case *test)
             own->sources[1].neighbors = fewer);
     if (test->precision == TEST_F64) {
         own->geometry.precision = SPHG_F32;
-        own->geometry.target_count = VICTIM_COUNT;
-        FIXTURE_OK(own->context,
-                   sphg_neighbors_search(own->context, fewer, &own->scheme, &own->geometry));
+        own->geometry.target_count = VALID_CALL_COUNT;
+        SETUP_OK(own->context,
+                 sphg_neighbors_search(own->context, fewer, &own->scheme, &own->geometry));
         REFUSES(call_evaluate, SPHG_ERROR_TYPE, "precision", TWO_SETS;
                 own->sources[1].neighbors = fewer);
     }
@@ -366,18 +369,18 @@ static void several_sets_must_agree(const test_case *test)
 
 static void bad_volumes_are_found_and_named(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const double bad[] = {-1, NAN, INFINITY, -1e-30, -1 - 0x1p-20};
     for (int k = 0; k < 5; k++) {
-        double numbers[VICTIM_COUNT];
-        for (int i = 0; i < VICTIM_COUNT; i++)
+        double numbers[VALID_CALL_COUNT];
+        for (int i = 0; i < VALID_CALL_COUNT; i++)
             numbers[i] = i == 41 ? bad[k] : 0.125;
-        const fixture_array volumes =
-            fixture_numbers(test_field_type(test), VICTIM_COUNT, 1, numbers);
+        const setup_array volumes =
+            setup_numbers(test_field_type(test), VALID_CALL_COUNT, 1, numbers);
         REFUSES(call_evaluate, SPHG_ERROR_VOLUME, "41",
-                own->sources[0].volume = fixture_view(&volumes));
+                own->sources[0].volume = setup_view(&volumes));
         REFUSES(call_evaluate, SPHG_ERROR_VOLUME, k < 4 ? "is " : "is -1.0000009536743164",
-                own->sources[0].volume = fixture_view(&volumes));
+                own->sources[0].volume = setup_view(&volumes));
     }
     const float negative = -1;
     const double negative_full = -1;
@@ -390,25 +393,25 @@ static void bad_volumes_are_found_and_named(const test_case *test)
 
 static void bad_indices_are_found_where_operators_read_them(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    const int32_t bad[] = {-1, VICTIM_COUNT, INT32_MAX, INT32_MIN};
+    valid_call *own = valid_call_create_plain(test);
+    const int32_t bad[] = {-1, VALID_CALL_COUNT, INT32_MAX, INT32_MIN};
     for (int k = 0; k < 4; k++) {
-        const int place = 17 * VICTIM_COUNT + 5;
-        FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->built, &own->scheme,
-                                                          &own->geometry, &own->lists));
+        const int place = 17 * VALID_CALL_COUNT + 5;
+        SETUP_OK(own->context, sphg_neighbors_use_lists(own->context, own->built, &own->scheme,
+                                                        &own->geometry, &own->lists));
         own->indices[place] = bad[k];
         assert_int_equal(call_evaluate(own), SPHG_ERROR_INDEX);
         assert_non_null(strstr(sphg_last_message(own->context), test_text("%d", bad[k])));
         own->indices[place] = 5;
-        FIXTURE_OK(own->context, call_evaluate(own));
-        victim_reset(own);
+        SETUP_OK(own->context, call_evaluate(own));
+        valid_call_reset(own);
     }
 }
 
 /* Lists of a length that cannot be, and lists that are not there: the first is named. */
 typedef struct bad_rows {
-    const int32_t *rows[VICTIM_COUNT];
-    int32_t lengths[VICTIM_COUNT];
+    const int32_t *rows[VALID_CALL_COUNT];
+    int32_t lengths[VALID_CALL_COUNT];
 } bad_rows;
 
 static int32_t bad_row(int32_t target, int32_t worker, const int32_t **indices, void *user)
@@ -421,14 +424,14 @@ static int32_t bad_row(int32_t target, int32_t worker, const int32_t **indices, 
 
 static void lists_of_no_length_are_found_where_operators_read_them(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     for (int k = 0; k < 6; k++) {
         bad_rows bad;
-        for (int i = 0; i < VICTIM_COUNT; i++) {
+        for (int i = 0; i < VALID_CALL_COUNT; i++) {
             bad.rows[i] = own->indices;
             bad.lengths[i] = 3;
         }
-        for (int i = 17; i < VICTIM_COUNT; i += 11) {
+        for (int i = 17; i < VALID_CALL_COUNT; i += 11) {
             bad.lengths[i] = k % 3 == 0 ? -1 : k % 3 == 1 ? INT32_MIN : 3;
             bad.rows[i] = k % 3 == 2 ? NULL : own->indices;
         }
@@ -436,9 +439,8 @@ static void lists_of_no_length_are_found_where_operators_read_them(const test_ca
         bad.lengths[5] = 0;
         const sphg_lists rows = {.rows = bad.rows, .lengths = bad.lengths},
                          function = {.row = bad_row, .user = &bad};
-        FIXTURE_OK(own->context,
-                   sphg_neighbors_use_lists(own->context, own->lone, &own->scheme, &own->geometry,
-                                            k < 3 ? &rows : &function));
+        SETUP_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
+                                                        &own->geometry, k < 3 ? &rows : &function));
         own->sources[0].neighbors = own->lone;
         assert_int_equal(call_evaluate(own), SPHG_ERROR_INDEX);
         TEST_REQUIRE(strstr(sphg_last_message(own->context), "target 17 has"), "%s",
@@ -449,16 +451,16 @@ static void lists_of_no_length_are_found_where_operators_read_them(const test_ca
 /* The first of the targets, in whatever order they are asked for. */
 static void first_bad_list_is_named_in_any_order_of_targets(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     const int32_t picked[] = {50, 9, 30, 3, 40};
     bad_rows bad;
-    for (int i = 0; i < VICTIM_COUNT; i++) {
+    for (int i = 0; i < VALID_CALL_COUNT; i++) {
         bad.rows[i] = own->indices;
         bad.lengths[i] = i % 10 == 0 || i == 9 ? -1 : 3;
     }
     const sphg_lists rows = {.rows = bad.rows, .lengths = bad.lengths};
-    FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
-                                                      &own->geometry, &rows));
+    SETUP_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
+                                                    &own->geometry, &rows));
     own->sources[0].neighbors = own->lone;
     own->subset = (sphg_subset){0, 5, picked, NULL};
     own->request.subset = &own->subset;
@@ -469,7 +471,7 @@ static void first_bad_list_is_named_in_any_order_of_targets(const test_case *tes
 
 /* ---- Hosts that know their numbers -------------------------------------------------------- */
 
-static sphg_result invert(victim *own)
+static sphg_result invert(valid_call *own)
 {
     return sphg_invert_moments(own->context, own->scheme_given, own->count, own->tensors,
                                own->volume_view, own->wanted_given);
@@ -478,28 +480,28 @@ static sphg_result invert(victim *own)
 /* A volume is bad: the context that looks says so, the one that trusts goes on. */
 static void trusted_contexts_do_not_look_at_volumes(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    double numbers[VICTIM_COUNT];
-    for (int i = 0; i < VICTIM_COUNT; i++)
+    valid_call *own = valid_call_create_plain(test);
+    double numbers[VALID_CALL_COUNT];
+    for (int i = 0; i < VALID_CALL_COUNT; i++)
         numbers[i] = i == 41 ? -1 : 0.125;
-    const fixture_array volumes = fixture_numbers(test_field_type(test), VICTIM_COUNT, 1, numbers);
+    const setup_array volumes = setup_numbers(test_field_type(test), VALID_CALL_COUNT, 1, numbers);
     own->scheme.method = SPHG_MLS;
-    own->volume_view = own->sources[0].volume = own->sources[1].volume = fixture_view(&volumes);
+    own->volume_view = own->sources[0].volume = own->sources[1].volume = setup_view(&volumes);
     assert_int_equal(call_evaluate(own), SPHG_ERROR_VOLUME);
     assert_int_equal(invert(own), SPHG_ERROR_VOLUME);
     const sphg_config config = {.threads = 2, .isa = test_isa(), .trusted = 1};
-    sphg_context *looking = own->context, *trusting = fixture_context_with(&config);
+    sphg_context *looking = own->context, *trusting = setup_context_with(&config);
     own->context = trusting;
     const sphg_result evaluated = call_evaluate(own), inverted = invert(own);
     own->context = looking;
-    FIXTURE_OK(trusting, evaluated);
-    FIXTURE_OK(trusting, inverted);
+    SETUP_OK(trusting, evaluated);
+    SETUP_OK(trusting, inverted);
 }
 
 /* ---- Calls in calls ----------------------------------------------------------------------- */
 
 typedef struct reentry {
-    victim *own;
+    valid_call *own;
     const int32_t *row;
     sphg_result inner, refused;
 } reentry;
@@ -508,7 +510,7 @@ static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t
                                    void *user)
 {
     reentry *call = user;
-    victim *own = call->own;
+    valid_call *own = call->own;
     (void)worker;
     if (target == 0) {
         call->inner = sphg_eigen(own->context, own->dimension, own->count, own->table,
@@ -517,31 +519,31 @@ static int32_t row_that_calls_back(int32_t target, int32_t worker, const int32_t
                                       own->vector_out);
     }
     *indices = call->row;
-    return VICTIM_COUNT;
+    return VALID_CALL_COUNT;
 }
 
 static void context_in_use_is_busy(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     reentry call = {own, own->indices, SPHG_OK, SPHG_OK};
     memset(&own->lists, 0, sizeof own->lists);
     own->lists.row = row_that_calls_back;
     own->lists.user = &call;
-    FIXTURE_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
-                                                      &own->geometry, &own->lists));
+    SETUP_OK(own->context, sphg_neighbors_use_lists(own->context, own->lone, &own->scheme,
+                                                    &own->geometry, &own->lists));
     own->sources[0].neighbors = own->lone;
-    FIXTURE_OK(own->context, call_evaluate(own));
+    SETUP_OK(own->context, call_evaluate(own));
     assert_int_equal(call.inner, SPHG_ERROR_BUSY);
     assert_int_equal(call.refused, SPHG_ERROR_BUSY); /* before it looks at what is wrong */
-    FIXTURE_OK(own->context, call_evaluate(own));
+    SETUP_OK(own->context, call_evaluate(own));
 }
 
 /* ---- Pairs and short ways ----------------------------------------------------------------- */
 
 /* Of four targets, so that the arrays suffice. */
-static sphg_result pair_gradients(victim *own)
+static sphg_result pair_gradients(valid_call *own)
 {
-    if (own->subset.end == VICTIM_COUNT)
+    if (own->subset.end == VALID_CALL_COUNT)
         own->subset.end = 4;
     return sphg_pair_gradients(own->context, own->scheme_given, own->sources_given, &own->subset,
                                sphg_absent(), own->pairs_given);
@@ -549,7 +551,7 @@ static sphg_result pair_gradients(victim *own)
 
 static void pairs_refuse_bad_arguments(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
+    valid_call *own = valid_call_create_plain(test);
     REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "pairs", own->pairs_given = NULL);
     REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "sources", own->sources_given = NULL);
     REFUSES(pair_gradients, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
@@ -563,38 +565,38 @@ static void pairs_refuse_bad_arguments(const test_case *test)
 
 static void pairs_report_the_capacity_they_need(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    FIXTURE_OK(own->context, pair_gradients(own));
+    valid_call *own = valid_call_create_plain(test);
+    SETUP_OK(own->context, pair_gradients(own));
     const int64_t needed = own->pairs.count;
     assert_true(needed > 4);
     for (int64_t capacity = 0; capacity < needed; capacity += needed - 1) {
         int64_t offsets[5] = {-7, -7, -7, -7, -7};
-        victim_reset(own);
+        valid_call_reset(own);
         own->pairs.capacity = capacity;
         own->pairs.offsets = offsets;
-        victim_require(own, pair_gradients(own), SPHG_ERROR_CAPACITY, "capacity", "capacity");
+        valid_call_require(own, pair_gradients(own), SPHG_ERROR_CAPACITY, "capacity", "capacity");
         assert_int_equal(own->pairs.count, needed);
         for (int k = 0; k < 5; k++)
             assert_int_equal(offsets[k], -7);
     }
-    victim_reset(own);
+    valid_call_reset(own);
     own->pairs.capacity = needed;
-    FIXTURE_OK(own->context, pair_gradients(own));
+    SETUP_OK(own->context, pair_gradients(own));
 }
 
-static sphg_result correction(victim *own)
+static sphg_result correction(valid_call *own)
 {
     return sphg_correction(own->context, own->scheme_given, own->sources_given, NULL,
                            own->table_out, own->rank_out);
 }
 
-static sphg_result gradient(victim *own)
+static sphg_result gradient(valid_call *own)
 {
     return sphg_gradient(own->context, own->scheme_given, own->sources_given, NULL, own->scalars,
                          own->vector_out);
 }
 
-static sphg_result force(victim *own)
+static sphg_result force(valid_call *own)
 {
     if (!own->sources[1].neighbors)
         own->sources[0].correction = own->table;
@@ -604,8 +606,8 @@ static sphg_result force(victim *own)
 
 static void short_ways_refuse_bad_arguments(const test_case *test)
 {
-    victim *own = victim_create_plain(test);
-    sphg_result (*const calls[])(victim *) = {correction, gradient, force};
+    valid_call *own = valid_call_create_plain(test);
+    sphg_result (*const calls[])(valid_call *) = {correction, gradient, force};
     for (int k = 0; k < 3; k++) {
         REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
         REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "sources", own->sources_given = NULL);
@@ -615,7 +617,7 @@ static void short_ways_refuse_bad_arguments(const test_case *test)
                     own->sources[0].neighbors = own->lone);
         REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "volume", own->sources[0].volume = sphg_absent());
     }
-    REFUSES(correction, VICTIM_REFUSED, "", own->scheme.method = SPHG_PLAIN);
+    REFUSES(correction, VALID_CALL_REFUSED, "", own->scheme.method = SPHG_PLAIN);
     REFUSES(gradient, SPHG_ERROR_ARGUMENT, "", own->scalars = sphg_absent());
     REFUSES(gradient, SPHG_ERROR_ARGUMENT, "gradient", own->vector_out = sphg_absent());
     REFUSES(force, SPHG_ERROR_ARGUMENT, "correction", own->sources[1] = own->sources[0]);

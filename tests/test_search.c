@@ -1,7 +1,7 @@
 /* The search against brute force: the same pairs, exactly, wherever particles stand. */
-#include "support/fixture.h"
-#include "support/hooks.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/fake_host.h"
+#include "support/brute_force.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -63,8 +63,8 @@ static scene random_scene(const test_case *test, random_state *random, double *s
 /* Two hundred per precision and dimension: twelve hundred in all, through one object each time. */
 static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(11 + (uint64_t)test->precision);
     int64_t pairs = 0;
     for (int k = 0; k < 200; k++) {
@@ -79,12 +79,12 @@ static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
 /* Large enough for many blocks and all threads. */
 static void large_cloud_has_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(5);
     scene particles = scene_empty(test, 4000);
     scatter(&particles, particles.source_count, particles.sources, -1, 2, &random);
     const double H = test->dimension == 2 ? 0.0625 : 0.25;
-    assert_true(rows_require_search_exact(context, pairs_neighbors(context), &particles, H,
+    assert_true(rows_require_search_exact(context, brute_force_neighbors(context), &particles, H,
                                           "4000 particles") > 20000);
 }
 
@@ -100,8 +100,8 @@ static scene lattice_scene(const test_case *test, int per_axis, double spacing, 
 /* Distances of exactly H, and an ulp beside it, in every direction of the lattice. */
 static void lattices_at_the_support_radius_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     const scene any = scene_empty(test, 0);
     int64_t pairs = 0;
     const double radii[] = {1, 0.6875, 3}, origins[] = {0, -2, 17.3, -1000};
@@ -120,8 +120,8 @@ static void lattices_at_the_support_radius_have_the_pairs_of_brute_force(const t
  * rounded as written, term by term. With FMA, or in another precision, some would change sides. */
 static void near_ties_are_rounded_as_the_predicate_says(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(19);
     const int d = test->dimension;
     for (int k = 0; k < 30; k++) {
@@ -147,8 +147,8 @@ static void near_ties_are_rounded_as_the_predicate_says(const test_case *test)
 /* Every coordinate at k H, or a float beside it: where a cell ends. */
 static void positions_at_cell_borders_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(23);
     const double radii[] = {1, 0.6875, 0.34375}, bases[] = {-1, 1 << 20, -(1 << 20)};
     int64_t pairs = 0;
@@ -169,23 +169,23 @@ static void positions_at_cell_borders_have_the_pairs_of_brute_force(const test_c
 /* Both signs, and zeros of both signs. */
 static void signs_do_not_matter(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(29);
     scene particles = scene_empty(test, 200);
     scatter(&particles, 200, particles.sources, -2, 4, &random);
     for (int k = 0; k < 200; k += 3)
         particles.sources[k] = k % 2 ? -0.0 : 0.0;
-    rows_require_search_exact(context, pairs_neighbors(context), &particles, 1, "zeros");
+    rows_require_search_exact(context, brute_force_neighbors(context), &particles, 1, "zeros");
     for (int k = 0; k < 200 * test->dimension; k++)
         particles.sources[k] = -fabs(particles.sources[k]);
-    rows_require_search_exact(context, pairs_neighbors(context), &particles, 1, "negative");
+    rows_require_search_exact(context, brute_force_neighbors(context), &particles, 1, "negative");
 }
 
 /* To where the spacing of floats is H itself. */
 static void far_offsets_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(31);
     const int top = test->precision == TEST_F32 ? 23 : 52;
     for (int k = 10; k <= top; k += k + 3 > top && k < top ? top - k : 3)
@@ -200,7 +200,7 @@ static void far_offsets_have_the_pairs_of_brute_force(const test_case *test)
 /* count: the lists of one block fit its worker's memory, or are too long for it. */
 static void require_crowd(const test_case *test, sphg_context *context, int count)
 {
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(37);
     scene particles = scene_empty(test, count);
     const int64_t all = (int64_t)count * (count - 1);
@@ -217,7 +217,7 @@ static void require_crowd(const test_case *test, sphg_context *context, int coun
 
 static void crowded_cells_have_the_pairs_of_brute_force(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     require_crowd(test, context, 600);
     require_crowd(test, context, 1300);
 }
@@ -225,12 +225,13 @@ static void crowded_cells_have_the_pairs_of_brute_force(const test_case *test)
 /* Fewer blocks than a task is meant to have particles: it still has a block to work on. */
 static void executors_of_the_host_search_crowded_cells(const test_case *test)
 {
-    hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    fake_host_executor *const executors[] = {fake_host_odd_splits, fake_host_reversed,
+                                             fake_host_pthreads};
     for (int k = 0; k < 3; k++) {
-        hooks *host = fixture_hooks();
-        sphg_config config = hooks_config(host, host->workers);
+        fake_host *host = setup_hooks();
+        sphg_config config = fake_host_config(host, host->workers);
         config.parallel_for = executors[k];
-        require_crowd(test, fixture_context_with(&config), 600);
+        require_crowd(test, setup_context_with(&config), 600);
     }
 }
 
@@ -252,7 +253,7 @@ static int lists(const rows *found, int32_t i, int32_t j)
 /* Rows ascend strictly and j lists i where i lists j; too many particles for brute force. */
 static void relation_is_symmetric_and_rows_ascend(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(41);
     scene particles = scene_empty(test, 20000);
     scatter(&particles, 20000, particles.sources, -7, 14, &random);
@@ -260,7 +261,7 @@ static void relation_is_symmetric_and_rows_ascend(const test_case *test)
     scheme.dimension = test->dimension;
     scheme.support_radius = test->dimension == 2 ? 0.25 : 1;
     const sphg_geometry geometry = scene_geometry(&particles);
-    const sphg_neighbors *neighbors = fixture_search(context, &scheme, &geometry);
+    const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
     assert_true(found.offsets[20000] > 200000);
     for (int32_t i = 0; i < found.count; i++)
@@ -273,7 +274,7 @@ static void relation_is_symmetric_and_rows_ascend(const test_case *test)
 /* A scheme with a smaller support radius sees the pairs of that radius; subsets their rows. */
 static void smaller_radius_and_subsets_select_from_the_same_pairs(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(43);
     for (int list_free = 0; list_free < 2; list_free++) {
         scene particles = scene_empty(test, 500);
@@ -283,7 +284,7 @@ static void smaller_radius_and_subsets_select_from_the_same_pairs(const test_cas
         scheme.dimension = test->dimension;
         scheme.support_radius = 1;
         const sphg_geometry geometry = scene_geometry(&particles);
-        const sphg_neighbors *neighbors = fixture_search(context, &scheme, &geometry);
+        const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
         scheme.support_radius = 0.6875;
         const rows expected = rows_by_brute_force(&particles, 0.6875);
         const rows found = rows_listed(context, neighbors, &scheme, NULL);
@@ -325,7 +326,7 @@ static void require_skin_promise(sphg_context *context, const sphg_neighbors *ne
     const size_t bytes = (size_t)(particles->source_count * particles->dimension) * sizeof *old;
     const double moved = largest_move(particles, old), half = particles->skin / 2;
     sphg_neighbors_info info = {0};
-    FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+    SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
     if (moved < 0.999 * half)
         assert_int_equal(info.rebuilt, 0);
     if (moved > 1.001 * half)
@@ -339,9 +340,9 @@ static void require_skin_promise(sphg_context *context, const sphg_neighbors *ne
 /* A random walk: lists are kept while the skin holds, and every result is that of brute force. */
 static void skin_keeps_lists_and_exactness(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
+    sphg_context *context = setup_context_of(1);
     for (int periodic = 0; periodic < 2; periodic++) {
-        sphg_neighbors *neighbors = pairs_neighbors(context);
+        sphg_neighbors *neighbors = brute_force_neighbors(context);
         random_state random = random_seeded(47);
         scene particles = scene_empty(test, 200);
         double *old = test_memory(200 * 3 * sizeof *old);
@@ -354,7 +355,7 @@ static void skin_keeps_lists_and_exactness(const test_case *test)
             sphg_neighbors_info info = {0};
             rows_require_search_exact(context, neighbors, &particles, 0.75, "random walk");
             require_skin_promise(context, neighbors, &particles, old);
-            FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+            SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
             kept += !info.rebuilt;
             for (int k = 0; k < 200 * test->dimension; k++)
                 particles.sources[k] = rounded(
@@ -368,10 +369,10 @@ static void skin_keeps_lists_and_exactness(const test_case *test)
  * what the skin has left. */
 static void moves_of_either_side_use_up_the_skin(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
+    sphg_context *context = setup_context_of(1);
     random_state random = random_seeded(59);
     for (int side = 0; side < 2; side++) {
-        sphg_neighbors *neighbors = pairs_neighbors(context);
+        sphg_neighbors *neighbors = brute_force_neighbors(context);
         scene particles = scene_empty(test, 200);
         particles.skin = 0.25;
         particles.target_count = 90;
@@ -382,7 +383,7 @@ static void moves_of_either_side_use_up_the_skin(const test_case *test)
         for (int step = 0; step < 24; step++) {
             sphg_neighbors_info info = {0};
             rows_require_search_exact(context, neighbors, &particles, 0.75, "one side walks");
-            FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+            SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
             assert_int_equal(info.rebuilt, step % 4 == 0); /* 4 / 32 is half of the skin */
             start = info.rebuilt ? moving[0] : start;
             assert_true(fabs(info.skin_left - (0.125 - fabs(moving[0] - start))) <= 1e-3);
@@ -394,8 +395,8 @@ static void moves_of_either_side_use_up_the_skin(const test_case *test)
 /* What is no small move asks for a rebuild: another radius, count, period, or a jump. */
 static void changed_arguments_rebuild(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(53);
     scene particles = scene_empty(test, 200);
     particles.skin = 0.25;
@@ -440,8 +441,8 @@ static void changed_arguments_rebuild(const test_case *test)
 /* Fields of another precision need rows of another type. */
 static void another_precision_rebuilds(const test_case *test)
 {
-    sphg_context *context = fixture_context_of(1);
-    sphg_neighbors *neighbors = pairs_neighbors(context);
+    sphg_context *context = setup_context_of(1);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(61);
     scene particles = scene_empty(test, 200);
     scatter(&particles, 200, particles.sources, 0, 4, &random);
@@ -450,7 +451,7 @@ static void another_precision_rebuilds(const test_case *test)
         sphg_neighbors_info info = {0};
         particles.precision = step / 2 % 2 ? SPHG_F32 : SPHG_F64;
         rows_require_search_exact(context, neighbors, &particles, 0.75, "precision");
-        FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+        SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
         assert_int_equal(info.rebuilt, step % 2 == 0);
     }
 }

@@ -1,16 +1,16 @@
 /* Fluid and wall as two source sets give what their union gives; targets may lie anywhere; fields
  * and calls add up. */
-#include "support/pairs.h"
-#include "support/stage.h"
+#include "support/brute_force.h"
+#include "support/comparison.h"
 #include <math.h>
 #include <string.h>
 
 /* A block whose lower layers are wall: the first `fluid` points are fluid. */
 typedef struct two_sets {
-    stage whole; /* one set of all points, with the oracle */
+    comparison whole; /* one set of all points, with the oracle */
     int fluid;
     cloud part[2];
-    fixture_array volume[2], density[2], positions[2];
+    setup_array volume[2], density[2], positions[2];
     sphg_neighbors *from[2][2]; /* [target set][source set] */
 } two_sets;
 
@@ -39,10 +39,9 @@ static int by_height(const cloud *points, cloud *sorted)
 static sphg_geometry geometry_between(const two_sets *sets, int targets, int sources)
 {
     const test_case *test = sets->whole.test;
-    sphg_geometry geometry =
-        fixture_geometry(test, &sets->part[sources], &sets->positions[sources]);
+    sphg_geometry geometry = setup_geometry(test, &sets->part[sources], &sets->positions[sources]);
     if (targets != sources) {
-        geometry.targets = fixture_view(&sets->positions[targets]);
+        geometry.targets = setup_view(&sets->positions[targets]);
         geometry.target_count = sets->part[targets].count;
     }
     return geometry;
@@ -51,7 +50,7 @@ static sphg_geometry geometry_between(const two_sets *sets, int targets, int sou
 static sphg_neighbors *neighbors_between(const two_sets *sets, int targets, int sources)
 {
     const sphg_geometry geometry = geometry_between(sets, targets, sources);
-    return fixture_search(sets->whole.context, &sets->whole.scheme, &geometry);
+    return setup_search(sets->whole.context, &sets->whole.scheme, &geometry);
 }
 
 static two_sets split_block(const test_case *test)
@@ -60,17 +59,16 @@ static two_sets split_block(const test_case *test)
     int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 7 : 4, .125, .25, &random), sorted;
     two_sets sets = {.fluid = by_height(&points, &sorted)};
-    sets.whole = stage_of(test, "fluid and wall", sorted, 2.5 * .125);
+    sets.whole = comparison_of(test, "fluid and wall", sorted, 2.5 * .125);
     sphg_type type = test_field_type(test);
     for (int s = 0; s < 2; s++) {
         sets.part[s] = sets.whole.points;
         sets.part[s].x += s ? sets.fluid * d : 0;
         sets.part[s].count = s ? sorted.count - sets.fluid : sets.fluid;
         int n = sets.part[s].count;
-        sets.positions[s] = fixture_positions(test, &sets.part[s]);
-        sets.volume[s] = fixture_numbers(type, n, 1, part_of(&sets, sets.whole.scene.volume, s, 1));
-        sets.density[s] =
-            fixture_numbers(type, n, 1, part_of(&sets, sets.whole.scene.density, s, 1));
+        sets.positions[s] = setup_positions(test, &sets.part[s]);
+        sets.volume[s] = setup_numbers(type, n, 1, part_of(&sets, sets.whole.scene.volume, s, 1));
+        sets.density[s] = setup_numbers(type, n, 1, part_of(&sets, sets.whole.scene.density, s, 1));
     }
     for (int t = 0; t < 2; t++)
         for (int s = 0; s < 2; s++)
@@ -83,74 +81,74 @@ static void sources_of(const two_sets *sets, int t, sphg_sources *sources)
 {
     for (int s = 0; s < 2; s++) {
         sources[s] = (sphg_sources){.neighbors = sets->from[t][s]};
-        sources[s].volume = fixture_view(&sets->volume[s]);
-        sources[s].density = fixture_view(&sets->density[s]);
+        sources[s].volume = setup_view(&sets->volume[s]);
+        sources[s].density = setup_view(&sets->density[s]);
     }
 }
 
 /* C of one set's particles, moments summed over both sets. */
-static fixture_array table_of(const two_sets *sets, int t)
+static setup_array table_of(const two_sets *sets, int t)
 {
-    const stage *on = &sets->whole;
+    const comparison *on = &sets->whole;
     int width = sphg_correction_width(&on->scheme);
-    fixture_array table = fixture_output(test_field_type(on->test), sets->part[t].count, width);
+    setup_array table = setup_output(test_field_type(on->test), sets->part[t].count, width);
     sphg_sources sources[2];
     sources_of(sets, t, sources);
     sphg_request request = {.sources = sources, .set_count = 2};
-    request.correction = fixture_view(&table);
+    request.correction = setup_view(&table);
     if (width > 0)
-        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return table;
 }
 
 /* lacks: a bit per set that has no field and mirrors the targets' instead. */
-static stage_result evaluate_fluid(const two_sets *sets, const stage_field *field,
-                                   const fixture_array *tables, unsigned lacks)
+static comparison_result evaluate_fluid(const two_sets *sets, const comparison_field *field,
+                                        const setup_array *tables, unsigned lacks)
 {
-    const stage *on = &sets->whole;
+    const comparison *on = &sets->whole;
     sphg_type type = test_field_type(on->test);
-    int width = fixture_width(field->shape, on->points.dimension);
-    stage_result found = stage_outputs(on, field, sets->fluid);
+    int width = setup_width(field->shape, on->points.dimension);
+    comparison_result found = comparison_outputs(on, field, sets->fluid);
     sphg_sources sources[2];
     sphg_view at_sources[2];
     sources_of(sets, 0, sources);
     for (int s = 0; s < 2; s++) {
-        fixture_array numbers = fixture_numbers(type, sets->part[s].count, width,
-                                                part_of(sets, field->numbers, s, width));
-        at_sources[s] = lacks >> s & 1 ? sphg_absent() : fixture_view(&numbers);
+        setup_array numbers = setup_numbers(type, sets->part[s].count, width,
+                                            part_of(sets, field->numbers, s, width));
+        at_sources[s] = lacks >> s & 1 ? sphg_absent() : setup_view(&numbers);
         if (tables)
-            sources[s].correction = stage_table_view(on, &tables[s]);
+            sources[s].correction = comparison_table_view(on, &tables[s]);
     }
     sphg_field asked = {.shape = field->shape, .form = field->form, .at_sources = at_sources};
-    const fixture_array own = fixture_numbers(type, sets->fluid, width, field->numbers);
+    const setup_array own = setup_numbers(type, sets->fluid, width, field->numbers);
     asked.mirror = lacks != 0;
-    asked.at_targets = lacks & 1 ? fixture_view(&own) : sphg_absent();
-    stage_ask_for(&found, &asked);
+    asked.at_targets = lacks & 1 ? setup_view(&own) : sphg_absent();
+    comparison_ask_for(&found, &asked);
     sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
     request.field_count = 1;
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return found;
 }
 
 static void two_source_sets_equal_their_union(const test_case *test)
 {
     two_sets sets = split_block(test);
-    fixture_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
+    setup_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
     TEST_REQUIRE(sets.fluid > 10 && sets.part[1].count > 10, "not two sets");
     for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
-        stage_field field = {SPHG_SCALAR, (sphg_form)form,
-                             stage_random_field(&sets.whole, SPHG_SCALAR, 21)};
-        stage_result found =
+        comparison_field field = {SPHG_SCALAR, (sphg_form)form,
+                                  comparison_random_field(&sets.whole, SPHG_SCALAR, 21)};
+        comparison_result found =
             evaluate_fluid(&sets, &field, form >= SPHG_SYMMETRIC ? tables : NULL, 0);
         for (int i = 0; i < sets.fluid; i += 7)
-            stage_compare(&sets.whole, &field, &found, i);
+            comparison_compare(&sets.whole, &field, &found, i);
     }
 }
 
 /* What target i sees of a field that some sets mirror: its own value there. */
-static double *seen_by(const two_sets *sets, const stage_field *field, unsigned lacks, int i)
+static double *seen_by(const two_sets *sets, const comparison_field *field, unsigned lacks, int i)
 {
-    const int width = fixture_width(field->shape, sets->whole.points.dimension);
+    const int width = setup_width(field->shape, sets->whole.points.dimension);
     const size_t item = (size_t)width * sizeof(double);
     double *numbers = test_memory((size_t)sets->whole.points.count * item);
     for (int j = 0; j < sets->whole.points.count; j++)
@@ -162,18 +160,19 @@ static double *seen_by(const two_sets *sets, const stage_field *field, unsigned 
 static void a_mirrored_field_has_the_value_of_the_target(const test_case *test)
 {
     const two_sets sets = split_block(test);
-    const fixture_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
+    const setup_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
     for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
         for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
             for (unsigned lacks = 1; lacks < 4; lacks++) {
-                const stage_field field = {(sphg_shape)shape, (sphg_form)form,
-                                           stage_random_field(&sets.whole, (sphg_shape)shape, 24)};
-                const stage_result found =
+                const comparison_field field = {
+                    (sphg_shape)shape, (sphg_form)form,
+                    comparison_random_field(&sets.whole, (sphg_shape)shape, 24)};
+                const comparison_result found =
                     evaluate_fluid(&sets, &field, form >= SPHG_SYMMETRIC ? tables : NULL, lacks);
                 for (int i = 0; i < sets.fluid; i += 11) {
-                    stage_field seen = field;
+                    comparison_field seen = field;
                     seen.numbers = seen_by(&sets, &field, lacks, i);
-                    stage_compare(&sets.whole, &seen, &found, i);
+                    comparison_compare(&sets.whole, &seen, &found, i);
                 }
             }
 }
@@ -181,11 +180,11 @@ static void a_mirrored_field_has_the_value_of_the_target(const test_case *test)
 /* Lists of the host from the search's own pairs. */
 static sphg_neighbors *brought_between(const two_sets *sets, int targets, int sources)
 {
-    const stage *on = &sets->whole;
+    const comparison *on = &sets->whole;
     const sphg_geometry geometry = geometry_between(sets, targets, sources);
     const rows found = rows_listed(on->context, sets->from[targets][sources], &on->scheme, NULL);
     const sphg_lists lists = {.offsets = found.offsets, .indices = found.indices};
-    return fixture_lists(on->context, &on->scheme, &geometry, &lists);
+    return setup_lists(on->context, &on->scheme, &geometry, &lists);
 }
 
 /* Without a set that the targets are part of, and through lists of the host. Classic gradients of
@@ -193,36 +192,36 @@ static sphg_neighbors *brought_between(const two_sets *sets, int targets, int so
 static void probes_may_look_into_mirrors(const test_case *test)
 {
     const two_sets sets = split_block(test);
-    const stage *on = &sets.whole;
-    const fixture_array own = fixture_numbers(test_field_type(test), sets.fluid, 1,
-                                              stage_random_field(on, SPHG_SCALAR, 25));
+    const comparison *on = &sets.whole;
+    const setup_array own = setup_numbers(test_field_type(test), sets.fluid, 1,
+                                          comparison_random_field(on, SPHG_SCALAR, 25));
     const sphg_view absent = sphg_absent();
-    fixture_array found[3];
+    setup_array found[3];
     for (int way = 0; way < 3; way++) {
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
         if (way == 2)
             sources[1].neighbors = brought_between(&sets, 0, 1);
-        found[way] = fixture_output(own.type, sets.fluid, test->dimension);
-        const sphg_view one_by_one = fixture_view(&own);
+        found[way] = setup_output(own.type, sets.fluid, test->dimension);
+        const sphg_view one_by_one = setup_view(&own);
         const sphg_field asked = {.shape = SPHG_SCALAR,
                                   .form = way ? SPHG_DIRECT : SPHG_DIFFERENCE,
                                   .at_sources = &absent,
                                   .at_targets = one_by_one,
-                                  .gradient = fixture_view(&found[way]),
+                                  .gradient = setup_view(&found[way]),
                                   .mirror = 1};
         const sphg_request request = {.sources = sources + 1,
                                       .fields = &asked,
                                       .set_count = 1,
                                       .field_count = 1,
                                       .target_volume = sources[0].volume};
-        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     }
     for (int i = 0; i < sets.fluid; i++)
         for (int c = 0; c < test->dimension; c++)
-            TEST_REQUIRE(fixture_get(&found[0], i, c) == 0, "a difference to itself, target %d", i);
-    TEST_REQUIRE(fixture_get(&found[1], 0, test->dimension - 1) != 0, "no wall is seen");
-    fixture_require_close(&found[1], &found[2], "through lists");
+            TEST_REQUIRE(setup_get(&found[0], i, c) == 0, "a difference to itself, target %d", i);
+    TEST_REQUIRE(setup_get(&found[1], 0, test->dimension - 1) != 0, "no wall is seen");
+    setup_require_close(&found[1], &found[2], "through lists");
 }
 
 /* In the direct form; a difference to it would be -A_i, which nobody means. */
@@ -232,58 +231,58 @@ static void an_absent_field_is_zero(const test_case *test)
     int n = sets.fluid;
     sphg_type type = test_field_type(test);
     double *zeros = test_memory((size_t)sets.part[1].count * sizeof *zeros);
-    double *numbers = stage_random_field(&sets.whole, SPHG_SCALAR, 22);
-    fixture_array here = fixture_numbers(type, n, 1, numbers);
-    fixture_array none = fixture_numbers(type, sets.part[1].count, 1, zeros);
-    fixture_array found[2];
+    double *numbers = comparison_random_field(&sets.whole, SPHG_SCALAR, 22);
+    setup_array here = setup_numbers(type, n, 1, numbers);
+    setup_array none = setup_numbers(type, sets.part[1].count, 1, zeros);
+    setup_array found[2];
     for (int way = 0; way < 2; way++) {
-        sphg_view at_sources[] = {fixture_view(&here), way ? sphg_absent() : fixture_view(&none)};
+        sphg_view at_sources[] = {setup_view(&here), way ? sphg_absent() : setup_view(&none)};
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
-        found[way] = fixture_output(type, n, test->dimension);
+        found[way] = setup_output(type, n, test->dimension);
         sphg_field asked = {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = at_sources};
-        asked.gradient = fixture_view(&found[way]);
+        asked.gradient = setup_view(&found[way]);
         sphg_request request = {.sources = sources, .fields = &asked, .set_count = 2};
         request.field_count = 1;
-        FIXTURE_OK(sets.whole.context,
-                   sphg_evaluate(sets.whole.context, &sets.whole.scheme, &request));
+        SETUP_OK(sets.whole.context,
+                 sphg_evaluate(sets.whole.context, &sets.whole.scheme, &request));
     }
-    assert_true(fixture_same_bits(&found[0], &found[1]));
+    assert_true(setup_same_bits(&found[0], &found[1]));
 }
 
 /* Through lists of the host, with a field that one of the sets has not. */
 static void lists_of_the_host_may_lack_a_field(const test_case *test)
 {
     const two_sets sets = split_block(test);
-    const stage *on = &sets.whole;
-    const fixture_array here = fixture_numbers(test_field_type(test), sets.fluid, 1,
-                                               stage_random_field(on, SPHG_SCALAR, 23));
-    const sphg_view at_sources[] = {fixture_view(&here), sphg_absent()};
-    fixture_array found[2];
+    const comparison *on = &sets.whole;
+    const setup_array here = setup_numbers(test_field_type(test), sets.fluid, 1,
+                                           comparison_random_field(on, SPHG_SCALAR, 23));
+    const sphg_view at_sources[] = {setup_view(&here), sphg_absent()};
+    setup_array found[2];
     for (int way = 0; way < 2; way++) {
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
         for (int s = 0; s < 2 && way; s++)
             sources[s].neighbors = brought_between(&sets, 0, s);
-        found[way] = fixture_output(here.type, sets.fluid, test->dimension);
+        found[way] = setup_output(here.type, sets.fluid, test->dimension);
         const sphg_field asked = {.shape = SPHG_SCALAR,
                                   .form = SPHG_DIRECT,
                                   .at_sources = at_sources,
-                                  .gradient = fixture_view(&found[way])};
+                                  .gradient = setup_view(&found[way])};
         const sphg_request request = {
             .sources = sources, .fields = &asked, .set_count = 2, .field_count = 1};
-        FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     }
-    fixture_require_close(&found[0], &found[1], "an absent field");
+    setup_require_close(&found[0], &found[1], "an absent field");
 }
 
 /* Sums of several sets are finished in a sweep of its own, which a mask concerns as well. */
 static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *test)
 {
     const two_sets sets = split_block(test);
-    const stage *on = &sets.whole;
-    const fixture_array whole = table_of(&sets, 0);
-    fixture_array some = fixture_output(whole.type, sets.fluid, whole.width);
+    const comparison *on = &sets.whole;
+    const setup_array whole = table_of(&sets, 0);
+    setup_array some = setup_output(whole.type, sets.fluid, whole.width);
     uint8_t *mask = test_memory((size_t)sets.fluid);
     for (int i = 0; i < sets.fluid; i++)
         mask[i] = i % 3 == 1;
@@ -291,12 +290,12 @@ static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *tes
     sphg_sources sources[2];
     sources_of(&sets, 0, sources);
     const sphg_request request = {
-        .sources = sources, .set_count = 2, .subset = &subset, .correction = fixture_view(&some)};
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        .sources = sources, .set_count = 2, .subset = &subset, .correction = setup_view(&some)};
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     for (int i = 0; i < sets.fluid; i++)
         for (int c = 0; c < whole.width; c++)
-            TEST_REQUIRE(mask[i] ? fixture_get(&some, i, c) == fixture_get(&whole, i, c)
-                                 : fixture_is_canary(&some, i),
+            TEST_REQUIRE(mask[i] ? setup_get(&some, i, c) == setup_get(&whole, i, c)
+                                 : setup_is_canary(&some, i),
                          "target %d, number %d", i, c);
 }
 
@@ -304,7 +303,7 @@ static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *tes
  */
 
 typedef struct probe {
-    stage on;
+    comparison on;
     cloud targets;
     sphg_neighbors *neighbors;
     double *target_volume, *at_targets;
@@ -315,14 +314,14 @@ static probe make_probe(const test_case *test, int with_volume)
     random_state random = random_seeded(82);
     int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 7 : 4, .125, .25, &random);
-    probe made = {.on = stage_of(test, "probes", points, 2.5 * .125)};
+    probe made = {.on = comparison_of(test, "probes", points, 2.5 * .125)};
     made.targets = cloud_random(d, 12, .5, &random);
-    fixture_array positions = fixture_positions(test, &made.on.points);
-    fixture_array places = fixture_positions(test, &made.targets);
-    sphg_geometry geometry = fixture_geometry(test, &made.on.points, &positions);
-    geometry.targets = fixture_view(&places);
+    setup_array positions = setup_positions(test, &made.on.points);
+    setup_array places = setup_positions(test, &made.targets);
+    sphg_geometry geometry = setup_geometry(test, &made.on.points, &positions);
+    geometry.targets = setup_view(&places);
     geometry.target_count = made.targets.count;
-    made.neighbors = fixture_search(made.on.context, &made.on.scheme, &geometry);
+    made.neighbors = setup_search(made.on.context, &made.on.scheme, &geometry);
     made.at_targets = cloud_numbers(&made.targets, -1, 1, &random);
     if (with_volume)
         made.target_volume = cloud_volumes(&points, .2, &random);
@@ -336,33 +335,32 @@ static probe make_probe(const test_case *test, int with_volume)
 
 static void compare_probe(const probe *made, sphg_form form)
 {
-    const stage *on = &made->on;
+    const comparison *on = &made->on;
     sphg_type type = test_field_type(on->test);
     int n = made->targets.count, d = on->points.dimension;
-    double *numbers = stage_random_field(on, SPHG_SCALAR, 23);
-    fixture_array field = fixture_numbers(type, on->points.count, 1, numbers);
-    fixture_array at_targets = fixture_numbers(type, n, 1, made->at_targets);
-    fixture_array gradient = fixture_output(type, n, d), square = fixture_output(type, n, 1),
-                  volume;
-    sphg_view at_sources = fixture_view(&field);
-    sphg_sources sources = stage_sources(on);
+    double *numbers = comparison_random_field(on, SPHG_SCALAR, 23);
+    setup_array field = setup_numbers(type, on->points.count, 1, numbers);
+    setup_array at_targets = setup_numbers(type, n, 1, made->at_targets);
+    setup_array gradient = setup_output(type, n, d), square = setup_output(type, n, 1), volume;
+    sphg_view at_sources = setup_view(&field);
+    sphg_sources sources = comparison_sources(on);
     sources.neighbors = made->neighbors;
     sphg_field asked = {.shape = SPHG_SCALAR, .form = form, .at_sources = &at_sources};
-    asked.at_targets = fixture_view(&at_targets);
-    asked.gradient = fixture_view(&gradient);
-    asked.square = form == SPHG_DIRECT ? fixture_view(&square) : sphg_absent();
+    asked.at_targets = setup_view(&at_targets);
+    asked.gradient = setup_view(&gradient);
+    asked.square = form == SPHG_DIRECT ? setup_view(&square) : sphg_absent();
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
     if (made->target_volume) {
-        volume = fixture_numbers(type, n, 1, made->target_volume);
-        request.target_volume = fixture_view(&volume);
+        volume = setup_numbers(type, n, 1, made->target_volume);
+        request.target_volume = setup_view(&volume);
     }
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     oracle_field exact_field = {SPHG_SCALAR, form, numbers, made->at_targets};
     for (int i = 0; i < n; i++) {
         oracle_result exact = oracle_apply(on->reference, &exact_field, i);
-        double ratio = stage_ratio(&gradient, i, exact.gradient, exact.bound);
-        double of_square = stage_ratio(&square, i, &exact.square, exact.square_bound);
+        double ratio = comparison_ratio(&gradient, i, exact.gradient, exact.bound);
+        double of_square = comparison_ratio(&square, i, &exact.square, exact.square_bound);
         if (form == SPHG_DIRECT && !(of_square <= ratio))
             ratio = of_square;
         if (exact.touched)
@@ -389,38 +387,38 @@ static void fields_of_one_call_equal_calls_of_one_field(const test_case *test)
     random_state random = random_seeded(83);
     int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 6 : 4, .125, .25, &random);
-    stage on = stage_of(test, "block", points, 2.5 * .125);
+    comparison on = comparison_of(test, "block", points, 2.5 * .125);
     static const sphg_shape shapes[] = {SPHG_SCALAR, SPHG_VECTOR, SPHG_SCALAR};
     static const sphg_form forms[] = {SPHG_DIFFERENCE, SPHG_DIFFERENCE, SPHG_DIRECT};
     sphg_view at_sources[3];
     sphg_field fields[3] = {{0}};
-    fixture_array numbers[3], together[3];
-    stage_result alone[3];
+    setup_array numbers[3], together[3];
+    comparison_result alone[3];
     for (int f = 0; f < 3; f++) {
-        int width = fixture_width(shapes[f], d);
-        stage_field field = {shapes[f], forms[f],
-                             stage_random_field(&on, shapes[f], (uint64_t)(90 + f))};
-        alone[f] = stage_apply(&on, &field, NULL);
-        numbers[f] = fixture_numbers(test_field_type(test), points.count, width, field.numbers);
-        together[f] = fixture_output(test_field_type(test), points.count, d * width);
-        at_sources[f] = fixture_view(&numbers[f]);
+        int width = setup_width(shapes[f], d);
+        comparison_field field = {shapes[f], forms[f],
+                                  comparison_random_field(&on, shapes[f], (uint64_t)(90 + f))};
+        alone[f] = comparison_apply(&on, &field, NULL);
+        numbers[f] = setup_numbers(test_field_type(test), points.count, width, field.numbers);
+        together[f] = setup_output(test_field_type(test), points.count, d * width);
+        at_sources[f] = setup_view(&numbers[f]);
         fields[f].shape = shapes[f];
         fields[f].form = forms[f];
         fields[f].at_sources = &at_sources[f];
-        fields[f].gradient = fixture_view(&together[f]);
+        fields[f].gradient = setup_view(&together[f]);
     }
-    sphg_sources sources = stage_sources(&on);
+    sphg_sources sources = comparison_sources(&on);
     sphg_request request = {.sources = &sources, .fields = fields, .set_count = 1};
     request.field_count = 3;
-    FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+    SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
     for (int f = 0; f < 3; f++)
-        TEST_REQUIRE(fixture_same_bits(&together[f], &alone[f].gradient), "field %d", f);
+        TEST_REQUIRE(setup_same_bits(&together[f], &alone[f].gradient), "field %d", f);
 }
 
-static const fixture_array *result_of(const stage_result *found, int which)
+static const setup_array *result_of(const comparison_result *found, int which)
 {
-    const fixture_array *results[] = {&found->gradient, &found->divergence, &found->curl,
-                                      &found->value, &found->square};
+    const setup_array *results[] = {&found->gradient, &found->divergence, &found->curl,
+                                    &found->value, &found->square};
     return results[which];
 }
 
@@ -428,20 +426,20 @@ static void a_result_alone_has_the_bits_it_has_among_all(const test_case *test)
 {
     random_state random = random_seeded(84);
     int d = test->dimension;
-    stage on =
-        stage_of(test, "block", cloud_jittered(d, d == 2 ? 6 : 4, .125, .25, &random), 2.5 * .125);
-    fixture_array table = stage_table(&on);
+    comparison on = comparison_of(
+        test, "block", cloud_jittered(d, d == 2 ? 6 : 4, .125, .25, &random), 2.5 * .125);
+    setup_array table = comparison_table(&on);
     for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
         for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
-            const fixture_array *given = form < SPHG_SYMMETRIC ? NULL : &table;
-            stage_field field = {(sphg_shape)shape, (sphg_form)form,
-                                 stage_random_field(&on, (sphg_shape)shape, 91)};
-            stage_result all = stage_apply(&on, &field, given);
+            const setup_array *given = form < SPHG_SYMMETRIC ? NULL : &table;
+            comparison_field field = {(sphg_shape)shape, (sphg_form)form,
+                                      comparison_random_field(&on, (sphg_shape)shape, 91)};
+            comparison_result all = comparison_apply(&on, &field, given);
             for (int which = 0; which < 5; which++) {
                 if (!result_of(&all, which)->width) /* this shape or form has none */
                     continue;
-                stage_result alone = stage_apply_alone(&on, &field, given, which);
-                TEST_REQUIRE(fixture_same_bits(result_of(&all, which), result_of(&alone, which)),
+                comparison_result alone = comparison_apply_alone(&on, &field, given, which);
+                TEST_REQUIRE(setup_same_bits(result_of(&all, which), result_of(&alone, which)),
                              "result %d of shape %d in form %d", which, shape, form);
             }
         }
@@ -452,54 +450,56 @@ static void what_is_known_of_corrections_is_the_same_alone(const test_case *test
 {
     random_state random = random_seeded(85);
     int d = test->dimension, n;
-    stage on = stage_of(test, "thin", cloud_jittered(d, 4, .125, .5, &random), 1.5 * .125);
+    comparison on =
+        comparison_of(test, "thin", cloud_jittered(d, 4, .125, .5, &random), 1.5 * .125);
     sphg_type type = test_field_type(test);
-    sphg_sources sources = stage_sources(&on);
+    sphg_sources sources = comparison_sources(&on);
     sphg_stats stats[2];
-    fixture_array found[2][3];
+    setup_array found[2][3];
     memset(stats, 0, sizeof stats);
     n = on.points.count;
     for (int which = -1; which < 4; which++) {
-        fixture_array *to = found[which >= 0];
+        setup_array *to = found[which >= 0];
         sphg_request request = {.sources = &sources, .set_count = 1};
-        to[0] = fixture_output(type, n, sphg_correction_width(&on.scheme));
-        to[1] = fixture_output(SPHG_U8, n, 1);
-        to[2] = fixture_output(type, n, 1);
-        request.correction = which < 0 || which == 0 ? fixture_view(&to[0]) : sphg_absent();
-        request.rank = which < 0 || which == 1 ? fixture_view(&to[1]) : sphg_absent();
-        request.lambda_min = which < 0 || which == 2 ? fixture_view(&to[2]) : sphg_absent();
+        to[0] = setup_output(type, n, sphg_correction_width(&on.scheme));
+        to[1] = setup_output(SPHG_U8, n, 1);
+        to[2] = setup_output(type, n, 1);
+        request.correction = which < 0 || which == 0 ? setup_view(&to[0]) : sphg_absent();
+        request.rank = which < 0 || which == 1 ? setup_view(&to[1]) : sphg_absent();
+        request.lambda_min = which < 0 || which == 2 ? setup_view(&to[2]) : sphg_absent();
         request.stats = which < 0 || which == 3 ? &stats[which >= 0] : NULL;
-        FIXTURE_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+        SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
         if (which == 3)
             assert_memory_equal(&stats[0], &stats[1], sizeof stats[0]);
         else if (which >= 0)
-            TEST_REQUIRE(fixture_same_bits(&found[0][which], &to[which]), "%d", which);
+            TEST_REQUIRE(setup_same_bits(&found[0][which], &to[which]), "%d", which);
     }
 }
 
 static void accumulate_adds_to_what_is_there(const test_case *test)
 {
     two_sets sets = split_block(test);
-    const stage *on = &sets.whole;
+    const comparison *on = &sets.whole;
     sphg_type type = test_field_type(test);
-    stage_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, stage_random_field(on, SPHG_SCALAR, 24)};
-    stage_result once = stage_apply(on, &field, NULL);
-    fixture_array numbers = fixture_numbers(type, on->points.count, 1, field.numbers);
+    comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                              comparison_random_field(on, SPHG_SCALAR, 24)};
+    comparison_result once = comparison_apply(on, &field, NULL);
+    setup_array numbers = setup_numbers(type, on->points.count, 1, field.numbers);
     double *start = test_memory((size_t)(on->points.count * test->dimension) * sizeof *start);
     for (int k = 0; k < on->points.count * test->dimension; k++)
         start[k] = k % 5;
-    fixture_array sum = fixture_numbers(type, on->points.count, test->dimension, start);
-    sphg_view at_sources = fixture_view(&numbers);
-    sphg_sources sources = stage_sources(on);
+    setup_array sum = setup_numbers(type, on->points.count, test->dimension, start);
+    sphg_view at_sources = setup_view(&numbers);
+    sphg_sources sources = comparison_sources(on);
     sphg_field asked = {.shape = SPHG_SCALAR, .accumulate = 1, .at_sources = &at_sources};
-    asked.gradient = fixture_view(&sum);
+    asked.gradient = setup_view(&sum);
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     for (int k = 0; k < sum.count * sum.width; k++) {
         int i = k / sum.width, c = k % sum.width;
-        double g = fixture_get(&once.gradient, i, c), expected = start[k] + g;
-        double error = fabs(fixture_get(&sum, i, c) - expected);
+        double g = setup_get(&once.gradient, i, c), expected = start[k] + g;
+        double error = fabs(setup_get(&sum, i, c) - expected);
         TEST_WITHIN(one_addition, error / on->scene.unit / (fabs(expected) + fabs(g)), "sum");
     }
 }
@@ -509,7 +509,7 @@ typedef struct crowd {
     sphg_context *context;
     sphg_scheme scheme;
     sphg_neighbors *neighbors;
-    fixture_array volume, field;
+    setup_array volume, field;
     int targets, near;
 } crowd;
 
@@ -525,41 +525,41 @@ static crowd crowd_of(const test_case *test, int near, int list_free)
     random_state random = random_seeded(86);
     const int d = test->dimension, far = 16 * near + 101;
     const sphg_type type = test_field_type(test);
-    crowd made = {.context = fixture_context(), .targets = near + far, .near = near};
+    crowd made = {.context = setup_context(), .targets = near + far, .near = near};
     cloud sources = {d, SOURCES, .01, test_memory(sizeof(double) * SOURCES * 3)};
     cloud targets = {d, near + far, .01, test_memory(sizeof(double) * (size_t)(near + far) * 3)};
     put_points(sources.x, d, SOURCES, 1.55, &random);
     put_points(targets.x, d, near, .7, &random);
     put_points(targets.x + near * d, d, far, .45, &random);
-    const fixture_array at = fixture_positions(test, &sources);
-    const fixture_array places = fixture_positions(test, &targets);
-    sphg_geometry geometry = fixture_geometry(test, &sources, &at);
-    geometry.targets = fixture_view(&places);
+    const setup_array at = setup_positions(test, &sources);
+    const setup_array places = setup_positions(test, &targets);
+    sphg_geometry geometry = setup_geometry(test, &sources, &at);
+    geometry.targets = setup_view(&places);
     geometry.target_count = targets.count;
     geometry.list_free = list_free;
-    made.scheme = fixture_scheme(test, 1);
-    made.neighbors = fixture_search(made.context, &made.scheme, &geometry);
-    made.volume = fixture_numbers(type, SOURCES, 1, cloud_volumes(&sources, .2, &random));
-    made.field = fixture_numbers(type, SOURCES, 1, cloud_numbers(&sources, -1, 1, &random));
+    made.scheme = setup_scheme(test, 1);
+    made.neighbors = setup_search(made.context, &made.scheme, &geometry);
+    made.volume = setup_numbers(type, SOURCES, 1, cloud_volumes(&sources, .2, &random));
+    made.field = setup_numbers(type, SOURCES, 1, cloud_numbers(&sources, -1, 1, &random));
     return made;
 }
 
-static fixture_array values_in_crowd(const test_case *test, const crowd *on, const uint8_t *mask)
+static setup_array values_in_crowd(const test_case *test, const crowd *on, const uint8_t *mask)
 {
-    fixture_array value = fixture_output(test_field_type(test), on->targets, test->dimension);
-    const sphg_sources sources = {.neighbors = on->neighbors, .volume = fixture_view(&on->volume)};
-    const sphg_view field = fixture_view(&on->field);
+    setup_array value = setup_output(test_field_type(test), on->targets, test->dimension);
+    const sphg_sources sources = {.neighbors = on->neighbors, .volume = setup_view(&on->volume)};
+    const sphg_view field = setup_view(&on->field);
     const sphg_field asked = {.shape = SPHG_SCALAR,
                               .form = SPHG_DIRECT,
                               .at_sources = &field,
-                              .gradient = fixture_view(&value)};
+                              .gradient = setup_view(&value)};
     const sphg_subset subset = {0, on->targets, NULL, mask};
     const sphg_request request = {.sources = &sources,
                                   .fields = &asked,
                                   .set_count = 1,
                                   .field_count = 1,
                                   .subset = mask ? &subset : NULL};
-    FIXTURE_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     return value;
 }
 
@@ -569,15 +569,15 @@ static void a_crowd_of_sources_is_summed_alike_for_any_subset(const test_case *t
     static const int near[] = {90, 200};
     for (int k = 0; k < 4; k++) {
         const crowd on = crowd_of(test, near[k / 2], k % 2);
-        const fixture_array full = values_in_crowd(test, &on, NULL);
+        const setup_array full = values_in_crowd(test, &on, NULL);
         uint8_t *mask = test_memory((size_t)on.targets);
         for (int share = 1; share < 6; share += 4) {
             for (int t = 0; t < on.near; t++)
                 mask[t] = t % share == 0;
-            const fixture_array some = values_in_crowd(test, &on, mask);
+            const setup_array some = values_in_crowd(test, &on, mask);
             for (int t = 0; t < on.near; t += share)
                 for (int c = 0; c < test->dimension; c++)
-                    TEST_REQUIRE(fixture_get(&some, t, c) == fixture_get(&full, t, c),
+                    TEST_REQUIRE(setup_get(&some, t, c) == setup_get(&full, t, c),
                                  "target %d, 1 of %d, %d see sources", t, share, on.near);
         }
     }

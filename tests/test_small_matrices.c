@@ -1,6 +1,6 @@
 /* sphg_eigen and sphg_svd on random and adversarial matrices, judged by residual beside LAPACK:
  * near multiple eigenvalues no vector is right or wrong, but the product must be. */
-#include "support/fixture.h"
+#include "support/setup.h"
 #include "support/spectra.h"
 #include <lapacke.h>
 #include <math.h>
@@ -28,7 +28,7 @@ static batch batch_of(const test_case *test, spectrum set)
 }
 
 /* xx xy xz yy yz zz of the symmetric matrices. */
-static fixture_array packed(const batch *items)
+static setup_array packed(const batch *items)
 {
     const int d = items->dimension, width = d * (d + 1) / 2;
     double *numbers = test_memory((size_t)(items->count * width) * sizeof *numbers);
@@ -36,7 +36,7 @@ static fixture_array packed(const batch *items)
         for (int r = 0; r < d; r++)
             for (int c = r; c < d; c++)
                 numbers[next++] = items->full[9 * i + r * d + c];
-    return fixture_numbers(items->is_double ? SPHG_F64 : SPHG_F32, items->count, width, numbers);
+    return setup_numbers(items->is_double ? SPHG_F64 : SPHG_F32, items->count, width, numbers);
 }
 
 static long double frobenius(int numbers, const double *a)
@@ -114,17 +114,17 @@ typedef struct factors {
 static factors eigen_of(sphg_context *context, const batch *items)
 {
     const int d = items->dimension;
-    const fixture_array matrices = packed(items);
-    fixture_array values = fixture_output(matrices.type, items->count, d);
-    fixture_array vectors = fixture_output(matrices.type, items->count, d * d);
-    FIXTURE_OK(context, sphg_eigen(context, d, items->count, fixture_view(&matrices),
-                                   fixture_view(&values), fixture_view(&vectors)));
-    return (factors){fixture_doubles(&values), fixture_doubles(&vectors)};
+    const setup_array matrices = packed(items);
+    setup_array values = setup_output(matrices.type, items->count, d);
+    setup_array vectors = setup_output(matrices.type, items->count, d * d);
+    SETUP_OK(context, sphg_eigen(context, d, items->count, setup_view(&matrices),
+                                 setup_view(&values), setup_view(&vectors)));
+    return (factors){setup_doubles(&values), setup_doubles(&vectors)};
 }
 
 static void eigen_is_backward_stable(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
         const batch items = batch_of(test, (spectrum)set);
@@ -161,7 +161,7 @@ static void lapack_eigen(const batch *items, const double *a, double *values, do
 /* Weyl: eigenvalues differ by no more than both residuals; LAPACK's ascend. */
 static void eigenvalues_agree_with_lapack(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
         const batch items = batch_of(test, (spectrum)set);
@@ -184,7 +184,7 @@ static void eigenvalues_agree_with_lapack(const test_case *test)
 /* The long double reference is better than both by its eleven extra bits. */
 static void eigenvalues_agree_with_the_reference(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
         const batch items = batch_of(test, (spectrum)set);
@@ -213,18 +213,18 @@ static singular svd_of(sphg_context *context, const batch *items)
     double *numbers = test_memory((size_t)(items->count * 9) * sizeof *numbers);
     memcpy(numbers, items->full, (size_t)(items->count * 9) * sizeof *numbers);
     const sphg_type type = items->is_double ? SPHG_F64 : SPHG_F32;
-    const fixture_array matrices = fixture_numbers(type, items->count, 9, numbers);
-    fixture_array u = fixture_output(type, items->count, 9), v = u;
-    fixture_array sigma = fixture_output(type, items->count, 3);
-    v.data = fixture_output(type, items->count, 9).data;
-    FIXTURE_OK(context, sphg_svd(context, items->count, fixture_view(&matrices), fixture_view(&u),
-                                 fixture_view(&sigma), fixture_view(&v)));
-    return (singular){fixture_doubles(&u), fixture_doubles(&sigma), fixture_doubles(&v)};
+    const setup_array matrices = setup_numbers(type, items->count, 9, numbers);
+    setup_array u = setup_output(type, items->count, 9), v = u;
+    setup_array sigma = setup_output(type, items->count, 3);
+    v.data = setup_output(type, items->count, 9).data;
+    SETUP_OK(context, sphg_svd(context, items->count, setup_view(&matrices), setup_view(&u),
+                               setup_view(&sigma), setup_view(&v)));
+    return (singular){setup_doubles(&u), setup_doubles(&sigma), setup_doubles(&v)};
 }
 
 static void svd_is_backward_stable(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     for (int set = 0; set < SPECTRA_COUNT; set++) {
         const batch items = batch_of(test, (spectrum)set);
         const singular found = svd_of(context, &items);
@@ -261,7 +261,7 @@ static void lapack_svd(const batch *items, const double *a, double *sigma)
 
 static void singular_values_agree_with_lapack(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     for (int set = 0; set < SPECTRA_COUNT; set++) {
         const batch items = batch_of(test, (spectrum)set);
         const singular found = svd_of(context, &items);
@@ -290,13 +290,13 @@ static void require_scaled(const double *found, const double *expected, int coun
 /* In another unit, with numbers as large or as small as the type holds, the digits are the same. */
 static void units_change_no_digit(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     batch items = batch_of(test, SPECTRA_indefinite);
     items.count = 100;
     for (int k = 0; k < 9 * items.count; k++) /* eigenvalues below 1 / 2, digits that survive */
-        items.full[k] = rint(ldexp(tanh(items.full[k]), 18)) *
-                        (k % 9 % (d + 1) == 0 ? 7 * 0x1p-22 : 0x1p-24);
+        items.full[k] =
+            rint(ldexp(tanh(items.full[k]), 18)) * (k % 9 % (d + 1) == 0 ? 7 * 0x1p-22 : 0x1p-24);
     batch other = items;
     other.full = test_memory((size_t)(9 * items.count) * sizeof *other.full);
     const int f64[] = {-990, -900, -502, -498, 498, 502, 900, 1025};
@@ -325,7 +325,7 @@ static void units_change_no_digit(const test_case *test)
 /* A NaN or infinite matrix at each place in turn: all other items keep their bits. */
 static void bad_matrix_spoils_only_itself(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     batch items = batch_of(test, SPECTRA_indefinite);
     items.count = 37;
@@ -351,7 +351,7 @@ static void bad_matrix_spoils_only_itself(const test_case *test)
 /* One by one, the results have the same bits as in a batch. */
 static void batches_do_not_change_results(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension;
     const batch items = batch_of(test, SPECTRA_indefinite);
     const factors all = eigen_of(context, &items);
@@ -369,25 +369,25 @@ static void batches_do_not_change_results(const test_case *test)
 static void invert(sphg_context *context, const batch *items)
 {
     const int d = items->dimension, width = d * (d + 1) / 2;
-    const fixture_array moments = packed(items);
-    const fixture_array table = fixture_output(moments.type, items->count, width);
-    const fixture_array rank = fixture_output(SPHG_U8, items->count, 1);
-    const fixture_array lambda = fixture_output(moments.type, items->count, 1);
-    const fixture_array volume = fixture_output(moments.type, items->count, 1);
+    const setup_array moments = packed(items);
+    const setup_array table = setup_output(moments.type, items->count, width);
+    const setup_array rank = setup_output(SPHG_U8, items->count, 1);
+    const setup_array lambda = setup_output(moments.type, items->count, 1);
+    const setup_array volume = setup_output(moments.type, items->count, 1);
     const sphg_scheme scheme = {.dimension = d, .method = SPHG_MLS, .support_radius = 1};
-    const sphg_inversion wanted = {.correction = fixture_view(&table),
-                                   .rank = fixture_view(&rank),
-                                   .lambda_min = fixture_view(&lambda)};
+    const sphg_inversion wanted = {.correction = setup_view(&table),
+                                   .rank = setup_view(&rank),
+                                   .lambda_min = setup_view(&lambda)};
     memset(volume.data, 0, (size_t)items->count * (items->is_double ? 8 : 4));
-    FIXTURE_OK(context, sphg_invert_moments(context, &scheme, items->count, fixture_view(&moments),
-                                            fixture_view(&volume), &wanted));
+    SETUP_OK(context, sphg_invert_moments(context, &scheme, items->count, setup_view(&moments),
+                                          setup_view(&volume), &wanted));
 }
 
-/* The arrays of a fixture end at a page that nobody may touch. Groups of lanes end, or do not end,
+/* The arrays of a set-up end at a page that nobody may touch. Groups of lanes end, or do not end,
  * with the last matrix. */
 static void nothing_behind_the_last_matrix_is_touched(const test_case *test)
 {
-    sphg_context *const contexts[] = {fixture_context_of(1), fixture_context()};
+    sphg_context *const contexts[] = {setup_context_of(1), setup_context()};
     batch items = batch_of(test, SPECTRA_indefinite);
     for (items.count = 1; items.count <= 100; items.count++)
         for (int k = 0; k < 2; k++) {
@@ -400,25 +400,25 @@ static void nothing_behind_the_last_matrix_is_touched(const test_case *test)
 /* Values, vectors and matrices inside larger records, the matrices back to front. */
 static void strided_views_hold_matrices_and_factors(const test_case *test)
 {
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const int d = test->dimension, width = d * (d + 1) / 2;
     const batch items = batch_of(test, SPECTRA_tenth_to_one);
     const factors plain = eigen_of(context, &items);
-    const fixture_array matrices = packed(&items);
-    fixture_array record = fixture_output(matrices.type, items.count, 20);
-    const ptrdiff_t size = items.is_double ? 8 : 4, step = fixture_view(&record).stride;
-    sphg_view in = fixture_view(&matrices), values = fixture_view(&record), vectors = values;
+    const setup_array matrices = packed(&items);
+    setup_array record = setup_output(matrices.type, items.count, 20);
+    const ptrdiff_t size = items.is_double ? 8 : 4, step = setup_view(&record).stride;
+    sphg_view in = setup_view(&matrices), values = setup_view(&record), vectors = values;
     in.x = (const char *)in.x + (items.count - 1) * width * size;
     in.stride = -in.stride;
     values.x = (const char *)values.x + size;
     vectors.x = (const char *)vectors.x + 5 * size;
-    FIXTURE_OK(context, sphg_eigen(context, d, items.count, in, values, vectors));
+    SETUP_OK(context, sphg_eigen(context, d, items.count, in, values, vectors));
     for (int i = 0; i < items.count; i++) {
         const int mirror = items.count - 1 - i;
         for (int k = 0; k < d; k++)
-            assert_true(fixture_get(&record, i, 1 + k) == plain.values[d * mirror + k]);
+            assert_true(setup_get(&record, i, 1 + k) == plain.values[d * mirror + k]);
         for (int k = 0; k < d * d; k++)
-            assert_true(fixture_get(&record, i, 5 + k) == plain.vectors[d * d * mirror + k]);
+            assert_true(setup_get(&record, i, 5 + k) == plain.vectors[d * d * mirror + k]);
         const char *item = (const char *)record.data + i * step;
         for (ptrdiff_t byte = (5 + d * d) * size; byte < 20 * size; byte++)
             assert_int_equal(item[byte], (char)0xA5);
@@ -428,7 +428,7 @@ static void strided_views_hold_matrices_and_factors(const test_case *test)
 static void empty_batches_succeed(const test_case *test)
 {
     (void)test;
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     const sphg_view none = sphg_view_f64(NULL, 8);
     assert_int_equal(sphg_eigen(context, 3, 0, none, none, none), SPHG_OK);
     assert_int_equal(sphg_svd(context, 0, none, none, none, none), SPHG_OK);

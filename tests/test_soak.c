@@ -1,10 +1,10 @@
 /* A host that runs for days, in minutes: scenes of all kinds on contexts that live long, with
  * failing allocators, bad numbers and bad arguments in between. What fails is repeated without the
  * fault and has the bits of a fresh context; memory stays flat. SPHG_SOAK_SECONDS says how long. */
-#include "support/hostile_rows.h"
-#include "support/long.h"
+#include "support/bad_argument_rows.h"
+#include "support/long_counts.h"
 #include "support/random.h"
-#include "support/victim_calls.h"
+#include "support/public_calls.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,15 +21,15 @@ static const char *const fault_names[] = {"none",   "memory", "position", "field
 typedef struct world {
     const test_case *test;
     random_state random;
-    hooks host;
-    victim *hostile;
+    fake_host host;
+    valid_call *hostile;
     sphg_context *context;
     int dimension, count, targets, is_listed;
     sphg_scheme scheme;
     sphg_geometry geometry;
     sphg_subset subset;
-    fixture_array position, volume, field, gradient, correction, rank; /* of MOST items */
-    fixture_array kept[3];                                             /* results to compare */
+    setup_array position, volume, field, gradient, correction, rank; /* of MOST items */
+    setup_array kept[3];                                             /* results to compare */
     int64_t *offsets;
     int32_t *indices;
     long rounds, injected[FAULTS], compared;
@@ -40,10 +40,10 @@ typedef struct world {
 
 /* ---- Scenes ------------------------------------------------------------------------------- */
 
-static void fill(world *own, const fixture_array *array, double low, double high)
+static void fill(world *own, const setup_array *array, double low, double high)
 {
     for (int k = 0; k < own->count * array->width; k++)
-        fixture_put(array, k, random_between(&own->random, low, high));
+        setup_put(array, k, random_between(&own->random, low, high));
 }
 
 /* Random lists that are right as lists: sources i + 1, i + 2, ... without duplicates. */
@@ -83,7 +83,7 @@ static void choose_scene(world *own)
     fill(own, &own->field, -1, 1);
     fill_lists(own);
     own->is_listed = random_index(random, 4) == 0;
-    own->geometry = (sphg_geometry){.sources = fixture_view(&own->position),
+    own->geometry = (sphg_geometry){.sources = setup_view(&own->position),
                                     .source_count = own->count,
                                     .target_count = own->targets,
                                     .list_free = !own->is_listed && random_index(random, 4) == 0};
@@ -106,32 +106,32 @@ static sphg_result build(world *own, sphg_context *context, sphg_neighbors *neig
 
 static sphg_result evaluate(world *own, sphg_context *context, const sphg_neighbors *neighbors)
 {
-    const sphg_view values = fixture_view(&own->field);
-    const sphg_sources sources = {.neighbors = neighbors, .volume = fixture_view(&own->volume)};
+    const sphg_view values = setup_view(&own->field);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = setup_view(&own->volume)};
     const sphg_field field = {.shape = SPHG_VECTOR,
                               .form = own->rounds % 2 ? SPHG_DIRECT : SPHG_DIFFERENCE,
                               .at_sources = &values,
-                              .gradient = fixture_view(&own->gradient)};
+                              .gradient = setup_view(&own->gradient)};
     sphg_request request = {.sources = &sources,
                             .fields = &field,
                             .set_count = 1,
                             .field_count = 1,
                             .subset = own->rounds % 3 ? NULL : &own->subset};
     if (own->scheme.method != SPHG_PLAIN) {
-        request.correction = fixture_view(&own->correction);
-        request.rank = fixture_view(&own->rank);
+        request.correction = setup_view(&own->correction);
+        request.rank = setup_view(&own->rank);
     }
     own->evaluated += own->targets;
     return sphg_evaluate(context, &own->scheme, &request);
 }
 
-static fixture_array *result_at(world *own, int k)
+static setup_array *result_at(world *own, int k)
 {
-    fixture_array *const results[] = {&own->gradient, &own->correction, &own->rank};
+    setup_array *const results[] = {&own->gradient, &own->correction, &own->rank};
     return results[k];
 }
 
-static size_t bytes_of(const fixture_array *array)
+static size_t bytes_of(const setup_array *array)
 {
     const size_t number = array->type == SPHG_F64 ? 8 : array->type == SPHG_F32 ? 4 : 1;
     return (size_t)array->count * (size_t)array->width * number;
@@ -162,22 +162,22 @@ static void fails_as(world *own, fault what, sphg_result result, sphg_result exp
 static void try_without_memory(world *own, step *act, sphg_neighbors *neighbors)
 {
     const int64_t first = 1 + random_index(&own->random, 8);
-    hooks_fail(&own->host, first, random_index(&own->random, 2) ? first + 1 : INT64_MAX);
+    fake_host_fail(&own->host, first, random_index(&own->random, 2) ? first + 1 : INT64_MAX);
     fails_as(own, MEMORY, act(own, own->context, neighbors), SPHG_ERROR_MEMORY);
-    hooks_fail(&own->host, INT64_MAX, INT64_MAX);
+    fake_host_fail(&own->host, INT64_MAX, INT64_MAX);
 }
 
 /* With one number of an array spoilt, then put right again. */
-static void try_with_number(world *own, fault what, step *act, const fixture_array *array,
-                            double bad, sphg_result expected, sphg_neighbors *neighbors)
+static void try_with_number(world *own, fault what, step *act, const setup_array *array, double bad,
+                            sphg_result expected, sphg_neighbors *neighbors)
 {
     if (own->count == 0)
         return;
     const int k = random_index(&own->random, own->count * array->width);
-    const double good = fixture_get(array, k / array->width, k % array->width);
-    fixture_put(array, k, bad);
+    const double good = setup_get(array, k / array->width, k % array->width);
+    setup_put(array, k, bad);
     fails_as(own, what, act(own, own->context, neighbors), expected);
-    fixture_put(array, k, good);
+    setup_put(array, k, good);
 }
 
 static void try_with_index(world *own, sphg_neighbors *neighbors)
@@ -191,9 +191,9 @@ static void try_with_index(world *own, sphg_neighbors *neighbors)
     *index = good;
 }
 
-static void restart(victim *hostile, const probe *tested)
+static void restart(valid_call *hostile, const probe *tested)
 {
-    victim_reset(hostile);
+    valid_call_reset(hostile);
     if (tested->prepare)
         tested->prepare(hostile);
 }
@@ -201,30 +201,30 @@ static void restart(victim *hostile, const probe *tested)
 /* Any argument of any function, in any of its ways. */
 static void try_with_argument(world *own)
 {
-    victim *hostile = own->hostile;
-    const int f = random_index(&own->random, hostile_function_count);
+    valid_call *hostile = own->hostile;
+    const int f = random_index(&own->random, argument_function_count);
     const probe *tested =
-        &hostile_functions[f].probes[random_index(&own->random, hostile_functions[f].count)];
+        &argument_functions[f].probes[random_index(&own->random, argument_functions[f].count)];
     trial made;
     if (!tested->call || tested->count == 0)
         return;
     restart(hostile, tested);
     const int a = random_index(&own->random, tested->count);
-    if (!hostile_spoil(hostile, tested, a, random_index(&own->random, 8), &made))
+    if (!argument_spoil(hostile, tested, a, random_index(&own->random, 8), &made))
         return;
     const sphg_result result = tested->call(hostile);
     own->injected[ARGUMENT]++;
-    hostile_restore(&made);
-    TEST_REQUIRE(made.expected == HOSTILE_SKIPPED ||
-                     (made.expected == HOSTILE_REFUSED ? result > 0 : (int)result == made.expected),
-                 "round %ld, %s %s: %d", own->rounds, hostile_functions[f].name, made.what,
-                 (int)result);
+    argument_restore(&made);
+    TEST_REQUIRE(
+        made.expected == ARGUMENT_SKIPPED ||
+            (made.expected == ARGUMENT_REFUSED ? result > 0 : (int)result == made.expected),
+        "round %ld, %s %s: %d", own->rounds, argument_functions[f].name, made.what, (int)result);
     if (result != SPHG_OK)
         return;
     /* What is allowed may have emptied an object (no sources, say) that later calls count on. */
     restart(hostile, tested);
     TEST_REQUIRE(tested->call(hostile) == SPHG_OK, "round %ld, %s as ever: %s", own->rounds,
-                 hostile_functions[f].name, sphg_last_message(hostile->context));
+                 argument_functions[f].name, sphg_last_message(hostile->context));
 }
 
 static void try_build(world *own, fault what, sphg_neighbors *neighbors)
@@ -259,14 +259,14 @@ static void require_bits_of_a_fresh_context(world *own)
         memcpy(own->kept[k].data, result_at(own, k)->data, bytes_of(&own->kept[k]));
     clear_results(own);
     const sphg_config serial = {.isa = test_isa(), .threads = 1};
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &serial, &fresh));
-    FIXTURE_OK(fresh, sphg_neighbors_create(fresh, &neighbors));
-    FIXTURE_OK(fresh, build(own, fresh, neighbors));
-    FIXTURE_OK(fresh, evaluate(own, fresh, neighbors));
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, &serial, &fresh));
+    SETUP_OK(fresh, sphg_neighbors_create(fresh, &neighbors));
+    SETUP_OK(fresh, build(own, fresh, neighbors));
+    SETUP_OK(fresh, evaluate(own, fresh, neighbors));
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(fresh);
     for (int k = 0; k < 3; k++)
-        TEST_REQUIRE(fixture_same_bits(&own->kept[k], result_at(own, k)),
+        TEST_REQUIRE(setup_same_bits(&own->kept[k], result_at(own, k)),
                      "round %ld: other bits in result %d", own->rounds, k);
     own->compared++;
 }
@@ -275,11 +275,11 @@ static void open_context(world *own)
 {
     const int kind = (int)(own->rounds / ROUNDS_PER_CONTEXT % 3);
     own->host.workers = 3;
-    sphg_config config = hooks_config(&own->host, kind == 0 ? 1 : 3);
+    sphg_config config = fake_host_config(&own->host, kind == 0 ? 1 : 3);
     if (kind == 1)
-        config.parallel_for = hooks_pthreads;
-    hooks_fail(&own->host, INT64_MAX, INT64_MAX);
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->context));
+        config.parallel_for = fake_host_pthreads;
+    fake_host_fail(&own->host, INT64_MAX, INT64_MAX);
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &own->context));
 }
 
 static void close_context(world *own)
@@ -298,10 +298,10 @@ static void play_round(world *own, sphg_neighbors *neighbors)
     if (what == ARGUMENT)
         try_with_argument(own);
     try_build(own, what, neighbors);
-    FIXTURE_OK(own->context, build(own, own->context, neighbors));
+    SETUP_OK(own->context, build(own, own->context, neighbors));
     try_evaluation(own, what, neighbors);
     clear_results(own);
-    FIXTURE_OK(own->context, evaluate(own, own->context, neighbors));
+    SETUP_OK(own->context, evaluate(own, own->context, neighbors));
     if (own->rounds % 5 == 0 && own->geometry.skin == 0)
         require_bits_of_a_fresh_context(own);
     own->rounds++;
@@ -323,7 +323,7 @@ static void play(world *own)
 {
     sphg_neighbors *neighbors = NULL;
     open_context(own);
-    FIXTURE_OK(own->context, sphg_neighbors_create(own->context, &neighbors));
+    SETUP_OK(own->context, sphg_neighbors_create(own->context, &neighbors));
     for (int k = 0; k < ROUNDS_PER_CONTEXT; k++)
         play_round(own, neighbors);
     sphg_neighbors_destroy(neighbors);
@@ -364,16 +364,16 @@ static world *world_of(const test_case *test)
     own->test = test;
     own->dimension = test->dimension;
     own->random = random_seeded(223 + (uint64_t)test->dimension);
-    hooks_open(&own->host);
-    own->hostile = victim_create(test, 0);
-    own->position = fixture_output(type, MOST, own->dimension);
-    own->volume = fixture_output(type, MOST, 1);
-    own->field = fixture_output(type, MOST, own->dimension);
-    own->gradient = fixture_output(type, MOST, own->dimension * own->dimension);
-    own->correction = fixture_output(type, MOST, 16);
-    own->rank = fixture_output(SPHG_U8, MOST, 1);
+    fake_host_open(&own->host);
+    own->hostile = valid_call_create(test, 0);
+    own->position = setup_output(type, MOST, own->dimension);
+    own->volume = setup_output(type, MOST, 1);
+    own->field = setup_output(type, MOST, own->dimension);
+    own->gradient = setup_output(type, MOST, own->dimension * own->dimension);
+    own->correction = setup_output(type, MOST, 16);
+    own->rank = setup_output(SPHG_U8, MOST, 1);
     for (int k = 0; k < 3; k++)
-        own->kept[k] = fixture_output(result_at(own, k)->type, MOST, result_at(own, k)->width);
+        own->kept[k] = setup_output(result_at(own, k)->type, MOST, result_at(own, k)->width);
     own->offsets = test_memory((MOST + 1) * sizeof *own->offsets);
     own->indices = test_memory((size_t)MOST * LIST_MOST * sizeof *own->indices);
     return own;
@@ -394,7 +394,7 @@ static void days_of_faults_change_neither_results_nor_memory(const test_case *te
     if (seconds > 0)
         require_flat_memory(own);
     assert_true(own->injected[MEMORY] > 0 && own->injected[INDEX] > 0 && own->compared > 0);
-    hooks_close(&own->host);
+    fake_host_close(&own->host);
 }
 
 static const test_entry entries[] = {

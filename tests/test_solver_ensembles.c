@@ -1,7 +1,7 @@
 /* Eigenvalues, singular values and thresholds of many small matrices, adversarial ones included,
  * against quadruple precision. SPHG_TEST_LONG=1 takes ten million for each precision. */
-#include "support/fixture.h"
-#include "support/long.h"
+#include "support/setup.h"
+#include "support/long_counts.h"
 #include "support/oracle_matrix.h"
 #include "support/spectra.h"
 #include <math.h>
@@ -15,10 +15,10 @@ typedef struct ensemble {
     double unit, grain; /* u; the smallest positive number */
     sphg_context *context;
     random_state random;
-    fixture_array matrices, full; /* packed; row-major for the SVD */
-    double numbers[BATCH * 9];    /* row-major, d x d */
-    quad exact[BATCH * 3];        /* eigenvalues of symmetric matrices, descending */
-    fixture_array values, vectors, u, sigma, v, correction, rank;
+    setup_array matrices, full; /* packed; row-major for the SVD */
+    double numbers[BATCH * 9];  /* row-major, d x d */
+    quad exact[BATCH * 3];      /* eigenvalues of symmetric matrices, descending */
+    setup_array values, vectors, u, sigma, v, correction, rank;
 } ensemble;
 
 static ensemble *ensemble_of(const test_case *test, uint64_t seed)
@@ -30,17 +30,17 @@ static ensemble *ensemble_of(const test_case *test, uint64_t seed)
     own->type = test_field_type(test);
     own->unit = test_unit_roundoff(test);
     own->grain = own->is_double ? 0x1p-1074 : 0x1p-149;
-    own->context = fixture_context_of(2);
+    own->context = setup_context_of(2);
     own->random = random_seeded(seed);
-    own->matrices = fixture_output(own->type, BATCH, width);
-    own->full = fixture_output(own->type, BATCH, 9);
-    own->values = fixture_output(own->type, BATCH, d);
-    own->vectors = fixture_output(own->type, BATCH, d * d);
-    own->u = fixture_output(own->type, BATCH, 9);
-    own->sigma = fixture_output(own->type, BATCH, 3);
-    own->v = fixture_output(own->type, BATCH, 9);
-    own->correction = fixture_output(own->type, BATCH, width);
-    own->rank = fixture_output(SPHG_U8, BATCH, 1);
+    own->matrices = setup_output(own->type, BATCH, width);
+    own->full = setup_output(own->type, BATCH, 9);
+    own->values = setup_output(own->type, BATCH, d);
+    own->vectors = setup_output(own->type, BATCH, d * d);
+    own->u = setup_output(own->type, BATCH, 9);
+    own->sigma = setup_output(own->type, BATCH, 3);
+    own->v = setup_output(own->type, BATCH, 9);
+    own->correction = setup_output(own->type, BATCH, width);
+    own->rank = setup_output(SPHG_U8, BATCH, 1);
     return own;
 }
 
@@ -68,9 +68,9 @@ static void fill(ensemble *own, spectrum set)
         spectra_matrix(set, d, own->is_double, &own->random, a);
         for (int r = 0; r < d; r++)
             for (int c = r; c < d; c++)
-                fixture_put(&own->matrices, next++, a[r * d + c]);
+                setup_put(&own->matrices, next++, a[r * d + c]);
         for (int k = 0; k < 9 && d == 3; k++)
-            fixture_put(&own->full, 9 * i + k, a[k]);
+            setup_put(&own->full, 9 * i + k, a[k]);
         if ((int)set < (int)SPECTRA_SYMMETRIC)
             exact_values(d, a, own->exact + 3 * i);
     }
@@ -125,10 +125,10 @@ static void within(const ensemble *own, double ratio, const char *where)
         TEST_WITHIN(solver_single, ratio, where);
 }
 
-static void numbers_of(const fixture_array *array, int item, double *numbers)
+static void numbers_of(const setup_array *array, int item, double *numbers)
 {
     for (int k = 0; k < array->width; k++)
-        numbers[k] = fixture_get(array, item, k);
+        numbers[k] = setup_get(array, item, k);
 }
 
 /* ---- Eigenvalues -------------------------------------------------------------------------- */
@@ -136,8 +136,8 @@ static void numbers_of(const fixture_array *array, int item, double *numbers)
 static void check_eigen(const ensemble *own, const char *where)
 {
     const int d = own->dimension;
-    FIXTURE_OK(own->context, sphg_eigen(own->context, d, BATCH, fixture_view(&own->matrices),
-                                        fixture_view(&own->values), fixture_view(&own->vectors)));
+    SETUP_OK(own->context, sphg_eigen(own->context, d, BATCH, setup_view(&own->matrices),
+                                      setup_view(&own->values), setup_view(&own->vectors)));
     for (int i = 0; i < BATCH; i++) {
         const double *a = own->numbers + 9 * i;
         double values[3], q[9];
@@ -156,9 +156,9 @@ static void check_eigen(const ensemble *own, const char *where)
 
 static void check_svd(const ensemble *own, const char *where)
 {
-    FIXTURE_OK(own->context,
-               sphg_svd(own->context, BATCH, fixture_view(&own->full), fixture_view(&own->u),
-                        fixture_view(&own->sigma), fixture_view(&own->v)));
+    SETUP_OK(own->context,
+             sphg_svd(own->context, BATCH, setup_view(&own->full), setup_view(&own->u),
+                      setup_view(&own->sigma), setup_view(&own->v)));
     for (int i = 0; i < BATCH; i++) {
         double u[9], sigma[3], v[9];
         numbers_of(&own->u, i, u);
@@ -209,24 +209,22 @@ static int64_t check_thresholds(ensemble *own, sphg_policy policy, const char *w
     sphg_scheme scheme = {.dimension = d, .support_radius = 1, .policy = policy};
     scheme.threshold = random_index(&own->random, 2) ? SPECTRA_THRESHOLD : 1e-4;
     sphg_stats stats;
-    sphg_inversion wanted = {.rank = fixture_view(&own->rank)};
-    FIXTURE_OK(own->context,
-               sphg_invert_moments(own->context, &scheme, BATCH, fixture_view(&own->matrices),
-                                   sphg_absent(), &wanted));
+    sphg_inversion wanted = {.rank = setup_view(&own->rank)};
+    SETUP_OK(own->context, sphg_invert_moments(own->context, &scheme, BATCH,
+                                               setup_view(&own->matrices), sphg_absent(), &wanted));
     int touched = 0;
     for (int i = 0; i < BATCH; i++) {
         const decision expected = decide(own, &scheme, i);
-        TEST_REQUIRE(expected.is_close || fixture_get(&own->rank, i, 0) == expected.rank,
+        TEST_REQUIRE(expected.is_close || setup_get(&own->rank, i, 0) == expected.rank,
                      "%s, policy %d, eps %g, matrix %d: rank %g, not %d", where, (int)policy,
-                     scheme.threshold, i, fixture_get(&own->rank, i, 0), expected.rank);
+                     scheme.threshold, i, setup_get(&own->rank, i, 0), expected.rank);
         if (expected.is_touched)
             memmove((char *)own->matrices.data + (size_t)touched++ * item,
                     (const char *)own->matrices.data + (size_t)i * item, item);
     }
     wanted = (sphg_inversion){.stats = &stats};
-    FIXTURE_OK(own->context,
-               sphg_invert_moments(own->context, &scheme, touched, fixture_view(&own->matrices),
-                                   sphg_absent(), &wanted));
+    SETUP_OK(own->context, sphg_invert_moments(own->context, &scheme, touched,
+                                               setup_view(&own->matrices), sphg_absent(), &wanted));
     TEST_REQUIRE(stats.certified == 0, "%s: %lld touched matrices were certified", where,
                  (long long)stats.certified);
     return touched;

@@ -1,38 +1,38 @@
 /* Same input, same bits: for any number of threads, any executor, any split into subsets, and for
  * contexts that work at the same time on shared neighbours. */
-#include "support/fixture.h"
-#include "support/hooks.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/fake_host.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <string.h>
 
 enum { COUNT = 1600, RECORD = 64 };
 
 /* The particles and fields of all runs. */
-typedef struct stage {
+typedef struct comparison {
     const test_case *test;
     scene particles;
     sphg_scheme scheme;
-    fixture_array scalar, vector, tensor, volume, density;
-} stage;
+    setup_array scalar, vector, tensor, volume, density;
+} comparison;
 
-static fixture_array numbers_of(const test_case *test, int width, double low, double high,
-                                random_state *random)
+static setup_array numbers_of(const test_case *test, int width, double low, double high,
+                              random_state *random)
 {
     double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
     for (int k = 0; k < COUNT * width; k++)
         numbers[k] = random_between(random, low, high);
-    return fixture_numbers(test_field_type(test), COUNT, width, numbers);
+    return setup_numbers(test_field_type(test), COUNT, width, numbers);
 }
 
-static stage stage_of(const test_case *test)
+static comparison comparison_of(const test_case *test)
 {
     const int d = test->dimension;
     random_state random = random_seeded(113);
-    stage own = {.test = test};
+    comparison own = {.test = test};
     cloud points = cloud_random(d, COUNT, d == 2 ? 40 : 11, &random);
     own.particles = scene_of_cloud(test, &points);
-    own.scheme = fixture_scheme(test, 2);
+    own.scheme = setup_scheme(test, 2);
     own.scalar = numbers_of(test, 1, -1, 1, &random);
     own.vector = numbers_of(test, d, -1, 1, &random);
     own.tensor = numbers_of(test, d * d, -1, 1, &random);
@@ -43,34 +43,34 @@ static stage stage_of(const test_case *test)
 
 /* All outputs of a run: one item of RECORD numbers per particle. */
 typedef struct results {
-    fixture_array record, rank;
+    setup_array record, rank;
     sphg_stats stats;
     int next; /* the next free number of an item */
 } results;
 
-static results results_for(const stage *own)
+static results results_for(const comparison *own)
 {
-    results found = {.record = fixture_output(own->scalar.type, COUNT, RECORD),
-                     .rank = fixture_output(SPHG_U8, COUNT, 1)};
+    results found = {.record = setup_output(own->scalar.type, COUNT, RECORD),
+                     .rank = setup_output(SPHG_U8, COUNT, 1)};
     return found;
 }
 
 static sphg_view member(results *found, int width)
 {
     const ptrdiff_t size = found->record.type == SPHG_F64 ? 8 : 4;
-    sphg_view view = fixture_view(&found->record);
+    sphg_view view = setup_view(&found->record);
     view.x = (const char *)view.x + found->next * size;
     found->next += width;
     return view;
 }
 
 /* One sweep: corrections and three fields in DIFFERENCE form. */
-static sphg_result sweep(sphg_context *context, const stage *own, const sphg_sources *sources,
+static sphg_result sweep(sphg_context *context, const comparison *own, const sphg_sources *sources,
                          const sphg_subset *subset, results *found)
 {
     const int d = own->particles.dimension;
-    const sphg_view scalar = fixture_view(&own->scalar), vector = fixture_view(&own->vector);
-    const sphg_view tensor = fixture_view(&own->tensor);
+    const sphg_view scalar = setup_view(&own->scalar), vector = setup_view(&own->vector);
+    const sphg_view tensor = setup_view(&own->tensor);
     sphg_field fields[5] = {{.shape = SPHG_SCALAR, .at_sources = &scalar},
                             {.shape = SPHG_VECTOR, .at_sources = &vector},
                             {.shape = SPHG_TENSOR, .at_sources = &tensor},
@@ -90,17 +90,17 @@ static sphg_result sweep(sphg_context *context, const stage *own, const sphg_sou
     if (own->scheme.method != SPHG_PLAIN) {
         request.correction = member(found, sphg_correction_width(&own->scheme));
         request.lambda_min = member(found, 1);
-        request.rank = fixture_view(&found->rank);
+        request.rank = setup_view(&found->rank);
         request.stats = &found->stats;
     }
     return sphg_evaluate(context, &own->scheme, &request);
 }
 
 /* The two-sided forms, with the table of the first sweep. */
-static sphg_result forces(sphg_context *context, const stage *own, const sphg_sources *sources,
+static sphg_result forces(sphg_context *context, const comparison *own, const sphg_sources *sources,
                           const sphg_subset *subset, sphg_view table, results *found)
 {
-    const sphg_view scalar = fixture_view(&own->scalar);
+    const sphg_view scalar = setup_view(&own->scalar);
     sphg_field fields[2] = {{.shape = SPHG_SCALAR, .form = SPHG_ADJOINT, .at_sources = &scalar},
                             {.shape = SPHG_SCALAR, .form = SPHG_SYMMETRIC, .at_sources = &scalar}};
     sphg_sources with_table = *sources;
@@ -115,17 +115,17 @@ static sphg_result forces(sphg_context *context, const stage *own, const sphg_so
     return sphg_evaluate(context, &own->scheme, &request);
 }
 
-static sphg_sources sources_of(const stage *own, const sphg_neighbors *neighbors)
+static sphg_sources sources_of(const comparison *own, const sphg_neighbors *neighbors)
 {
     sphg_sources sources = {0};
     sources.neighbors = neighbors;
-    sources.volume = fixture_view(&own->volume);
-    sources.density = fixture_view(&own->density);
+    sources.volume = setup_view(&own->volume);
+    sources.density = setup_view(&own->density);
     return sources;
 }
 
 /* The table lies where sweep() put it. */
-static sphg_view table_of(const stage *own, const results *found)
+static sphg_view table_of(const comparison *own, const results *found)
 {
     results again = *found;
     const int d = own->particles.dimension;
@@ -135,20 +135,21 @@ static sphg_view table_of(const stage *own, const results *found)
 }
 
 /* Everything, in one context with this configuration. */
-static results run_under(const stage *own, const sphg_config *config, int list_free, rows *pairs)
+static results run_under(const comparison *own, const sphg_config *config, int list_free,
+                         rows *pairs)
 {
     results found = results_for(own);
     sphg_context *context = NULL;
     sphg_neighbors *neighbors = NULL;
     sphg_geometry geometry = scene_geometry(&own->particles);
     geometry.list_free = list_free;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, config, &context));
-    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
-    FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &own->scheme, &geometry));
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, config, &context));
+    SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
+    SETUP_OK(context, sphg_neighbors_search(context, neighbors, &own->scheme, &geometry));
     const sphg_sources sources = sources_of(own, neighbors);
     *pairs = rows_listed(context, neighbors, &own->scheme, NULL);
-    FIXTURE_OK(context, sweep(context, own, &sources, NULL, &found));
-    FIXTURE_OK(context, forces(context, own, &sources, NULL, table_of(own, &found), &found));
+    SETUP_OK(context, sweep(context, own, &sources, NULL, &found));
+    SETUP_OK(context, forces(context, own, &sources, NULL, table_of(own, &found), &found));
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
     return found;
@@ -156,12 +157,12 @@ static results run_under(const stage *own, const sphg_config *config, int list_f
 
 static void require_same(const results *a, const results *b, const char *where)
 {
-    TEST_REQUIRE(fixture_same_bits(&a->record, &b->record), "%s: other bits", where);
-    TEST_REQUIRE(fixture_same_bits(&a->rank, &b->rank), "%s: other ranks", where);
+    TEST_REQUIRE(setup_same_bits(&a->record, &b->record), "%s: other bits", where);
+    TEST_REQUIRE(setup_same_bits(&a->rank, &b->rank), "%s: other ranks", where);
     TEST_REQUIRE(memcmp(&a->stats, &b->stats, sizeof a->stats) == 0, "%s: other stats", where);
 }
 
-static results serial_results(const stage *own, int list_free, rows *pairs)
+static results serial_results(const comparison *own, int list_free, rows *pairs)
 {
     const sphg_config serial = {.threads = 1, .isa = test_isa()};
     return run_under(own, &serial, list_free, pairs);
@@ -169,7 +170,7 @@ static results serial_results(const stage *own, int list_free, rows *pairs)
 
 static void results_do_not_depend_on_the_number_of_threads(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     for (int list_free = 0; list_free < 2; list_free++) {
         rows expected_pairs, pairs;
         const results expected = serial_results(&own, list_free, &expected_pairs);
@@ -186,15 +187,16 @@ static void results_do_not_depend_on_the_number_of_threads(const test_case *test
 
 static void results_do_not_depend_on_the_executor(const test_case *test)
 {
-    const stage own = stage_of(test);
-    hooks_executor *const executors[] = {hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    const comparison own = comparison_of(test);
+    fake_host_executor *const executors[] = {fake_host_odd_splits, fake_host_reversed,
+                                             fake_host_pthreads};
     rows expected_pairs, pairs;
     const results expected = serial_results(&own, 0, &expected_pairs);
     for (int k = 0; k < 9; k += TEST_SLOWED ? 4 : 1) { /* each executor and number at least once */
-        hooks host;
-        hooks_open(&host);
+        fake_host host;
+        fake_host_open(&host);
         host.workers = (int32_t[]){1, 3, 8}[k / 3];
-        sphg_config config = hooks_config(&host, host.workers);
+        sphg_config config = fake_host_config(&host, host.workers);
         config.parallel_for = executors[k % 3];
         const results found = run_under(&own, &config, k % 2, &pairs);
         const char *where = test_text("executor %d, %d workers", k % 3, host.workers);
@@ -202,7 +204,7 @@ static void results_do_not_depend_on_the_executor(const test_case *test)
         require_same(&found, &expected, where);
         assert_true(host.regions > 0);
         assert_true(host.live_blocks == 0 && host.faults == 0);
-        hooks_close(&host);
+        fake_host_close(&host);
     }
 }
 
@@ -226,13 +228,13 @@ static void search_under(const test_case *test, const sphg_config *config, found
 {
     const scene particles = many_particles(test);
     const sphg_geometry geometry = scene_geometry(&particles);
-    const sphg_scheme scheme = fixture_scheme(test, 2);
+    const sphg_scheme scheme = setup_scheme(test, 2);
     sphg_context *context = NULL;
     sphg_neighbors *neighbors = NULL;
-    FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, config, &context));
-    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
-    FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
-    FIXTURE_OK(context, sphg_neighbors_get_order(context, neighbors, result->order));
+    SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, config, &context));
+    SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
+    SETUP_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+    SETUP_OK(context, sphg_neighbors_get_order(context, neighbors, result->order));
     result->pairs = rows_listed(context, neighbors, &scheme, NULL);
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
@@ -254,53 +256,55 @@ static void search_does_not_depend_on_threads(const test_case *test)
 /* Of several bad positions the first is named, whoever finds which first. */
 static void first_bad_position_is_named_for_any_executor(const test_case *test)
 {
-    hooks_executor *const executors[] = {NULL, hooks_odd_splits, hooks_reversed, hooks_pthreads};
+    fake_host_executor *const executors[] = {NULL, fake_host_odd_splits, fake_host_reversed,
+                                             fake_host_pthreads};
     const scene particles = many_particles(test);
     for (int k = 19999; k > 5000; k -= 1777)
         particles.sources[k * test->dimension] = NAN;
     const sphg_geometry geometry = scene_geometry(&particles);
-    const sphg_scheme scheme = fixture_scheme(test, 2);
+    const sphg_scheme scheme = setup_scheme(test, 2);
     for (int k = 0; k < 4; k++) {
-        hooks host;
-        hooks_open(&host);
-        sphg_config config = hooks_config(&host, host.workers);
+        fake_host host;
+        fake_host_open(&host);
+        sphg_config config = fake_host_config(&host, host.workers);
         config.parallel_for = executors[k];
         sphg_context *context = NULL;
-        FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+        SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
         sphg_neighbors *neighbors = NULL;
-        FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+        SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
         assert_int_equal(sphg_neighbors_search(context, neighbors, &scheme, &geometry),
                          SPHG_ERROR_NOT_FINITE);
         assert_non_null(strstr(sphg_last_message(context), "[5783]"));
         sphg_neighbors_destroy(neighbors);
         sphg_context_destroy(context);
-        hooks_close(&host);
+        fake_host_close(&host);
     }
 }
 
 /* Of several lists that hold what is no source, the first is named. */
 static void first_bad_index_is_named_for_any_executor(const test_case *test)
 {
-    hooks_executor *const executors[] = {NULL, hooks_odd_splits, hooks_reversed, hooks_pthreads};
-    const stage own = stage_of(test);
+    fake_host_executor *const executors[] = {NULL, fake_host_odd_splits, fake_host_reversed,
+                                             fake_host_pthreads};
+    const comparison own = comparison_of(test);
     rows pairs;
     serial_results(&own, 0, &pairs);
     for (int32_t target = 211; target < COUNT; target += 97)
         for (int64_t k = pairs.offsets[target]; k < pairs.offsets[target + 1]; k++)
             pairs.indices[k] = COUNT + target;
     for (int k = 0; k < 4; k++) {
-        hooks host;
-        hooks_open(&host);
-        sphg_config config = hooks_config(&host, host.workers);
+        fake_host host;
+        fake_host_open(&host);
+        sphg_config config = fake_host_config(&host, host.workers);
         config.parallel_for = executors[k];
         sphg_context *context = NULL;
         sphg_neighbors *neighbors = NULL;
-        FIXTURE_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
-        FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+        SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, &config, &context));
+        SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
         const sphg_geometry geometry = scene_geometry(&own.particles);
         const sphg_lists lists = {.offsets = pairs.offsets, .indices = pairs.indices};
-        FIXTURE_OK(context,
-                   sphg_neighbors_use_lists(context, neighbors, &own.scheme, &geometry, &lists));
+        SETUP_OK(context,
+                 sphg_neighbors_use_lists(context, neighbors, &own.scheme, &geometry, &lists));
         const sphg_sources sources = sources_of(&own, neighbors);
         results unused = results_for(&own);
         assert_int_equal(sweep(context, &own, &sources, NULL, &unused), SPHG_ERROR_INDEX);
@@ -308,14 +312,14 @@ static void first_bad_index_is_named_for_any_executor(const test_case *test)
                      sphg_last_message(context));
         sphg_neighbors_destroy(neighbors);
         sphg_context_destroy(context);
-        hooks_close(&host);
+        fake_host_close(&host);
     }
 }
 
 /* ---- Contexts at the same time ------------------------------------------------------------ */
 
 typedef struct helper {
-    const stage *own;
+    const comparison *own;
     const sphg_neighbors *shared;
     sphg_subset subset;
     results found;
@@ -353,15 +357,15 @@ static void run_helpers(helper *helpers)
 /* Each of four contexts takes a part of the targets; they write to the same arrays. */
 static void contexts_may_share_neighbours_and_split_the_targets(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     for (int list_free = 0; list_free < 2; list_free++) {
-        sphg_context *context = fixture_context_of(1);
+        sphg_context *context = setup_context_of(1);
         sphg_geometry geometry = scene_geometry(&own.particles);
         geometry.list_free = list_free;
-        const sphg_neighbors *shared = fixture_search(context, &own.scheme, &geometry);
+        const sphg_neighbors *shared = setup_search(context, &own.scheme, &geometry);
         const sphg_sources sources = sources_of(&own, shared);
         results whole = results_for(&own), split = results_for(&own);
-        FIXTURE_OK(context, sweep(context, &own, &sources, NULL, &whole));
+        SETUP_OK(context, sweep(context, &own, &sources, NULL, &whole));
         helper helpers[HELPERS];
         for (int k = 0; k < HELPERS; k++) {
             const sphg_subset part = {COUNT * k / HELPERS - (k % 2) * 13,
@@ -379,10 +383,10 @@ static void contexts_may_share_neighbours_and_split_the_targets(const test_case 
 /* Masks, lists and ranges give the bits of the whole and touch nothing else. */
 static void subsets_have_the_bits_of_the_whole(const test_case *test)
 {
-    const stage own = stage_of(test);
-    sphg_context *context = fixture_context();
+    const comparison own = comparison_of(test);
+    sphg_context *context = setup_context();
     const sphg_geometry geometry = scene_geometry(&own.particles);
-    const sphg_neighbors *neighbors = fixture_search(context, &own.scheme, &geometry);
+    const sphg_neighbors *neighbors = setup_search(context, &own.scheme, &geometry);
     const sphg_sources sources = sources_of(&own, neighbors);
     results whole = results_for(&own), parts = results_for(&own);
     uint8_t *mask = test_memory(COUNT);
@@ -394,12 +398,12 @@ static void subsets_have_the_bits_of_the_whole(const test_case *test)
             picked[chosen++] = reverse;
     }
     const sphg_subset masked = {0, COUNT, NULL, mask}, listed = {0, chosen, picked, NULL};
-    FIXTURE_OK(context, sweep(context, &own, &sources, NULL, &whole));
-    FIXTURE_OK(context, sweep(context, &own, &sources, &masked, &parts));
+    SETUP_OK(context, sweep(context, &own, &sources, NULL, &whole));
+    SETUP_OK(context, sweep(context, &own, &sources, &masked, &parts));
     for (int32_t i = 0; i < COUNT; i++)
-        assert_int_equal(fixture_is_canary(&parts.record, i) != 0, !mask[i]);
+        assert_int_equal(setup_is_canary(&parts.record, i) != 0, !mask[i]);
     parts.next = 0;
-    FIXTURE_OK(context, sweep(context, &own, &sources, &listed, &parts));
+    SETUP_OK(context, sweep(context, &own, &sources, &listed, &parts));
     parts.stats = whole.stats;
     require_same(&parts, &whole, "mask, then list");
 }

@@ -1,7 +1,7 @@
 /* Views: the same numbers in any layout give the same bits, land where the view says, and leave
  * every other byte alone. */
-#include "support/fixture.h"
-#include "support/pairs.h"
+#include "support/setup.h"
+#include "support/brute_force.h"
 #include <math.h>
 #include <string.h>
 
@@ -77,7 +77,7 @@ static unsigned char *address(const placed *own, int item, int component)
 }
 
 /* A copy of packed numbers in another layout. */
-static sphg_view laid_out(const fixture_array *array, int height, layout kind)
+static sphg_view laid_out(const setup_array *array, int height, layout kind)
 {
     const placed own = place(array->type, height, array->width / height, kind);
     for (int i = 0; i < COUNT; i++)
@@ -103,31 +103,31 @@ static void require_placed(const placed *found, const placed *packed, const char
 
 /* ---- One evaluation in two layouts -------------------------------------------------------- */
 
-typedef struct stage {
+typedef struct comparison {
     sphg_context *context;
     int dimension;
     sphg_scheme scheme;
     scene particles;
-    fixture_array positions, scalar, vector, tensor, volume;
-} stage;
+    setup_array positions, scalar, vector, tensor, volume;
+} comparison;
 
-static fixture_array numbers_of(const test_case *test, int width, double low, random_state *random)
+static setup_array numbers_of(const test_case *test, int width, double low, random_state *random)
 {
     double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
     for (int k = 0; k < COUNT * width; k++)
         numbers[k] = random_between(random, low, 1);
-    return fixture_numbers(test_field_type(test), COUNT, width, numbers);
+    return setup_numbers(test_field_type(test), COUNT, width, numbers);
 }
 
-static stage stage_of(const test_case *test)
+static comparison comparison_of(const test_case *test)
 {
     const int d = test->dimension;
     random_state random = random_seeded(127);
-    stage own = {.context = fixture_context(), .dimension = d};
+    comparison own = {.context = setup_context(), .dimension = d};
     cloud points = cloud_random(d, COUNT, d == 2 ? 12 : 5, &random);
     own.particles = scene_of_cloud(test, &points);
-    own.scheme = fixture_scheme(test, 2);
-    own.positions = fixture_numbers(test_position_type(test), COUNT, d, points.x);
+    own.scheme = setup_scheme(test, 2);
+    own.positions = setup_numbers(test_position_type(test), COUNT, d, points.x);
     own.scalar = numbers_of(test, 1, -1, &random);
     own.vector = numbers_of(test, d, -1, &random);
     own.tensor = numbers_of(test, d * d, -1, &random);
@@ -141,7 +141,7 @@ typedef struct outputs {
     placed of[OUTPUTS];
 } outputs;
 
-static outputs place_outputs(const stage *own, layout kind)
+static outputs place_outputs(const comparison *own, layout kind)
 {
     const int d = own->dimension, curl = d == 2 ? 1 : 3;
     const int width = sphg_correction_width(&own->scheme);
@@ -153,7 +153,7 @@ static outputs place_outputs(const stage *own, layout kind)
 }
 
 /* Inputs, positions included, in one layout and outputs in another. */
-static outputs evaluate(const stage *own, layout in, layout out)
+static outputs evaluate(const comparison *own, layout in, layout out)
 {
     const int d = own->dimension;
     outputs found = place_outputs(own, out);
@@ -162,7 +162,7 @@ static outputs evaluate(const stage *own, layout in, layout out)
     sphg_geometry geometry = scene_geometry(&own->particles);
     geometry.sources = laid_out(&own->positions, d, in);
     sphg_sources sources = {0};
-    sources.neighbors = fixture_search(own->context, &own->scheme, &geometry);
+    sources.neighbors = setup_search(own->context, &own->scheme, &geometry);
     sources.volume = laid_out(&own->volume, 1, in);
     const sphg_field fields[3] = {
         {.shape = SPHG_SCALAR, .at_sources = &scalar, .gradient = found.of[GRADIENT].view},
@@ -181,13 +181,13 @@ static outputs evaluate(const stage *own, layout in, layout out)
                                   .correction = found.of[CORRECTION].view,
                                   .rank = found.of[RANK].view,
                                   .lambda_min = found.of[LAMBDA].view};
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
     return found;
 }
 
 static void layouts_hold_the_same_bits(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     const outputs packed = evaluate(&own, PACKED, PACKED);
     for (int in = 0; in < LAYOUTS; in++)
         for (int out = 0; out < LAYOUTS; out++) {
@@ -201,93 +201,92 @@ static void layouts_hold_the_same_bits(const test_case *test)
 
 /* ---- Stride 0 ----------------------------------------------------------------------------- */
 
-static fixture_array repeated(const fixture_array *first)
+static setup_array repeated(const setup_array *first)
 {
     double numbers[COUNT * 9];
     for (int k = 0; k < COUNT * first->width; k++)
-        numbers[k] = fixture_get(first, 0, k % first->width);
-    return fixture_numbers(first->type, COUNT, first->width, numbers);
+        numbers[k] = setup_get(first, 0, k % first->width);
+    return setup_numbers(first->type, COUNT, first->width, numbers);
 }
 
-static sphg_view single(const fixture_array *array)
+static sphg_view single(const setup_array *array)
 {
-    sphg_view view = fixture_view(array);
+    sphg_view view = setup_view(array);
     view.stride = 0;
     return view;
 }
 
 /* A wall: volume, density, table and stress given once for all. */
-static fixture_array force_of(const stage *own, const sphg_neighbors *neighbors, sphg_view volume,
-                              sphg_view density, sphg_view table, sphg_view stress)
+static setup_array force_of(const comparison *own, const sphg_neighbors *neighbors,
+                            sphg_view volume, sphg_view density, sphg_view table, sphg_view stress)
 {
-    fixture_array force = fixture_output(own->scalar.type, COUNT, own->dimension);
+    setup_array force = setup_output(own->scalar.type, COUNT, own->dimension);
     const sphg_sources sources = {
         .neighbors = neighbors, .volume = volume, .density = density, .correction = table};
     const sphg_field field = {.shape = SPHG_TENSOR,
                               .form = SPHG_SYMMETRIC,
                               .at_sources = &stress,
-                              .divergence = fixture_view(&force)};
+                              .divergence = setup_view(&force)};
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
     return force;
 }
 
 static void stride_zero_is_one_item_for_all(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     random_state random = random_seeded(131);
     const sphg_geometry geometry = scene_geometry(&own.particles);
-    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometry);
-    const fixture_array table = numbers_of(test, sphg_correction_width(&own.scheme), 0.5, &random);
-    const fixture_array volumes = repeated(&own.volume), stresses = repeated(&own.tensor);
-    fixture_array tables = fixture_output(table.type, COUNT, table.width);
+    const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &geometry);
+    const setup_array table = numbers_of(test, sphg_correction_width(&own.scheme), 0.5, &random);
+    const setup_array volumes = repeated(&own.volume), stresses = repeated(&own.tensor);
+    setup_array tables = setup_output(table.type, COUNT, table.width);
     for (int i = 0; i < COUNT; i++)
-        memcpy((char *)tables.data + (size_t)i * (size_t)fixture_view(&table).stride, table.data,
-               (size_t)fixture_view(&table).stride);
-    const fixture_array once = force_of(&own, neighbors, single(&volumes), single(&volumes),
-                                        single(&table), single(&stresses));
-    const fixture_array each =
-        force_of(&own, neighbors, fixture_view(&volumes), fixture_view(&volumes),
-                 fixture_view(&tables), fixture_view(&stresses));
-    assert_true(fixture_same_bits(&once, &each));
+        memcpy((char *)tables.data + (size_t)i * (size_t)setup_view(&table).stride, table.data,
+               (size_t)setup_view(&table).stride);
+    const setup_array once = force_of(&own, neighbors, single(&volumes), single(&volumes),
+                                      single(&table), single(&stresses));
+    const setup_array each = force_of(&own, neighbors, setup_view(&volumes), setup_view(&volumes),
+                                      setup_view(&tables), setup_view(&stresses));
+    assert_true(setup_same_bits(&once, &each));
 }
 
 /* ---- Accumulation ------------------------------------------------------------------------- */
 
-static void jacobian_into(const stage *own, const sphg_neighbors *neighbors,
-                          const sphg_subset *subset, int accumulate, const fixture_array *result)
+static void jacobian_into(const comparison *own, const sphg_neighbors *neighbors,
+                          const sphg_subset *subset, int accumulate, const setup_array *result)
 {
-    const sphg_view vector = fixture_view(&own->vector);
+    const sphg_view vector = setup_view(&own->vector);
     sphg_sources sources = {0};
     sources.neighbors = neighbors;
-    sources.volume = fixture_view(&own->volume);
+    sources.volume = setup_view(&own->volume);
     const sphg_field field = {.shape = SPHG_VECTOR,
                               .accumulate = accumulate,
                               .at_sources = &vector,
-                              .gradient = fixture_view(result)};
+                              .gradient = setup_view(result)};
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1, .subset = subset};
-    FIXTURE_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
 }
 
 /* One addition: out = fl(before + result), to a rounding of the result. */
 static void accumulation_adds_to_what_is_there(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     const int width = test->dimension * test->dimension;
     const sphg_geometry geometry = scene_geometry(&own.particles);
-    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &geometry);
     const double unit = test_unit_roundoff(test);
-    fixture_array plain = fixture_output(own.scalar.type, COUNT, width);
-    const fixture_array sum =
-        fixture_numbers(own.scalar.type, COUNT, width, fixture_doubles(&own.tensor));
+    setup_array plain = setup_output(own.scalar.type, COUNT, width);
+    const setup_array sum =
+        setup_numbers(own.scalar.type, COUNT, width, setup_doubles(&own.tensor));
     jacobian_into(&own, neighbors, NULL, 0, &plain);
     jacobian_into(&own, neighbors, NULL, 1, &sum);
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < width; k++) {
-            const double before = fixture_get(&own.tensor, i, k), added = fixture_get(&plain, i, k);
-            const double error = fabs(fixture_get(&sum, i, k) - (before + added));
+            const double before = setup_get(&own.tensor, i, k), added = setup_get(&plain, i, k);
+            const double error = fabs(setup_get(&sum, i, k) - (before + added));
             TEST_WITHIN(one_addition, error / (unit * (fabs(before) + fabs(added))),
                         "one addition");
         }
@@ -295,23 +294,23 @@ static void accumulation_adds_to_what_is_there(const test_case *test)
 
 static void accumulation_leaves_unselected_targets_alone(const test_case *test)
 {
-    const stage own = stage_of(test);
+    const comparison own = comparison_of(test);
     const int width = test->dimension * test->dimension;
     const sphg_geometry geometry = scene_geometry(&own.particles);
-    const sphg_neighbors *neighbors = fixture_search(own.context, &own.scheme, &geometry);
+    const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &geometry);
     const sphg_subset first = {0, 61, NULL, NULL}, rest = {61, COUNT, NULL, NULL};
-    fixture_array parts = fixture_output(own.scalar.type, COUNT, width), whole = parts;
-    whole.data = fixture_output(own.scalar.type, COUNT, width).data;
-    memset(whole.data, 0, (size_t)fixture_view(&whole).stride * COUNT);
-    memset(parts.data, 0, (size_t)fixture_view(&parts).stride * 61);
+    setup_array parts = setup_output(own.scalar.type, COUNT, width), whole = parts;
+    whole.data = setup_output(own.scalar.type, COUNT, width).data;
+    memset(whole.data, 0, (size_t)setup_view(&whole).stride * COUNT);
+    memset(parts.data, 0, (size_t)setup_view(&parts).stride * 61);
     jacobian_into(&own, neighbors, &first, 1, &parts);
     for (int i = 61; i < COUNT; i++)
-        assert_true(fixture_is_canary(&parts, i));
-    memset(parts.data, 0, (size_t)fixture_view(&parts).stride * COUNT);
+        assert_true(setup_is_canary(&parts, i));
+    memset(parts.data, 0, (size_t)setup_view(&parts).stride * COUNT);
     jacobian_into(&own, neighbors, &first, 1, &parts);
     jacobian_into(&own, neighbors, &rest, 1, &parts);
     jacobian_into(&own, neighbors, NULL, 1, &whole);
-    assert_true(fixture_same_bits(&parts, &whole));
+    assert_true(setup_same_bits(&parts, &whole));
 }
 
 /* ---- f64 positions beside f32 fields ------------------------------------------------------ */
@@ -319,14 +318,14 @@ static void accumulation_leaves_unselected_targets_alone(const test_case *test)
 /* Where f32 positions would have collapsed to a few points, differences still have all bits. */
 static void wide_positions_keep_their_differences(const test_case *test)
 {
-    stage own = stage_of(test);
+    comparison own = comparison_of(test);
     const double step = 0x1p-20, far[3] = {0x1p31, -0x1p30, 0x1p29};
     cloud points = {test->dimension, COUNT, 1, own.particles.sources};
     cloud_snap(&points, step);
-    own.positions = fixture_numbers(SPHG_F64, COUNT, test->dimension, points.x);
+    own.positions = setup_numbers(SPHG_F64, COUNT, test->dimension, points.x);
     const outputs near = evaluate(&own, PACKED, PACKED);
     cloud_shift(&points, far);
-    own.positions = fixture_numbers(SPHG_F64, COUNT, test->dimension, points.x);
+    own.positions = setup_numbers(SPHG_F64, COUNT, test->dimension, points.x);
     const outputs shifted = evaluate(&own, PACKED, PACKED);
     const float *a = near.of[JACOBIAN].view.x, *b = shifted.of[JACOBIAN].view.x;
     float largest = 0;
@@ -346,32 +345,31 @@ enum { FIELDS = 40 };
 static void many_fields_have_the_bits_of_each_alone(const test_case *test)
 {
     const sphg_type type = test_field_type(test);
-    sphg_context *context = fixture_context();
+    sphg_context *context = setup_context();
     random_state random = random_seeded(227);
     cloud points = cloud_random(test->dimension, COUNT, 4, &random);
-    const sphg_scheme scheme = fixture_scheme(test, 1);
-    const fixture_array volume =
-        fixture_numbers(type, COUNT, 1, cloud_volumes(&points, .2, &random));
-    const sphg_sources sources = {.neighbors = fixture_neighbors(context, test, &scheme, &points),
-                                  .volume = fixture_view(&volume)};
+    const sphg_scheme scheme = setup_scheme(test, 1);
+    const setup_array volume = setup_numbers(type, COUNT, 1, cloud_volumes(&points, .2, &random));
+    const sphg_sources sources = {.neighbors = setup_neighbors(context, test, &scheme, &points),
+                                  .volume = setup_view(&volume)};
     sphg_view values[FIELDS];
-    fixture_array together[FIELDS], alone = fixture_output(type, COUNT, test->dimension);
+    setup_array together[FIELDS], alone = setup_output(type, COUNT, test->dimension);
     sphg_field fields[FIELDS];
     for (int k = 0; k < FIELDS; k++) {
-        const fixture_array numbers =
-            fixture_numbers(type, COUNT, 1, cloud_numbers(&points, -1, 1, &random));
-        values[k] = fixture_view(&numbers);
-        together[k] = fixture_output(type, COUNT, test->dimension);
+        const setup_array numbers =
+            setup_numbers(type, COUNT, 1, cloud_numbers(&points, -1, 1, &random));
+        values[k] = setup_view(&numbers);
+        together[k] = setup_output(type, COUNT, test->dimension);
         fields[k] = (sphg_field){
-            .shape = SPHG_SCALAR, .at_sources = &values[k], .gradient = fixture_view(&together[k])};
+            .shape = SPHG_SCALAR, .at_sources = &values[k], .gradient = setup_view(&together[k])};
     }
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = fields, .field_count = FIELDS};
-    FIXTURE_OK(context, sphg_evaluate(context, &scheme, &request));
+    SETUP_OK(context, sphg_evaluate(context, &scheme, &request));
     for (int k = 0; k < FIELDS; k++) {
-        FIXTURE_OK(context, sphg_gradient(context, &scheme, &sources, NULL, values[k],
-                                          fixture_view(&alone)));
-        TEST_REQUIRE(fixture_same_bits(&together[k], &alone), "field %d", k);
+        SETUP_OK(context,
+                 sphg_gradient(context, &scheme, &sources, NULL, values[k], setup_view(&alone)));
+        TEST_REQUIRE(setup_same_bits(&together[k], &alone), "field %d", k);
     }
 }
 

@@ -23,10 +23,10 @@ oracle_offer oracle_offer_of(const oracle_scene *scene, const oracle_point *poin
     const quad linear = quad_max(threshold_of(scene), 16 * scene->unit * second->trace2);
     const quad high = high_of(scene, second), t = 1 / second->inverse_norm;
     quad steep, steep_linear;
-    const quad curved = oracle_smooth(second->t, 4 * second->eps, 16 * second->eps, &steep);
+    const quad second_order = oracle_smooth(second->t, 4 * second->eps, 16 * second->eps, &steep);
     const quad flat = oracle_smooth(t, 4 * linear, 8 * linear, &steep_linear);
     const quad off = scene->unit * second->size, off_linear = scene->unit * second->second;
-    offer.confidence = curved * flat;
+    offer.confidence = second_order * flat;
     /* A slope that vanishes grows with what moves it. */
     offer.blur = (steep + 2 * off / (second->eps * second->eps)) * off +
                  (steep_linear + 2 * off_linear / (linear * linear)) * off_linear +

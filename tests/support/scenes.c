@@ -101,9 +101,9 @@ const scene_entry scenes_hard[] = {
 };
 const int scenes_hard_count = sizeof scenes_hard / sizeof *scenes_hard;
 
-stage stage_of_scene(const test_case *test, const scene_entry *entry)
+comparison comparison_of_scene(const test_case *test, const scene_entry *entry)
 {
     random_state random = random_seeded(1234);
     cloud points = entry->make(test->dimension, &random);
-    return stage_of(test, entry->name, points, entry->support * points.spacing);
+    return comparison_of(test, entry->name, points, entry->support * points.spacing);
 }

@@ -1,7 +1,7 @@
 /* The scenes that accuracy tests run through, from easy to hard. */
 #ifndef TESTS_SUPPORT_SCENES_H
 #define TESTS_SUPPORT_SCENES_H
-#include "stage.h"
+#include "comparison.h"
 
 typedef struct scene_entry {
     const char *name;
@@ -12,6 +12,6 @@ typedef struct scene_entry {
 extern const scene_entry scenes_hard[];
 extern const int scenes_hard_count;
 
-stage stage_of_scene(const test_case *test, const scene_entry *entry);
+comparison comparison_of_scene(const test_case *test, const scene_entry *entry);
 
 #endif

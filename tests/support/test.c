@@ -1,5 +1,5 @@
 #include "test.h"
-#include "guarded.h"
+#include "page_guard.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -73,8 +73,8 @@ void test_at_end(void (*release)(void *object), void *object)
 
 void *test_memory(size_t bytes)
 {
-    void *memory = required(guarded_create(bytes));
-    test_at_end(guarded_destroy, memory);
+    void *memory = required(page_guard_create(bytes));
+    test_at_end(page_guard_destroy, memory);
     return memory;
 }
 

@@ -102,7 +102,7 @@ void test_skip(void);
 const char *test_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Zeroed memory that the runner frees when the case ends, passed or failed. Who reads or writes
- * behind it ends the case: see guarded.h. Aligned as its size is, to 16 at most. */
+ * behind it ends the case: see page_guard.h. Aligned as its size is, to 16 at most. */
 void *test_memory(size_t bytes);
 /* Calls release(object) when the case ends, last registered first. */
 void test_at_end(void (*release)(void *object), void *object);

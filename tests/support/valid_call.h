@@ -1,17 +1,21 @@
 /* One valid call of every public function, with each of its arguments as a member that can be
- * spoilt: hostile.h knows how. */
-#ifndef TESTS_SUPPORT_VICTIM_H
-#define TESTS_SUPPORT_VICTIM_H
-#include "fixture.h"
-#include "hooks.h"
+ * spoilt: bad_arguments.h knows how. */
+#ifndef TESTS_SUPPORT_VALID_CALL_H
+#define TESTS_SUPPORT_VALID_CALL_H
+#include "setup.h"
+#include "fake_host.h"
 
-enum { VICTIM_REFUSED = 1000 /* any positive code */ };
-enum { VICTIM_COUNT = 60, VICTIM_SLOTS = 14, VICTIM_SLOT_BYTES = VICTIM_COUNT * 16 * 8 };
+enum { VALID_CALL_REFUSED = 1000 /* any positive code */ };
+enum {
+    VALID_CALL_COUNT = 60,
+    VALID_CALL_SLOTS = 14,
+    VALID_CALL_SLOT_BYTES = VALID_CALL_COUNT * 16 * 8
+};
 
-typedef struct victim {
+typedef struct valid_call {
     const test_case *test;
-    struct victim *valid; /* as it was made: what a reset goes back to */
-    hooks *host;
+    struct valid_call *valid; /* as it was made: what a reset goes back to */
+    fake_host *host;
     sphg_context *living;
     sphg_neighbors *built, *blank, *listed; /* listed: by lists of the host, indices below */
     sphg_neighbors *rebuilt;                /* by the calls that build */
@@ -62,29 +66,29 @@ typedef struct victim {
     int32_t *indices, *picked;
     uint8_t *mask;
     unsigned char *outputs; /* all that may be written, in one piece of canaries */
-} victim;
+} valid_call;
 
-victim *victim_create(const test_case *test, int trusted);
+valid_call *valid_call_create(const test_case *test, int trusted);
 /* A request of a gradient, correction and rank alone, and the neighbours of plain ones. */
-victim *victim_create_plain(const test_case *test);
+valid_call *valid_call_create_plain(const test_case *test);
 /* Back to the valid call: arguments, inputs, canaries. */
-void victim_reset(victim *own);
-int victim_outputs_are_untouched(const victim *own);
+void valid_call_reset(valid_call *own);
+int valid_call_outputs_are_untouched(const valid_call *own);
 /* Sets item `item` (its first number) of an input of floating point numbers. */
-void victim_put(sphg_view view, int item, double value);
+void valid_call_put(sphg_view view, int item, double value);
 
 /* Fails unless the result is `expected`, the message has `words` in it, the log heard it and, for
  * positive codes, no output byte was written. */
-void victim_require(const victim *own, sphg_result result, int expected, const char *words,
-                    const char *change);
+void valid_call_require(const valid_call *own, sphg_result result, int expected, const char *words,
+                        const char *change);
 
 /* Spoils the valid call by `change`, expects the code, then makes the valid call. */
-#define VICTIM_REFUSES(own, call, expected, words, change)                                         \
+#define VALID_CALL_REFUSES(own, call, expected, words, change)                                     \
     do {                                                                                           \
-        victim_reset(own);                                                                         \
+        valid_call_reset(own);                                                                     \
         change;                                                                                    \
-        victim_require(own, call(own), expected, words, #change);                                  \
-        victim_reset(own);                                                                         \
+        valid_call_require(own, call(own), expected, words, #change);                              \
+        valid_call_reset(own);                                                                     \
         TEST_REQUIRE(call(own) == SPHG_OK, "after %s: %s", #change,                                \
                      sphg_last_message((own)->context));                                           \
     } while (0)

@@ -1,4 +1,4 @@
-#include "guarded.h"
+#include "page_guard.h"
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -51,7 +51,7 @@ static char *take(size_t open)
     return begin;
 }
 
-void *guarded_create(size_t bytes)
+void *page_guard_create(size_t bytes)
 {
     if (TEST_SANITIZED)
         return calloc(bytes ? bytes : 1, 1);
@@ -65,7 +65,7 @@ void *guarded_create(size_t bytes)
     return array;
 }
 
-void guarded_destroy(void *memory)
+void page_guard_destroy(void *memory)
 {
     mapping made;
     if (TEST_SANITIZED) {

@@ -1,10 +1,10 @@
 /* The arguments of each public function and what is wrong with them, a table per function. */
-#include "hostile_rows.h"
+#include "bad_argument_rows.h"
 #include "public_names.h"
-#include "victim_calls.h"
+#include "public_calls.h"
 #include <stdio.h>
 
-#define AT(member) offsetof(victim, member)
+#define AT(member) offsetof(valid_call, member)
 
 /* ---- Arguments that need a word of their own ---------------------------------------------- */
 
@@ -17,7 +17,7 @@ static int say(trial *made, int code, const char *words, const char *value, cons
     return 1;
 }
 
-static int spoil_version(victim *own, int number, trial *made)
+static int spoil_version(valid_call *own, int number, trial *made)
 {
     static const int32_t values[] = {0, -1, INT32_MIN, INT32_MAX, SPHG_VERSION + 1000000};
     if (number > 4)
@@ -26,18 +26,18 @@ static int spoil_version(victim *own, int number, trial *made)
     return say(made, SPHG_ERROR_VERSION, "version", test_text("%d", values[number]), "a number");
 }
 
-static int spoil_threads(victim *own, int number, trial *made)
+static int spoil_threads(valid_call *own, int number, trial *made)
 {
     own->config.threads = number == 1 ? INT32_MIN : number - 1;
     if (number == 2) {
         own->config.threads = 0;
-        own->config.parallel_for = hooks_reversed;
+        own->config.parallel_for = fake_host_reversed;
     }
     return number < 3 && say(made, SPHG_ERROR_ARGUMENT, "config.threads",
                              test_text("%d", own->config.threads), "threads");
 }
 
-static int spoil_allocator(victim *own, int number, trial *made)
+static int spoil_allocator(valid_call *own, int number, trial *made)
 {
     if (number == 0)
         own->config.allocate = NULL;
@@ -54,10 +54,10 @@ static int32_t empty_row(int32_t target, int32_t worker, const int32_t **indices
     return 0;
 }
 
-static int spoil_groups(victim *own, int number, trial *made)
+static int spoil_groups(valid_call *own, int number, trial *made)
 {
-    static const int32_t lengths[VICTIM_COUNT] = {0};
-    static const int32_t *const rows[VICTIM_COUNT] = {0};
+    static const int32_t lengths[VALID_CALL_COUNT] = {0};
+    static const int32_t *const rows[VALID_CALL_COUNT] = {0};
     const sphg_lists ways[] = {{0},
                                {.offsets = own->offsets, .indices = own->indices, .row = empty_row},
                                {.rows = rows, .lengths = lengths, .row = empty_row},
@@ -75,7 +75,7 @@ static int spoil_groups(victim *own, int number, trial *made)
     return say(made, SPHG_ERROR_ARGUMENT, words[number], number > 3 ? "NULL" : "", "groups");
 }
 
-static int spoil_capacity(victim *own, int number, trial *made)
+static int spoil_capacity(valid_call *own, int number, trial *made)
 {
     static const int64_t values[] = {-1, INT64_MIN, 0, 3};
     if (number > 3)
@@ -86,13 +86,13 @@ static int spoil_capacity(victim *own, int number, trial *made)
 }
 
 /* The targets' side cannot be looked up in a set that they are no part of. */
-static int spoil_lookup(victim *own, int number, trial *made)
+static int spoil_lookup(valid_call *own, int number, trial *made)
 {
     own->field.at_sources = number ? own->field.at_sources : NULL;
     return number < 1 && say(made, SPHG_ERROR_ARGUMENT, "at_sources", "NULL", "no array");
 }
 
-static int spoil_shape(victim *own, int number, trial *made)
+static int spoil_shape(valid_call *own, int number, trial *made)
 {
     static const int values[] = {0, 5, -1, INT32_MAX, SPHG_VECTOR};
     if (number > 4)
@@ -104,33 +104,33 @@ static int spoil_shape(victim *own, int number, trial *made)
 
 /* ---- Rows --------------------------------------------------------------------------------- */
 
-#define REQUIRED HOSTILE_REQUIRED
-#define OUTPUT   HOSTILE_OUTPUT
-#define VECTOR   HOSTILE_VECTOR
+#define REQUIRED ARGUMENT_REQUIRED
+#define OUTPUT   ARGUMENT_OUTPUT
+#define VECTOR   ARGUMENT_VECTOR
 
 #define FREE(path)                                                                                 \
     {                                                                                              \
-        path, HOSTILE_FREE, 0, 0, 0, 0, NULL, NULL                                                 \
+        path, ARGUMENT_FREE, 0, 0, 0, 0, NULL, NULL                                                \
     }
 #define ROW(path, kind, member)                                                                    \
     {                                                                                              \
-        path, HOSTILE_##kind, AT(member), 0, 0, 0, NULL, NULL                                      \
+        path, ARGUMENT_##kind, AT(member), 0, 0, 0, NULL, NULL                                     \
     }
 #define POSITIVE(path, member)                                                                     \
     {                                                                                              \
-        path, HOSTILE_COUNT, AT(member), HOSTILE_POSITIVE, 0, 0, NULL, NULL                        \
+        path, ARGUMENT_COUNT, AT(member), ARGUMENT_POSITIVE, 0, 0, NULL, NULL                      \
     }
 #define VIEW(path, member, more)                                                                   \
     {                                                                                              \
-        path, HOSTILE_VIEW, AT(member), more, 0, 0, NULL, NULL                                     \
+        path, ARGUMENT_VIEW, AT(member), more, 0, 0, NULL, NULL                                    \
     }
 #define ENUM(path, member, low, high)                                                              \
     {                                                                                              \
-        path, HOSTILE_ENUM, AT(member), 0, low, high, NULL, NULL                                   \
+        path, ARGUMENT_ENUM, AT(member), 0, low, high, NULL, NULL                                  \
     }
 #define SPECIAL(path, function)                                                                    \
     {                                                                                              \
-        path, HOSTILE_SPECIAL, 0, 0, 0, 0, function, NULL                                          \
+        path, ARGUMENT_SPECIAL, 0, 0, 0, 0, function, NULL                                         \
     }
 
 #define CONTEXT ROW("context", HANDLE, context)
@@ -144,11 +144,17 @@ static int spoil_shape(victim *own, int number, trial *made)
         ENUM("scheme.order", scheme.order, 0, 2)
 #define GEOMETRY                                                                                   \
     ROW("geometry", POINTER, geometry_given),                                                      \
-        VIEW("geometry.sources", geometry.sources, REQUIRED | VECTOR | HOSTILE_LEADING),           \
+        VIEW("geometry.sources", geometry.sources, REQUIRED | VECTOR | ARGUMENT_LEADING),          \
         ROW("geometry.sources", POSITIONS, geometry.sources),                                      \
         VIEW("geometry.targets", geometry.targets, VECTOR),                                        \
-        ROW("geometry.targets", POSITIONS, geometry.targets),                                      \
-        {"geometry.source_count", HOSTILE_COUNT, AT(geometry.source_count), 0, -1, 0, NULL, NULL}, \
+        ROW("geometry.targets", POSITIONS, geometry.targets), {"geometry.source_count",            \
+                                                               ARGUMENT_COUNT,                     \
+                                                               AT(geometry.source_count),          \
+                                                               0,                                  \
+                                                               -1,                                 \
+                                                               0,                                  \
+                                                               NULL,                               \
+                                                               NULL},                              \
         ROW("geometry.target_count", COUNT, geometry.target_count),                                \
         ENUM("geometry.precision", geometry.precision, 0, SPHG_F64),                               \
         ROW("geometry.skin", LENGTH, geometry.skin),                                               \
@@ -273,7 +279,7 @@ static const argument of_evaluate[] = {
     VIEW("fields.at_targets", field.at_targets, 0),
     VIEW("fields.gradient", field.gradient, OUTPUT | VECTOR),
     VIEW("request.correction", request.correction, OUTPUT),
-    VIEW("request.rank", request.rank, OUTPUT | HOSTILE_BYTES),
+    VIEW("request.rank", request.rank, OUTPUT | ARGUMENT_BYTES),
     VIEW("request.lambda_min", request.lambda_min, OUTPUT),
 };
 static const argument of_two_sided[] = {
@@ -317,9 +323,9 @@ static const argument of_lending[] = {
     VIEW("fields.gradient", field.gradient, OUTPUT | VECTOR),
     VIEW("fields.curvature", field.curvature, OUTPUT),
     FREE("fields.lenders"),
-    {"lenders", HOSTILE_VIEW, AT(lenders[0]), 0, 0, 0, NULL, NULL},
-    {"lenders", HOSTILE_NUMBERS, AT(lenders[0]), 0, 0, 0, NULL, NULL},
-    VIEW("request.borrows", request.borrows, OUTPUT | HOSTILE_BYTES),
+    {"lenders", ARGUMENT_VIEW, AT(lenders[0]), 0, 0, 0, NULL, NULL},
+    {"lenders", ARGUMENT_NUMBERS, AT(lenders[0]), 0, 0, 0, NULL, NULL},
+    VIEW("request.borrows", request.borrows, OUTPUT | ARGUMENT_BYTES),
 };
 static const probe probes_sphg_evaluate[] = {PROBE(NULL, call_evaluate, of_evaluate),
                                              PROBE(prepare_two_sided, call_evaluate, of_two_sided),
@@ -334,7 +340,7 @@ static const argument of_correction[] = {
     SOURCES,
     SUBSET,
     VIEW("correction", table_out, OUTPUT),
-    VIEW("rank", rank_out, OUTPUT | HOSTILE_BYTES),
+    VIEW("rank", rank_out, OUTPUT | ARGUMENT_BYTES),
 };
 static const probe probes_sphg_correction[] = {PROBE(NULL, call_correction, of_correction)};
 
@@ -373,7 +379,7 @@ static const argument of_force[] = {
     VIEW("sources.correction", sources[0].correction, REQUIRED),
     SUBSET,
     SPECIAL("shape", spoil_shape),
-    {"stress", HOSTILE_VIEW, AT(tensors), REQUIRED | VECTOR, 0, 0, NULL, "field"},
+    {"stress", ARGUMENT_VIEW, AT(tensors), REQUIRED | VECTOR, 0, 0, NULL, "field"},
     VIEW("force", vector_out, REQUIRED | OUTPUT | VECTOR),
 };
 static const probe probes_sphg_force[] = {PROBE(prepare_with_table, call_force, of_force)};
@@ -399,13 +405,13 @@ static const argument of_invert_moments[] = {
     CONTEXT,
     SCHEME,
     ROW("count", COUNT, count),
-    VIEW("moments", symmetric, REQUIRED | HOSTILE_LEADING),
+    VIEW("moments", symmetric, REQUIRED | ARGUMENT_LEADING),
     ROW("moments", NUMBERS, symmetric),
     VIEW("volume", volume_view, REQUIRED),
     ROW("volume", VOLUMES, volume_view),
     ROW("wanted", POINTER, wanted_given),
     VIEW("wanted.correction", wanted.correction, OUTPUT),
-    VIEW("wanted.rank", wanted.rank, OUTPUT | HOSTILE_BYTES),
+    VIEW("wanted.rank", wanted.rank, OUTPUT | ARGUMENT_BYTES),
     VIEW("wanted.lambda_min", wanted.lambda_min, OUTPUT),
     FREE("wanted.stats"),
 };
@@ -414,9 +420,9 @@ static const probe probes_sphg_invert_moments[] = {
 
 static const argument of_eigen[] = {
     CONTEXT,
-    {"dimension", HOSTILE_DIMENSION, AT(dimension), 0, 1, 0, NULL, NULL},
+    {"dimension", ARGUMENT_DIMENSION, AT(dimension), 0, 1, 0, NULL, NULL},
     ROW("count", COUNT, count),
-    VIEW("matrices", symmetric, REQUIRED | HOSTILE_LEADING),
+    VIEW("matrices", symmetric, REQUIRED | ARGUMENT_LEADING),
     ROW("matrices", NUMBERS, symmetric),
     VIEW("values", vector_out, OUTPUT | VECTOR),
     VIEW("vectors", tensor_out, OUTPUT | VECTOR),
@@ -426,7 +432,7 @@ static const probe probes_sphg_eigen[] = {PROBE(NULL, call_eigen, of_eigen)};
 static const argument of_svd[] = {
     CONTEXT,
     ROW("count", COUNT, count),
-    VIEW("matrices", squares, REQUIRED | VECTOR | HOSTILE_LEADING),
+    VIEW("matrices", squares, REQUIRED | VECTOR | ARGUMENT_LEADING),
     ROW("matrices", NUMBERS, squares),
     VIEW("u", u, OUTPUT | VECTOR),
     VIEW("sigma", sigma, OUTPUT | VECTOR),
@@ -435,10 +441,10 @@ static const argument of_svd[] = {
 static const probe probes_sphg_svd[] = {PROBE(NULL, call_svd, of_svd)};
 
 /* A function of the header that has no rows above stops here. */
-const hostile_function hostile_functions[] = {
+const argument_function argument_functions[] = {
 #define FUNCTION(name, parameters)                                                                 \
     {#name, parameters, probes_##name, (int)(sizeof(probes_##name) / sizeof *probes_##name)},
     PUBLIC_FUNCTIONS(FUNCTION)
 #undef FUNCTION
 };
-const int hostile_function_count = sizeof hostile_functions / sizeof *hostile_functions;
+const int argument_function_count = sizeof argument_functions / sizeof *argument_functions;

@@ -1,5 +1,5 @@
-#include "pairs.h"
-#include "fixture.h"
+#include "brute_force.h"
+#include "setup.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -36,8 +36,8 @@ scene scene_of_cloud(const test_case *test, const cloud *points)
 static sphg_view numbers_of(const scene *particles, int count, int width, const double *x)
 {
     const sphg_type type = particles->is_double ? SPHG_F64 : SPHG_F32;
-    const fixture_array array = fixture_numbers(type, count, width, x);
-    return fixture_view(&array);
+    const setup_array array = setup_numbers(type, count, width, x);
+    return setup_view(&array);
 }
 
 static sphg_view positions_of(const scene *particles, int count, const double *x)
@@ -175,7 +175,7 @@ static int32_t selected_count(sphg_context *context, const sphg_neighbors *neigh
                               const sphg_subset *subset)
 {
     sphg_neighbors_info info = {0};
-    FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+    SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
     if (!subset)
         return info.target_count;
     int32_t count = 0;
@@ -195,15 +195,15 @@ rows rows_listed(sphg_context *context, const sphg_neighbors *neighbors, const s
     sphg_pairs pairs = {0};
     sources.neighbors = neighbors;
     pairs.offsets = found.offsets;
-    FIXTURE_OK(context,
-               sphg_pair_gradients(context, &plain, &sources, subset, sphg_absent(), &pairs));
+    SETUP_OK(context,
+             sphg_pair_gradients(context, &plain, &sources, subset, sphg_absent(), &pairs));
     assert_int_equal(found.offsets[0], 0);
     assert_int_equal(found.offsets[count], pairs.count);
     found.indices = test_memory((size_t)pairs.count * sizeof(int32_t));
     pairs.indices = found.indices;
     pairs.capacity = pairs.count;
-    FIXTURE_OK(context,
-               sphg_pair_gradients(context, &plain, &sources, subset, sphg_absent(), &pairs));
+    SETUP_OK(context,
+             sphg_pair_gradients(context, &plain, &sources, subset, sphg_absent(), &pairs));
     return found;
 }
 
@@ -229,10 +229,10 @@ static void destroy_neighbors(void *neighbors)
     sphg_neighbors_destroy(neighbors);
 }
 
-sphg_neighbors *pairs_neighbors(sphg_context *context)
+sphg_neighbors *brute_force_neighbors(sphg_context *context)
 {
     sphg_neighbors *neighbors = NULL;
-    FIXTURE_OK(context, sphg_neighbors_create(context, &neighbors));
+    SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
     test_at_end(destroy_neighbors, neighbors);
     return neighbors;
 }
@@ -244,12 +244,12 @@ int64_t rows_require_search_exact(sphg_context *context, sphg_neighbors *neighbo
     scheme.dimension = particles->dimension;
     scheme.support_radius = support_radius;
     const sphg_geometry geometry = scene_geometry(particles);
-    FIXTURE_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
+    SETUP_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
     const rows expected = rows_by_brute_force(particles, support_radius);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
     rows_require_equal(&found, &expected, where);
     sphg_neighbors_info info = {0};
-    FIXTURE_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+    SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
     const int64_t pairs = expected.offsets[expected.count];
     TEST_REQUIRE(geometry.list_free || geometry.skin > 0 || info.pairs == pairs,
                  "%s: says %lld pairs, not %lld", where, (long long)info.pairs, (long long)pairs);

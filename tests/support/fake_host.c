@@ -1,4 +1,4 @@
-#include "hooks.h"
+#include "fake_host.h"
 #include "test.h"
 #include <stdalign.h>
 #include <stdlib.h>
@@ -13,19 +13,19 @@ typedef struct header {
 static const uint64_t LIVE = 0x5b1d0c0ffee0f00dU;
 static const uint64_t DEAD = 0xdeadbeefdeadbeefU;
 
-void hooks_open(hooks *host)
+void fake_host_open(fake_host *host)
 {
     memset(host, 0, sizeof *host);
     pthread_mutex_init(&host->lock, NULL);
     host->workers = 4;
 }
 
-void hooks_close(hooks *host)
+void fake_host_close(fake_host *host)
 {
     pthread_mutex_destroy(&host->lock);
 }
 
-void hooks_fail(hooks *host, int64_t from, int64_t until)
+void fake_host_fail(fake_host *host, int64_t from, int64_t until)
 {
     host->allocations = 0;
     host->fail_from = from;
@@ -39,7 +39,7 @@ static size_t header_space(size_t alignment)
 }
 
 /* Fresh memory is filled with NaN-like bytes: reading before writing shows in the results. */
-static void *take(hooks *host, size_t size, size_t alignment)
+static void *take(fake_host *host, size_t size, size_t alignment)
 {
     const size_t space = header_space(alignment);
     const size_t unit = alignment > alignof(max_align_t) ? alignment : alignof(max_align_t);
@@ -58,9 +58,9 @@ static void *take(hooks *host, size_t size, size_t alignment)
     return base + space;
 }
 
-static void *hooks_allocate(size_t size, size_t alignment, void *user)
+static void *fake_host_allocate(size_t size, size_t alignment, void *user)
 {
-    hooks *host = user;
+    fake_host *host = user;
     void *memory = NULL;
     pthread_mutex_lock(&host->lock);
     const int64_t ordinal = ++host->allocations;
@@ -72,7 +72,7 @@ static void *hooks_allocate(size_t size, size_t alignment, void *user)
     return memory;
 }
 
-static void give_back(hooks *host, void *memory, size_t size)
+static void give_back(fake_host *host, void *memory, size_t size)
 {
     header *head = (header *)(void *)((char *)memory - sizeof(header));
     if (head->guard != LIVE) {
@@ -88,9 +88,9 @@ static void give_back(hooks *host, void *memory, size_t size)
     free((char *)memory - header_space(head->alignment));
 }
 
-static void hooks_release(void *memory, size_t size, void *user)
+static void fake_host_release(void *memory, size_t size, void *user)
 {
-    hooks *host = user;
+    fake_host *host = user;
     if (!memory)
         return;
     pthread_mutex_lock(&host->lock);
@@ -98,22 +98,22 @@ static void hooks_release(void *memory, size_t size, void *user)
     pthread_mutex_unlock(&host->lock);
 }
 
-static void hooks_log(sphg_result result, const char *message, void *user)
+static void fake_host_log(sphg_result result, const char *message, void *user)
 {
-    hooks *host = user;
+    fake_host *host = user;
     host->log_count++;
     host->log_result = result;
     strncpy(host->log_message, message, sizeof host->log_message - 1);
 }
 
-sphg_config hooks_config(hooks *host, int32_t threads)
+sphg_config fake_host_config(fake_host *host, int32_t threads)
 {
     sphg_config config = {0};
     config.threads = threads;
     config.isa = test_isa();
-    config.allocate = hooks_allocate;
-    config.release = hooks_release;
-    config.log = hooks_log;
+    config.allocate = fake_host_allocate;
+    config.release = fake_host_release;
+    config.log = fake_host_log;
     config.user = host;
     return config;
 }
@@ -123,9 +123,9 @@ static int32_t least(int32_t a, int32_t b)
     return a < b ? a : b;
 }
 
-void hooks_odd_splits(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
+void fake_host_odd_splits(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
 {
-    hooks *host = user;
+    fake_host *host = user;
     int32_t step = grain, worker = 0;
     host->regions++;
     for (int32_t begin = 0; begin < count; worker = (worker + 1) % host->workers) {
@@ -136,9 +136,9 @@ void hooks_odd_splits(sphg_task *task, void *data, int32_t count, int32_t grain,
     }
 }
 
-void hooks_reversed(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
+void fake_host_reversed(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
 {
-    hooks *host = user;
+    fake_host *host = user;
     host->regions++;
     for (int32_t end = count; end > 0;) {
         const int32_t begin = end - least(grain, end);
@@ -175,9 +175,9 @@ static void *serve(void *argument)
     }
 }
 
-void hooks_pthreads(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
+void fake_host_pthreads(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
 {
-    hooks *host = user;
+    fake_host *host = user;
     queue work = {PTHREAD_MUTEX_INITIALIZER, task, data, 0, count, grain};
     pthread_t threads[64];
     seat seats[64];

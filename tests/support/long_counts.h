@@ -1,6 +1,6 @@
 /* SPHG_TEST_LONG=1 asks for the long figures: tests/run --long. */
-#ifndef TESTS_SUPPORT_LONG_H
-#define TESTS_SUPPORT_LONG_H
+#ifndef TESTS_SUPPORT_LONG_COUNTS_H
+#define TESTS_SUPPORT_LONG_COUNTS_H
 #include <stdlib.h>
 #include <time.h>
 

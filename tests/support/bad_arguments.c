@@ -1,4 +1,4 @@
-#include "hostile.h"
+#include "bad_arguments.h"
 #include <float.h>
 #include <limits.h>
 #include <math.h>
@@ -20,25 +20,25 @@ static void expect(trial *made, int code, const char *words)
     made->words = words;
 }
 
-static void *member(victim *own, const argument *spoilt)
+static void *member(valid_call *own, const argument *spoilt)
 {
     return (char *)own + spoilt->at;
 }
 
 /* ---- Pointers and integers ---------------------------------------------------------------- */
 
-static int spoil_pointer(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_pointer(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     if (number > 0)
         return 0;
     memset(member(own, spoilt), 0, sizeof(void *));
     name_trial(made, "NULL");
     expect(made, SPHG_ERROR_ARGUMENT, NULL);
-    strcpy(made->value, spoilt->kind == HOSTILE_HANDLE ? "" : "NULL");
+    strcpy(made->value, spoilt->kind == ARGUMENT_HANDLE ? "" : "NULL");
     return 1;
 }
 
-static int spoil_built(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_built(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     if (number == 0)
         return spoil_pointer(own, spoilt, 0, made);
@@ -49,7 +49,7 @@ static int spoil_built(victim *own, const argument *spoilt, int number, trial *m
     return number == 1;
 }
 
-static int put_integer(victim *own, const argument *spoilt, int value, trial *made)
+static int put_integer(valid_call *own, const argument *spoilt, int value, trial *made)
 {
     memcpy(member(own, spoilt), &value, sizeof value);
     name_trial(made, "%d", value);
@@ -58,24 +58,24 @@ static int put_integer(victim *own, const argument *spoilt, int value, trial *ma
     return 1;
 }
 
-static int spoil_count(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_count(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     static const int values[] = {-1, INT_MIN, -1000000, 0};
     if (number > 3)
         return 0;
     put_integer(own, spoilt, values[number], made);
-    if (values[number] == 0 && !(spoilt->flags & HOSTILE_POSITIVE))
-        made->expected = spoilt->low < 0 ? HOSTILE_SKIPPED : SPHG_OK;
+    if (values[number] == 0 && !(spoilt->flags & ARGUMENT_POSITIVE))
+        made->expected = spoilt->low < 0 ? ARGUMENT_SKIPPED : SPHG_OK;
     return 1;
 }
 
-static int spoil_enum(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_enum(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     const int values[] = {spoilt->low - 1, spoilt->high + 1, INT_MIN, INT_MAX, 4711};
     return number < 5 && put_integer(own, spoilt, values[number], made);
 }
 
-static int spoil_dimension(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_dimension(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     const int values[] = {1, 4, -1, -3, INT_MIN, INT_MAX, spoilt->low ? 0 : 5};
     return number < 7 && put_integer(own, spoilt, values[number], made);
@@ -83,7 +83,7 @@ static int spoil_dimension(victim *own, const argument *spoilt, int number, tria
 
 /* ---- Lengths ------------------------------------------------------------------------------ */
 
-static int put_real(victim *own, const argument *spoilt, double value, trial *made)
+static int put_real(valid_call *own, const argument *spoilt, double value, trial *made)
 {
     memcpy(member(own, spoilt), &value, sizeof value);
     name_trial(made, "%g", value);
@@ -98,7 +98,7 @@ static int put_real(victim *own, const argument *spoilt, double value, trial *ma
 
 /* Where powers of H leave the range, a search refuses for that, an operator for being larger than
  * the search. */
-static int spoil_radius(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_radius(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     static const double values[] = {0,        -0.0,      -1,           NAN,
                                     INFINITY, -INFINITY, DBL_TRUE_MIN, DBL_MIN,
@@ -111,18 +111,18 @@ static int spoil_radius(victim *own, const argument *spoilt, int number, trial *
     else
         return 0;
     if (number > 5)
-        made->expected = HOSTILE_REFUSED;
+        made->expected = ARGUMENT_REFUSED;
     made->value[number > 5 ? 0 : 39] = 0;
     return 1;
 }
 
-static int spoil_threshold(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_threshold(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     static const double values[] = {-1e-3, 1, 2, NAN, INFINITY, -INFINITY, -DBL_TRUE_MIN, DBL_MAX};
     return number < 8 && put_real(own, spoilt, values[number], made);
 }
 
-static int spoil_length(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_length(valid_call *own, const argument *spoilt, int number, trial *made)
 {
     static const double values[] = {-1, NAN, INFINITY, -INFINITY, -1e-300};
     return number < 5 && put_real(own, spoilt, values[number], made);
@@ -142,18 +142,18 @@ static const void *moved(const void *memory, ptrdiff_t bytes)
 
 static int spoil_type(sphg_view *view, const argument *spoilt, int number, trial *made)
 {
-    const int other = spoilt->flags & HOSTILE_BYTES ? SPHG_F32
-                      : view->type == SPHG_F32      ? SPHG_F64
-                                                    : SPHG_F32;
+    const int other = spoilt->flags & ARGUMENT_BYTES ? SPHG_F32
+                      : view->type == SPHG_F32       ? SPHG_F64
+                                                     : SPHG_F32;
     const int values[] = {
-        0, 4, -1, INT_MAX, INT_MIN, spoilt->flags & HOSTILE_BYTES ? SPHG_F64 : SPHG_U8, other};
-    if (number == 6 && spoilt->flags & HOSTILE_LEADING)
+        0, 4, -1, INT_MAX, INT_MIN, spoilt->flags & ARGUMENT_BYTES ? SPHG_F64 : SPHG_U8, other};
+    if (number == 6 && spoilt->flags & ARGUMENT_LEADING)
         return 0;
     if (number > 6)
         return 0;
     view->type = (sphg_type)values[number];
     name_trial(made, "type %d", values[number]);
-    expect(made, number < 5 ? HOSTILE_REFUSED : SPHG_ERROR_TYPE, NULL);
+    expect(made, number < 5 ? ARGUMENT_REFUSED : SPHG_ERROR_TYPE, NULL);
     snprintf(made->value, sizeof made->value, "%d", values[number]);
     return 1;
 }
@@ -161,7 +161,7 @@ static int spoil_type(sphg_view *view, const argument *spoilt, int number, trial
 static int spoil_stride(sphg_view *view, const argument *spoilt, int number, trial *made)
 {
     const ptrdiff_t size = size_of(view->type), item = view->stride;
-    const int is_output = (spoilt->flags & HOSTILE_OUTPUT) != 0;
+    const int is_output = (spoilt->flags & ARGUMENT_OUTPUT) != 0;
     const ptrdiff_t values[] = {item + 1,    PTRDIFF_MAX / size * size,
                                 PTRDIFF_MIN, PTRDIFF_MAX / 59 / size * size + size,
                                 item - 1,    0,
@@ -173,20 +173,20 @@ static int spoil_stride(sphg_view *view, const argument *spoilt, int number, tri
     expect(made, SPHG_ERROR_ARGUMENT, NULL);
     snprintf(made->value, sizeof made->value, "%td", view->stride);
     if (view->stride % size == 0 && is_output && number > 5 && item == size)
-        made->expected = HOSTILE_SKIPPED; /* of a scalar: there is no such stride but 0 */
+        made->expected = ARGUMENT_SKIPPED; /* of a scalar: there is no such stride but 0 */
     if (size == 1 && (number == 0 || number == 1))
-        made->expected = number ? SPHG_ERROR_ARGUMENT : HOSTILE_SKIPPED;
+        made->expected = number ? SPHG_ERROR_ARGUMENT : ARGUMENT_SKIPPED;
     return 1;
 }
 
-static int spoil_start(victim *own, sphg_view *view, const argument *spoilt, int number,
+static int spoil_start(valid_call *own, sphg_view *view, const argument *spoilt, int number,
                        trial *made)
 {
     expect(made, SPHG_ERROR_ARGUMENT, NULL);
     if (number == 0) {
         view->x = NULL;
         name_trial(made, "absent");
-        made->expected = spoilt->flags & HOSTILE_REQUIRED ? SPHG_ERROR_ARGUMENT : HOSTILE_SKIPPED;
+        made->expected = spoilt->flags & ARGUMENT_REQUIRED ? SPHG_ERROR_ARGUMENT : ARGUMENT_SKIPPED;
         return 1;
     }
     if (number < size_of(view->type)) {
@@ -195,10 +195,10 @@ static int spoil_start(victim *own, sphg_view *view, const argument *spoilt, int
         return 1;
     }
     if (number < 8) {
-        made->expected = HOSTILE_SKIPPED;
+        made->expected = ARGUMENT_SKIPPED;
         return 1;
     }
-    if (number > 10 || !(spoilt->flags & HOSTILE_VECTOR))
+    if (number > 10 || !(spoilt->flags & ARGUMENT_VECTOR))
         return 0;
     if (number == 8 && own->test->dimension == 3) {
         view->y = moved(view->x, size_of(view->type));
@@ -210,33 +210,33 @@ static int spoil_start(victim *own, sphg_view *view, const argument *spoilt, int
         view->y = view->z = moved(view->x, 1);
         name_trial(made, "y misaligned");
         if (size_of(view->type) == 1)
-            made->expected = HOSTILE_SKIPPED;
+            made->expected = ARGUMENT_SKIPPED;
     }
     return 1;
 }
 
 /* The output begins at, behind or before another array, or its components on each other. */
-static int spoil_overlap(victim *own, const probe *tested, const argument *spoilt, int number,
+static int spoil_overlap(valid_call *own, const probe *tested, const argument *spoilt, int number,
                          trial *made)
 {
-    if (!(spoilt->flags & HOSTILE_OUTPUT) || number / 3 >= tested->count)
+    if (!(spoilt->flags & ARGUMENT_OUTPUT) || number / 3 >= tested->count)
         return 0;
     sphg_view *view = member(own, spoilt);
     const argument *other = &tested->arguments[number / 3];
     const sphg_view *at = member(own, other);
     expect(made, SPHG_ERROR_ARGUMENT, "overlaps");
-    if (other == spoilt && spoilt->flags & HOSTILE_VECTOR && number % 3 == 0) {
+    if (other == spoilt && spoilt->flags & ARGUMENT_VECTOR && number % 3 == 0) {
         view->y = view->z = view->x;
         name_trial(made, "components on each other");
         return 1;
     }
     const int same = at == view, in_place = strcmp(spoilt->path, "wanted.correction") == 0 &&
                                             strcmp(other->path, "moments") == 0;
-    made->expected = HOSTILE_SKIPPED;
-    if (other->kind != HOSTILE_VIEW || same || !at->x || !view->x || (in_place && number % 3 == 0))
+    made->expected = ARGUMENT_SKIPPED;
+    if (other->kind != ARGUMENT_VIEW || same || !at->x || !view->x || (in_place && number % 3 == 0))
         return 1;
-    const ptrdiff_t span = (VICTIM_COUNT - 1) * view->stride;
-    const ptrdiff_t by[] = {0, (VICTIM_COUNT - 1) * at->stride, -span};
+    const ptrdiff_t span = (VALID_CALL_COUNT - 1) * view->stride;
+    const ptrdiff_t by[] = {0, (VALID_CALL_COUNT - 1) * at->stride, -span};
     view->x = moved(at->x, by[number % 3]);
     if ((uintptr_t)view->x % (uintptr_t)size_of(view->type))
         return 1;
@@ -249,7 +249,7 @@ static int spoil_overlap(victim *own, const probe *tested, const argument *spoil
     return 1;
 }
 
-static int spoil_view(victim *own, const probe *tested, const argument *spoilt, int number,
+static int spoil_view(valid_call *own, const probe *tested, const argument *spoilt, int number,
                       trial *made)
 {
     sphg_view *view = member(own, spoilt);
@@ -262,7 +262,7 @@ static int spoil_view(victim *own, const probe *tested, const argument *spoilt, 
     if (number >= 20 && number < 40 && spoil_start(own, view, spoilt, number - 20, made))
         return 1;
     if (number < 40) {
-        made->expected = HOSTILE_SKIPPED;
+        made->expected = ARGUMENT_SKIPPED;
         return 1;
     }
     return spoil_overlap(own, tested, spoilt, number - 40, made);
@@ -275,14 +275,14 @@ static void put_number(sphg_view view, int item, double value, trial *made)
     made->place = (char *)(uintptr_t)view.x + item * view.stride;
     made->bytes = (size_t)size_of(view.type);
     memcpy(made->kept, made->place, made->bytes);
-    victim_put(view, item, value);
+    valid_call_put(view, item, value);
     name_trial(made, "[%d] is %g", item, value);
     snprintf(made->value, sizeof made->value, "[%d]", item);
 }
 
-static int spoil_numbers(victim *own, const argument *spoilt, int number, trial *made)
+static int spoil_numbers(valid_call *own, const argument *spoilt, int number, trial *made)
 {
-    static const int items[] = {0, 1, 31, VICTIM_COUNT - 1};
+    static const int items[] = {0, 1, 31, VALID_CALL_COUNT - 1};
     const sphg_view *view = member(own, spoilt);
     const double smallest = view->type == SPHG_F32 ? 0x1p-149 : DBL_TRUE_MIN;
     const double values[] = {NAN, INFINITY, -INFINITY, -1, -smallest, smallest, 1e-30, 0, -0.0};
@@ -291,26 +291,26 @@ static int spoil_numbers(victim *own, const argument *spoilt, int number, trial 
     const double value = values[number / 4];
     put_number(*view, items[number % 4], value, made);
     expect(made, SPHG_OK, NULL);
-    if (spoilt->kind == HOSTILE_POSITIONS && !isfinite(value))
+    if (spoilt->kind == ARGUMENT_POSITIONS && !isfinite(value))
         made->expected = SPHG_ERROR_NOT_FINITE;
-    if (spoilt->kind == HOSTILE_VOLUMES && !(value >= 0 && isfinite(value)))
+    if (spoilt->kind == ARGUMENT_VOLUMES && !(value >= 0 && isfinite(value)))
         made->expected = SPHG_ERROR_VOLUME;
-    if (spoilt->kind == HOSTILE_RADII && !(value > smallest && isfinite(value)))
+    if (spoilt->kind == ARGUMENT_RADII && !(value > smallest && isfinite(value)))
         made->expected = SPHG_ERROR_ARGUMENT;
-    if (spoilt->kind == HOSTILE_RADII && value == 1e-30 && test_field_type(own->test) == SPHG_F32)
+    if (spoilt->kind == ARGUMENT_RADII && value == 1e-30 && test_field_type(own->test) == SPHG_F32)
         made->expected = SPHG_ERROR_ARGUMENT;
-    if (spoilt->kind == HOSTILE_RADII && value > 0 && isfinite(value))
+    if (spoilt->kind == ARGUMENT_RADII && value > 0 && isfinite(value))
         made->value[0] = 0; /* so small that its powers are none */
     return 1;
 }
 
-static int spoil_offsets(victim *own, int number, trial *made)
+static int spoil_offsets(valid_call *own, int number, trial *made)
 {
     static const struct {
         int item;
         int64_t value;
-    } ways[] = {{0, 1},  {0, -1},           {0, INT64_MAX}, {9, 0},
-                {9, -1}, {VICTIM_COUNT, 0}, {1, INT64_MIN}};
+    } ways[] = {{0, 1},        {0, -1}, {0, INT64_MAX}, {9, 0}, {9, -1}, {VALID_CALL_COUNT, 0},
+                {1, INT64_MIN}};
     if (number > 6)
         return 0;
     own->offsets[ways[number].item] = ways[number].value;
@@ -321,10 +321,10 @@ static int spoil_offsets(victim *own, int number, trial *made)
 }
 
 /* The operator sums over the host's lists, one of whose indices is no source. */
-static int spoil_indices(victim *own, int number, trial *made)
+static int spoil_indices(valid_call *own, int number, trial *made)
 {
-    static const int32_t values[] = {-1, VICTIM_COUNT, INT32_MAX, INT32_MIN, 65536};
-    static const int32_t places[] = {0, VICTIM_COUNT + 17, 4 * VICTIM_COUNT - 1};
+    static const int32_t values[] = {-1, VALID_CALL_COUNT, INT32_MAX, INT32_MIN, 65536};
+    static const int32_t places[] = {0, VALID_CALL_COUNT + 17, 4 * VALID_CALL_COUNT - 1};
     if (number >= 15)
         return 0;
     own->sources[0].neighbors = own->listed;
@@ -337,11 +337,12 @@ static int spoil_indices(victim *own, int number, trial *made)
 
 /* ---- Subsets ------------------------------------------------------------------------------ */
 
-static int spoil_range(victim *own, int number, trial *made)
+static int spoil_range(valid_call *own, int number, trial *made)
 {
-    static const int ways[][2] = {
-        {-1, 4},      {0, VICTIM_COUNT + 1}, {10, 9}, {INT_MIN, 0},
-        {0, INT_MAX}, {INT_MAX, INT_MIN},    {3, -1}, {VICTIM_COUNT + 1, VICTIM_COUNT + 1}};
+    static const int ways[][2] = {{-1, 4},      {0, VALID_CALL_COUNT + 1},
+                                  {10, 9},      {INT_MIN, 0},
+                                  {0, INT_MAX}, {INT_MAX, INT_MIN},
+                                  {3, -1},      {VALID_CALL_COUNT + 1, VALID_CALL_COUNT + 1}};
     if (number > 7)
         return 0;
     own->subset.begin = ways[number][0];
@@ -352,9 +353,9 @@ static int spoil_range(victim *own, int number, trial *made)
     return 1;
 }
 
-static int spoil_picked(victim *own, int number, trial *made)
+static int spoil_picked(valid_call *own, int number, trial *made)
 {
-    static const int values[] = {-1, VICTIM_COUNT, INT_MIN, INT_MAX};
+    static const int values[] = {-1, VALID_CALL_COUNT, INT_MIN, INT_MAX};
     if (number > 7)
         return 0;
     own->subset.indices = own->picked;
@@ -368,58 +369,58 @@ static int spoil_picked(victim *own, int number, trial *made)
 
 /* ---- Every kind --------------------------------------------------------------------------- */
 
-int hostile_is_about_numbers(argument_kind kind)
+int argument_is_about_numbers(argument_kind kind)
 {
-    return kind == HOSTILE_POSITIONS || kind == HOSTILE_VOLUMES || kind == HOSTILE_OFFSETS ||
-           kind == HOSTILE_RADII || kind == HOSTILE_INDICES;
+    return kind == ARGUMENT_POSITIONS || kind == ARGUMENT_VOLUMES || kind == ARGUMENT_OFFSETS ||
+           kind == ARGUMENT_RADII || kind == ARGUMENT_INDICES;
 }
 
-int hostile_spoil(victim *own, const probe *tested, int a, int number, trial *made)
+int argument_spoil(valid_call *own, const probe *tested, int a, int number, trial *made)
 {
     const argument *spoilt = &tested->arguments[a];
     memset(made, 0, sizeof *made);
     switch (spoilt->kind) {
-    case HOSTILE_FREE:
+    case ARGUMENT_FREE:
         return 0;
-    case HOSTILE_HANDLE:
-    case HOSTILE_POINTER:
+    case ARGUMENT_HANDLE:
+    case ARGUMENT_POINTER:
         return spoil_pointer(own, spoilt, number, made);
-    case HOSTILE_BUILT:
+    case ARGUMENT_BUILT:
         return spoil_built(own, spoilt, number, made);
-    case HOSTILE_COUNT:
+    case ARGUMENT_COUNT:
         return spoil_count(own, spoilt, number, made);
-    case HOSTILE_ENUM:
+    case ARGUMENT_ENUM:
         return spoil_enum(own, spoilt, number, made);
-    case HOSTILE_DIMENSION:
+    case ARGUMENT_DIMENSION:
         return spoil_dimension(own, spoilt, number, made);
-    case HOSTILE_RADIUS:
+    case ARGUMENT_RADIUS:
         return spoil_radius(own, spoilt, number, made);
-    case HOSTILE_THRESHOLD:
+    case ARGUMENT_THRESHOLD:
         return spoil_threshold(own, spoilt, number, made);
-    case HOSTILE_LENGTH:
+    case ARGUMENT_LENGTH:
         return spoil_length(own, spoilt, number, made);
-    case HOSTILE_VIEW:
+    case ARGUMENT_VIEW:
         return spoil_view(own, tested, spoilt, number, made);
-    case HOSTILE_POSITIONS:
-    case HOSTILE_VOLUMES:
-    case HOSTILE_RADII:
-    case HOSTILE_NUMBERS:
+    case ARGUMENT_POSITIONS:
+    case ARGUMENT_VOLUMES:
+    case ARGUMENT_RADII:
+    case ARGUMENT_NUMBERS:
         return spoil_numbers(own, spoilt, number, made);
-    case HOSTILE_OFFSETS:
+    case ARGUMENT_OFFSETS:
         return spoil_offsets(own, number, made);
-    case HOSTILE_INDICES:
+    case ARGUMENT_INDICES:
         return spoil_indices(own, number, made);
-    case HOSTILE_RANGE:
+    case ARGUMENT_RANGE:
         return spoil_range(own, number, made);
-    case HOSTILE_PICKED:
+    case ARGUMENT_PICKED:
         return spoil_picked(own, number, made);
-    case HOSTILE_SPECIAL:
+    case ARGUMENT_SPECIAL:
         return spoilt->special(own, number, made);
     }
     return 0;
 }
 
-void hostile_restore(const trial *made)
+void argument_restore(const trial *made)
 {
     if (made->place)
         memcpy(made->place, made->kept, made->bytes);

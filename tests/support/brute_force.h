@@ -1,7 +1,7 @@
 /* Who is whose neighbour, by brute force: r < H decided in the precision of the positions, without
  * FMA, as docs/theory.md says; and the rows that the library lists, to compare with. */
-#ifndef TESTS_SUPPORT_PAIRS_H
-#define TESTS_SUPPORT_PAIRS_H
+#ifndef TESTS_SUPPORT_BRUTE_FORCE_H
+#define TESTS_SUPPORT_BRUTE_FORCE_H
 #include "clouds.h"
 #include "test.h"
 
@@ -43,6 +43,6 @@ void rows_require_equal(const rows *found, const rows *expected, const char *whe
 int64_t rows_require_search_exact(sphg_context *context, sphg_neighbors *neighbors,
                                   const scene *particles, double support_radius, const char *where);
 
-sphg_neighbors *pairs_neighbors(sphg_context *context); /* empty, destroyed with the case */
+sphg_neighbors *brute_force_neighbors(sphg_context *context); /* empty, destroyed with the case */
 
 #endif
