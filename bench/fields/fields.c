@@ -45,7 +45,7 @@ static void write_particles(const char *folder, const char *name, const struct s
         }
         for (int k = 0; k < 2 * METHODS; k++)
             cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->count + i]);
-        table_add(table, cells);
+        table_add(table, cells, 4 + 2 * METHODS);
     }
     table_write_csv(table, folder, name);
 }

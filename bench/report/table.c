@@ -44,8 +44,10 @@ static void *grown(void *items, int32_t count, int32_t *room, size_t size)
     return items ? memcpy(larger, items, (size_t)count * size) : larger;
 }
 
-void table_add(struct table *table, const struct cell *cells)
+void table_add(struct table *table, const struct cell *cells, size_t count)
 {
+    if (count != (size_t)table->column_count)
+        abort();
     const size_t size = (size_t)table->column_count * sizeof *cells;
     table->cells = grown(table->cells, table->row_count, &table->row_room, size);
     memcpy(table->cells + (size_t)table->row_count++ * (size_t)table->column_count, cells, size);

@@ -3,6 +3,7 @@
 #ifndef SPHGRAD_BENCH_TABLE_H
 #define SPHGRAD_BENCH_TABLE_H
 #include "timing.h"
+#include <stddef.h>
 
 /* Formats: of a number what printf takes for a double; of a time the same for three, median, least
  * and most. NULL: as few digits as two runs agree on. */
@@ -53,9 +54,11 @@ enum { TABLE_COLUMNS_MOST = 32 };
  * of its benchmarks begin with. */
 struct table *table_create(const char *name, const struct column *columns);
 
-/* One cell a column. */
-void table_add(struct table *table, const struct cell *cells);
-#define TABLE_ROW(table, ...) table_add(table, (const struct cell[]){__VA_ARGS__})
+/* One cell a column: anything else ends the program. */
+void table_add(struct table *table, const struct cell *cells, size_t count);
+#define TABLE_ROW(table, ...)                                                                      \
+    table_add(table, (const struct cell[]){__VA_ARGS__},                                           \
+              sizeof((const struct cell[]){__VA_ARGS__}) / sizeof(struct cell))
 
 /* A text that lasts as long as the table. */
 __attribute__((format(printf, 1, 2))) const char *table_text(const char *format, ...);

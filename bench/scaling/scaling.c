@@ -71,7 +71,7 @@ static struct table *table_of_speed_ups(const struct scaling *scaling)
                 cell_text(table_text("%.2f, %.0f %%", speed_up, 100 * speed_up / one->threads));
         }
         cells[SCALING_WORKS + 1] = cell_text("");
-        table_add(table, cells);
+        table_add(table, cells, SCALING_WORKS + 2);
     }
     return table;
 }

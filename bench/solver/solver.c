@@ -66,7 +66,7 @@ static void add_case(struct table *table, const struct solver *solver,
     cells[count++] = !copied && one->share == 0
                          ? cell_number(most(result->deviation, solver->available))
                          : cell_none();
-    table_add(table, cells);
+    table_add(table, cells, (size_t)count);
 }
 
 static struct table *table_of(const struct solver *solver)

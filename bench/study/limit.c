@@ -72,8 +72,8 @@ static void print_times(const struct limit *limit)
                 cells[work + 1] = cell_time(fastest, 1);
                 percent[work + 1] = cell_number(share_of(limit, fastest, work));
             }
-            table_add(table, cells);
-            table_add(shares, percent);
+            table_add(table, cells, LIMIT_WORKS + 1);
+            table_add(shares, percent, LIMIT_WORKS + 1);
         }
     }
     table_print(table);

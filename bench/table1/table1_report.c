@@ -174,7 +174,7 @@ static void add_method(struct table *rows, const struct table1 *table,
     cells[count++] = cell_none();
     cells[count++] = cell_paper(one->paper_matrix);
     cells[count++] = cell_paper(one->paper_gradient);
-    table_add(rows, cells);
+    table_add(rows, cells, (size_t)count);
 }
 
 /* ---- What it means ----------------------------------------------------------------------------
