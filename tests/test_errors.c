@@ -220,15 +220,19 @@ static void builds_refuse_bad_geometry(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
     refuse_bad_geometry(own, call_search);
+    refuse_bad_geometry(own, call_would_rebuild);
     refuse_bad_geometry(own, call_use_lists);
     const double skins[] = {-0.25, NAN, INFINITY};
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++) {
         REFUSES(call_search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
+        REFUSES(call_would_rebuild, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
+    }
     REFUSES(call_search, SPHG_ERROR_ARGUMENT, "skin",
             own->geometry.skin = own->geometry.list_free = 1);
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = 0.25);
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "list_free", own->geometry.list_free = 1);
     REFUSES(call_search, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
+    REFUSES(call_would_rebuild, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
     REFUSES(call_use_lists, SPHG_ERROR_ARGUMENT, "neighbors", own->neighbors = NULL);
     assert_int_equal(sphg_neighbors_search(NULL, own->built, &own->scheme, &own->geometry),
                      SPHG_ERROR_ARGUMENT);

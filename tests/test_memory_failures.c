@@ -59,6 +59,7 @@ static const probe extra[] = {
     {prepare_listed, call_get_order, NULL, 0},
     {prepare_list_free, call_search, NULL, 0},
     {prepare_skin, call_search, NULL, 0},
+    {prepare_skin, call_would_rebuild, NULL, 0},
     {prepare_periodic, call_search, NULL, 0},
     {prepare_lists, call_evaluate, NULL, 0},
     {prepare_two_sets, call_evaluate, NULL, 0},

@@ -178,9 +178,8 @@ typedef struct sphg_config {
     void *(*allocate)(size_t size, size_t alignment, void *user); /* both or neither */
     void (*release)(void *memory, size_t size, void *user);
     void (*log)(sphg_result result, const char *message, void *user); /* hears each failure */
-    /* Calls task on disjoint ranges that make up [0, count), each >= grain long where it can,
-     * and returns when all are done; grain >= 1. Order and split are free: results do not depend
-     * on them. */
+    /* Calls task on disjoint ranges that make up [0, count), each >= grain long where it can, and
+     * returns when all are done; grain >= 1. Order and split are free: results do not depend on them. */
     void (*parallel_for)(sphg_task *task, void *data, int32_t count, int32_t grain, void *user);
     void *user; /* handed back to these four */
 } sphg_config;
@@ -373,6 +372,11 @@ SPHG_API void sphg_neighbors_destroy(sphg_neighbors *neighbors); /* NULL is igno
 SPHG_API sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
                                            const sphg_scheme *scheme,
                                            const sphg_geometry *geometry);
+/* rebuild: 1 where that search would find pairs anew, 0 where the skin holds; nothing is built. MPI: ask
+ * before ghosts move, and decide together. Errors: as there, the object stays. Cost: O(n). */
+SPHG_API sphg_result sphg_neighbors_would_rebuild(sphg_context *context, const sphg_neighbors *neighbors,
+                                                  const sphg_scheme *scheme,
+                                                  const sphg_geometry *geometry, int32_t *rebuild);
 
 /* Copies the positions and borrows your lists: leave them unchanged until the next build or
  * destroy. Pairs with r >= H add nothing. Indices are checked as operators read them.
@@ -386,8 +390,7 @@ SPHG_API sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighb
                                               const sphg_geometry *geometry,
                                               const sphg_lists *lists);
 
-/* What the object holds; counts are 0 before the first build. Errors: ARGUMENT, BUSY. Cost: O(1).
- */
+/* What the object holds; counts are 0 before the first build. Errors: ARGUMENT, BUSY. Cost: O(1). */
 SPHG_API sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors *neighbors,
                                              sphg_neighbors_info *info);
 

@@ -950,6 +950,20 @@ template <class Errors> class basic_neighbors
             return detail::refused<Errors>(check);
         return done(sphg_neighbors_search(context_, neighbors_, &scheme, &made));
     }
+    /* Would that search find pairs anew, or does the skin hold? */
+    result would_rebuild(const sphg_scheme &scheme, const geometry &where, bool &rebuild) const
+    {
+        detail::checker check("would_rebuild");
+        const sphg_geometry made = of_geometry(check, scheme, where);
+        if (check.failed())
+            return detail::refused<Errors>(check);
+        std::int32_t answer = 0;
+        const sphg_result known =
+            sphg_neighbors_would_rebuild(context_, neighbors_, &scheme, &made, &answer);
+        if (known == SPHG_OK)
+            rebuild = answer != 0;
+        return done(known);
+    }
     result use_lists(const sphg_scheme &scheme, const geometry &where, const sphg_lists &lists)
     {
         detail::checker check("use_lists");

@@ -83,6 +83,23 @@ sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbo
     return sphgi_leave(context, result);
 }
 
+sphg_result sphg_neighbors_would_rebuild(sphg_context *context, const sphg_neighbors *neighbors,
+                                         const sphg_scheme *scheme, const sphg_geometry *geometry,
+                                         int32_t *rebuild)
+{
+    const struct sphgi_checker checker = {context, "sphg_neighbors_would_rebuild"};
+    struct sphgi_scheme checked = {0};
+    sphg_result result = sphgi_enter(context);
+    if (result)
+        return result;
+    result = check_build(checker, neighbors, scheme, geometry, true, &checked);
+    if (!result)
+        result = sphgi_check_pointer(checker, rebuild, "rebuild");
+    if (!result)
+        result = sphgi_would_rebuild(checker, neighbors, &checked, geometry, rebuild);
+    return sphgi_leave(context, result);
+}
+
 sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
                                      const sphg_scheme *scheme, const sphg_geometry *geometry,
                                      const sphg_lists *lists)

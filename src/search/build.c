@@ -238,24 +238,55 @@ static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
     return result;
 }
 
+/* What the search is about. scheme: its radius becomes the largest there is. */
+static sphg_result read_question(struct sphgi_checker checker, const sphg_geometry *given,
+                                 struct sphgi_scheme *scheme, struct sphgi_geometry *g)
+{
+    struct sphgi_radii radii = {0, 0};
+    const sphg_result result = read_radii(checker, given, scheme, &radii);
+    *g = geometry_of(given, scheme);
+    g->radii = sphgi_has_radii(given);
+    g->least = radii.least;
+    g->graded = radii.least < radii.largest;
+    return result ? result : read_geometry(checker, given, g);
+}
+
+/* How much of the skin is left; negative or NaN: the pairs that the object holds do not serve. */
+static double left_of_skin(sphg_context *context, const sphg_neighbors *n,
+                           const struct sphgi_geometry *g, const sphg_geometry *given,
+                           double radius)
+{
+    if (!sphgi_skin_asks_the_same(n, g, given, radius) || n->type != g->type)
+        return -1;
+    return sphgi_skin_left(context, n, g);
+}
+
+sphg_result sphgi_would_rebuild(struct sphgi_checker checker, const sphg_neighbors *n,
+                                const struct sphgi_scheme *checked, const sphg_geometry *given,
+                                int32_t *rebuild)
+{
+    struct sphgi_scheme own = *checked;
+    struct sphgi_geometry g;
+    const sphg_result result = read_question(checker, given, &own, &g);
+    if (!result)
+        *rebuild = !(left_of_skin(checker.context, n, &g, given, own.radius) >= 0);
+    return result;
+}
+
 sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *n,
                                   const struct sphgi_scheme *checked, const sphg_geometry *given)
 {
     struct sphgi_scheme own = *checked;
     const struct sphgi_scheme *scheme = &own;
-    struct sphgi_radii radii = {0, 0};
-    sphg_result result = read_radii(checker, given, &own, &radii);
-    struct sphgi_geometry g = geometry_of(given, scheme);
-    g.radii = sphgi_has_radii(given);
-    g.least = radii.least;
-    g.graded = radii.least < radii.largest;
-    if (!result)
-        result = read_geometry(checker, given, &g);
+    struct sphgi_geometry g;
+    sphg_result result = read_question(checker, given, &own, &g);
     if (result)
         return result;
-    if (sphgi_skin_asks_the_same(n, &g, given, scheme->radius) && n->type == g.type &&
-        sphgi_skin_holds(checker.context, n, &g, scheme->radius))
+    const double left = left_of_skin(checker.context, n, &g, given, scheme->radius);
+    if (left >= 0) {
+        sphgi_skin_keep(checker.context, n, &g, scheme->radius, left);
         return SPHG_OK;
+    }
     n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
     result = build_grids(checker.context, n, &g);

@@ -13,4 +13,9 @@ sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *n
                                  const struct sphgi_scheme *scheme, const sphg_geometry *given,
                                  const sphg_lists *lists);
 
+/* Whether that search would give up the pairs that the object holds. */
+sphg_result sphgi_would_rebuild(struct sphgi_checker checker, const sphg_neighbors *neighbors,
+                                const struct sphgi_scheme *checked, const sphg_geometry *given,
+                                int32_t *rebuild);
+
 #endif

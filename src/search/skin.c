@@ -201,12 +201,15 @@ static double left_of_moves(sphg_context *context, const sphg_neighbors *n,
     return n->skin / 2 - moved - skin_reserve(n, g);
 }
 
-bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sphgi_geometry *g,
-                      double radius)
+double sphgi_skin_left(sphg_context *context, const sphg_neighbors *n,
+                       const struct sphgi_geometry *g)
 {
-    const double left = n->graded ? left_of_shares(context, n, g) : left_of_moves(context, n, g);
-    if (!(left >= 0))
-        return false;
+    return n->graded ? left_of_shares(context, n, g) : left_of_moves(context, n, g);
+}
+
+void sphgi_skin_keep(sphg_context *context, sphg_neighbors *n, const struct sphgi_geometry *g,
+                     double radius, double left)
+{
     n->radius = radius;
     n->least = n->graded ? g->least : radius;
     refresh_rows(context, &n->sources, g->source_rows, g->row_size);
@@ -215,7 +218,6 @@ bool sphgi_skin_holds(sphg_context *context, sphg_neighbors *n, const struct sph
     atomic_store(&n->places, 0);
     n->rebuilt = false;
     n->skin_left = left;
-    return true;
 }
 
 bool sphgi_skin_remember(sphg_neighbors *n, const struct sphgi_geometry *g)

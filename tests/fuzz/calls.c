@@ -36,6 +36,25 @@ static void release(void *memory, size_t size, void *user)
     block_give(memory);
 }
 
+/* A search goes as it was foretold, where memory lasts for both. */
+static sphg_result search_as_foretold(world *own, sphg_neighbors *object,
+                                      const sphg_geometry *geometry)
+{
+    sphg_neighbors_info info = {0};
+    int32_t rebuild = -1;
+    const sphg_result asked =
+        sphg_neighbors_would_rebuild(own->context, object, &own->scheme, geometry, &rebuild);
+    const sphg_result searched =
+        sphg_neighbors_search(own->context, object, &own->scheme, geometry);
+    if (asked == SPHG_ERROR_MEMORY || searched == SPHG_ERROR_MEMORY)
+        return searched;
+    FUZZ_REQUIRE(asked == searched, "foretold %d, found %d", (int)asked, (int)searched);
+    if (searched == SPHG_OK && sphg_neighbors_get_info(own->context, object, &info) == SPHG_OK)
+        FUZZ_REQUIRE(info.rebuilt == rebuild, "rebuilt %d, foretold %d", (int)info.rebuilt,
+                     (int)rebuild);
+    return searched;
+}
+
 static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
 {
     const int count = fuzz_below(from, MOST + 1), flags = fuzz_byte(from);
@@ -49,7 +68,7 @@ static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
     for (int k = 0; k < count * 3; k++)
         own->x[k] = (float)fuzz_tame(from);
     if (!(flags & 16))
-        return sphg_neighbors_search(own->context, object, &own->scheme, &geometry);
+        return search_as_foretold(own, object, &geometry);
     for (int i = 0; i <= MOST; i++)
         own->offsets[i] = (int64_t)i * count;
     for (int k = 0; k < MOST * MOST; k++)

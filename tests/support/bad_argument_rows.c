@@ -226,6 +226,13 @@ static const probe probes_sphg_neighbors_search[] = {
     PROBE(NULL, call_search, of_search), PROBE(prepare_with_targets, call_search, of_search),
     PROBE(prepare_with_radii, call_search, of_radii)};
 
+static const argument of_would_rebuild[] = {CONTEXT, ROW("neighbors", POINTER, neighbors), SCHEME,
+                                            GEOMETRY, ROW("rebuild", POINTER, rebuild)};
+static const probe probes_sphg_neighbors_would_rebuild[] = {
+    PROBE(NULL, call_would_rebuild, of_would_rebuild),
+    PROBE(prepare_with_targets, call_would_rebuild, of_would_rebuild),
+    PROBE(prepare_with_radii, call_would_rebuild, of_radii)};
+
 static const argument of_use_lists[] = {CONTEXT,
                                         ROW("neighbors", POINTER, neighbors),
                                         SCHEME,

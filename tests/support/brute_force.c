@@ -244,12 +244,17 @@ int64_t rows_require_search_exact(sphg_context *context, sphg_neighbors *neighbo
     scheme.dimension = particles->dimension;
     scheme.support_radius = support_radius;
     const sphg_geometry geometry = scene_geometry(particles);
+    int32_t rebuild = -1;
+    SETUP_OK(context,
+             sphg_neighbors_would_rebuild(context, neighbors, &scheme, &geometry, &rebuild));
     SETUP_OK(context, sphg_neighbors_search(context, neighbors, &scheme, &geometry));
     const rows expected = rows_by_brute_force(particles, support_radius);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
     rows_require_equal(&found, &expected, where);
     sphg_neighbors_info info = {0};
     SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
+    TEST_REQUIRE(info.rebuilt == rebuild, "%s: rebuilt %d, foretold %d", where, (int)info.rebuilt,
+                 (int)rebuild);
     const int64_t pairs = expected.offsets[expected.count];
     TEST_REQUIRE(geometry.list_free || geometry.skin > 0 || info.pairs == pairs,
                  "%s: says %lld pairs, not %lld", where, (long long)info.pairs, (long long)pairs);

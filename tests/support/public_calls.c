@@ -28,6 +28,12 @@ sphg_result call_search(valid_call *own)
                                  own->geometry_given);
 }
 
+sphg_result call_would_rebuild(valid_call *own)
+{
+    return sphg_neighbors_would_rebuild(own->context, own->neighbors, own->scheme_given,
+                                        own->geometry_given, own->rebuild);
+}
+
 sphg_result call_use_lists(valid_call *own)
 {
     return sphg_neighbors_use_lists(own->context, own->neighbors, own->scheme_given,

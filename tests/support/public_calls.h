@@ -8,6 +8,7 @@
 sphg_result call_create_context(valid_call *own);
 sphg_result call_create_neighbors(valid_call *own);
 sphg_result call_search(valid_call *own);
+sphg_result call_would_rebuild(valid_call *own);
 sphg_result call_use_lists(valid_call *own);
 sphg_result call_get_context_info(valid_call *own);
 sphg_result call_get_info(valid_call *own);

@@ -88,6 +88,7 @@ static void make_outputs(valid_call *own)
     own->info = (sphg_neighbors_info *)(void *)(own->outputs + 10 * VALID_CALL_SLOT_BYTES);
     own->context_info = (sphg_context_info *)(void *)(own->info + 1);
     own->list_fault = (sphg_list_fault *)(void *)(own->context_info + 1);
+    own->rebuild = (int32_t *)(void *)(own->list_fault + 1);
     own->request.stats = (sphg_stats *)(void *)(own->outputs + 11 * VALID_CALL_SLOT_BYTES);
     own->pairs.gradient = output(own, 12, d);
     own->pairs.offsets = (int64_t *)(void *)(own->outputs + 13 * VALID_CALL_SLOT_BYTES);

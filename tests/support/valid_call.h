@@ -30,7 +30,7 @@ typedef struct valid_call {
     sphg_neighbors_info *info;
     sphg_context_info *context_info;
     sphg_list_fault *list_fault;
-    int32_t *order;
+    int32_t *order, *rebuild;
     const sphg_scheme *scheme_given;
     const sphg_geometry *geometry_given;
     const sphg_lists *lists_given;

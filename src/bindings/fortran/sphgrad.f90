@@ -225,7 +225,7 @@ module sphgrad
   public :: sphg_result_string, sphg_version, sphg_context_create, sphg_context_destroy, &
       sphg_context_get_info, sphg_last_message, sphg_correction_width, sphg_kernel_value, &
       sphg_kernel_constants, sphg_neighbors_create, sphg_neighbors_destroy, &
-      sphg_neighbors_search, sphg_neighbors_use_lists, sphg_neighbors_get_info, &
+      sphg_neighbors_search, sphg_neighbors_would_rebuild, sphg_neighbors_use_lists, sphg_neighbors_get_info, &
       sphg_neighbors_check, sphg_neighbors_get_order, sphg_evaluate, sphg_correction, &
       sphg_gradient, sphg_jacobian, sphg_divergence, sphg_curl, sphg_force, &
       sphg_pair_gradients, sphg_pair_gradient, sphg_invert_moments, sphg_eigen, sphg_svd
@@ -310,6 +310,17 @@ module sphgrad
       type(sphg_geometry), intent(in) :: geometry
       integer(c_int) :: sphg_neighbors_search
     end function sphg_neighbors_search
+
+    function sphg_neighbors_would_rebuild(context, neighbors, scheme, geometry, rebuild) &
+        bind(c, name="sphg_neighbors_would_rebuild")
+      import :: c_int, c_int32_t, c_ptr, sphg_geometry, sphg_scheme
+      type(c_ptr), value :: context
+      type(c_ptr), value :: neighbors
+      type(sphg_scheme), intent(in) :: scheme
+      type(sphg_geometry), intent(in) :: geometry
+      integer(c_int32_t), intent(out) :: rebuild
+      integer(c_int) :: sphg_neighbors_would_rebuild
+    end function sphg_neighbors_would_rebuild
 
     function sphg_neighbors_use_lists(context, neighbors, scheme, geometry, lists) &
         bind(c, name="sphg_neighbors_use_lists")

@@ -206,6 +206,11 @@ static void geometries()
     sphg_neighbors_info info = {};
     neighbors.get_info(info);
     CHECK(info.target_count == 100 && info.source_count == 216 && info.skin_left > 0);
+    bool rebuild = true;
+    neighbors.would_rebuild(scheme, ghosts, rebuild);
+    CHECK(!rebuild);
+    neighbors.would_rebuild(scheme, sphgrad::all(x), rebuild);
+    CHECK(rebuild);
     std::vector<mat> j(100), all(216);
     const sphgrad::sources set(neighbors, sphgrad::same(1.0));
     context.jacobian(scheme, set, v, j);

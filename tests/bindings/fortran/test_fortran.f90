@@ -178,6 +178,7 @@ contains
     type(sphg_neighbors_info) :: info
     real(c_double), target :: j(3, 3, n), lambda(n), places(3, 1), there(3, 1), slope(3, 3, 1)
     type(c_ptr) :: other
+    integer(c_int32_t) :: rebuild
     at_sources(1) = sphg_view_of(v)
     fields(1)%shape = SPHG_VECTOR
     fields(1)%at_sources = c_loc(at_sources)
@@ -209,6 +210,11 @@ contains
     call good(sphg_neighbors_search(context, other, scheme, geometry))
     call good(sphg_neighbors_get_info(context, other, info))
     call expect(info%target_count == 200 .and. info%source_count == n .and. info%skin_left > 0, "info")
+    call good(sphg_neighbors_would_rebuild(context, other, scheme, geometry, rebuild))
+    call expect(rebuild == 0, "the skin holds")
+    geometry%skin = 0.2d0
+    call good(sphg_neighbors_would_rebuild(context, other, scheme, geometry, rebuild))
+    call expect(rebuild == 1, "another skin")
     call good(sphg_context_get_info(context, context_info))
     call expect(context_info%threads >= 1 .and. sphg_version() == SPHG_HEADER_VERSION, "context")
     call sphg_neighbors_destroy(other)

@@ -290,6 +290,19 @@ class Lists(Case):
         m = sg.Neighbors(x, H, lists=p.matrix())
         self.close(sg.gradient(m, a, 1), sg.gradient(n, a, 1), 100)
 
+    def test_a_question_is_answered_as_the_search_goes(self):
+        x, radii = cloud(), np.full(216, H)
+        n = sg.Neighbors(x, H, skin=0.2)
+        for moved, rebuilt in ((0.09, False), (0.11, True)):
+            self.assertEqual(n.would_rebuild(x + moved * np.eye(3)[0]), rebuilt)
+        self.assertTrue(n.would_rebuild(x, own=100))
+        graded = sg.Neighbors(x, H, skin=0.2, support=np.linspace(H, 2 * H, 216))
+        self.assertFalse(graded.would_rebuild(x))
+        self.assertTrue(graded.would_rebuild(x, support=2 * np.linspace(H, 2 * H, 216)))
+        self.assertFalse(graded.would_rebuild(x))
+        self.assertTrue(n.would_rebuild(x, support=radii))
+        self.assertFalse(n.would_rebuild(x))
+
     def test_order_is_a_permutation(self):
         order = sg.Neighbors(cloud(), H).order()
         self.same(np.sort(order), np.arange(216))

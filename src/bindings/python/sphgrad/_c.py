@@ -207,6 +207,8 @@ FUNCTIONS = {
     "sphg_neighbors_create": (c.c_int, [_context, c.POINTER(_neighbors)]),
     "sphg_neighbors_destroy": (None, [_neighbors]),
     "sphg_neighbors_search": (c.c_int, [_context, _neighbors, _scheme_p, c.POINTER(Geometry)]),
+    "sphg_neighbors_would_rebuild": (c.c_int, [_context, _neighbors, _scheme_p, c.POINTER(Geometry),
+                                               c.c_void_p]),
     "sphg_neighbors_use_lists": (c.c_int, [_context, _neighbors, _scheme_p, c.POINTER(Geometry),
                                            c.POINTER(Lists)]),
     "sphg_neighbors_get_info": (c.c_int, [_context, _neighbors, c.POINTER(NeighborsInfo)]),

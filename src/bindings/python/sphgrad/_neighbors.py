@@ -116,6 +116,24 @@ class Neighbors:
         self._build(positions, own, targets, None, scheme)
         return self
 
+    def would_rebuild(self, positions, *, own=None, targets=None, scheme=None, support=None,
+                      target_support=None):
+        """Whether that search would find pairs anew, or the skin still holds. Nothing is built."""
+        positions = _positions(positions, "positions")
+        scheme = self._scheme if scheme is None else as_scheme(scheme)
+        given = {"support": support, "target_support": target_support}
+        kept, borrowed, rebuild = self._options, Borrowed(), c.c_int32()
+        self._options = {**kept, **{name: x for name, x in given.items() if x is not None}}
+        try:
+            geometry = self._question(positions, own, targets, borrowed)[0]
+        finally:
+            self._options = kept
+        c_scheme = scheme._c_scheme(positions.shape[1])
+        with self.context._calls() as context:
+            self.context._check(_c.functions.sphg_neighbors_would_rebuild(
+                context, self._pointer, c.byref(c_scheme), c.byref(geometry), c.byref(rebuild)))
+        return bool(rebuild.value)
+
     def use_lists(self, positions, lists, *, own=None, targets=None, scheme=None):
         """Takes your lists for these positions. Returns self."""
         self._build(positions, own, targets, lists, scheme)
@@ -167,16 +185,21 @@ class Neighbors:
         return _c.Lists(offsets=offsets, indices=indices if len(found) else None,
                         index_mask=lists.index_mask, copy=bool(lists.copy))
 
-    def _build(self, positions, own, targets, lists, scheme=None):
-        positions = _positions(positions, "positions")
-        scheme = self._scheme if scheme is None else as_scheme(scheme)
-        borrowed = Borrowed()
+    def _question(self, positions, own, targets, borrowed):
+        """The geometry in C, and the precision of fields."""
         geometry = self._geometry(positions, own, targets, borrowed)
-        c_scheme = scheme._c_scheme(positions.shape[1])
         dtype = positions.dtype
         if self._options["precision"] is not None:
             dtype = precision_of(self._options["precision"], "precision")
         geometry.precision = {"f4": _c.Type.F32, "f8": _c.Type.F64}[dtype.str[1:]]
+        return geometry, dtype
+
+    def _build(self, positions, own, targets, lists, scheme=None):
+        positions = _positions(positions, "positions")
+        scheme = self._scheme if scheme is None else as_scheme(scheme)
+        borrowed = Borrowed()
+        geometry, dtype = self._question(positions, own, targets, borrowed)
+        c_scheme = scheme._c_scheme(positions.shape[1])
         c_lists = None if lists is None else self._lists(lists, geometry, borrowed)
         with self.context._calls() as context:
             pointer = self._pointer
