@@ -19,6 +19,8 @@ probe_lapacke() { pkg-config --exists lapacke 2>/dev/null; }
 probe_cjson() { pkg-config --exists libcjson 2>/dev/null; }
 # Particles that the examples write for ParaView.
 probe_hdf5() { pkg-config --exists hdf5 2>/dev/null || pkg-config --exists hdf5-serial 2>/dev/null; }
+probe_mpi() { command -v mpicc mpirun >/dev/null && printf '#include <mpi.h>\n' | mpicc -x c -fsyntax-only - 2>/dev/null; }
+probe_zoltan() { printf '#include <zoltan.h>\n' | mpicc -x c -I/usr/include/trilinos -fsyntax-only - 2>/dev/null; }
 probe_gnuplot() { gnuplot -e 'set terminal pngcairo' >/dev/null 2>&1; }
 # AArch64: cross compilers, and what runs their programs.
 probe_aarch64() {
@@ -64,6 +66,8 @@ package_of() {
         lapacke) echo liblapacke-dev ;;
         cjson) echo libcjson-dev ;;
         hdf5) echo libhdf5-dev ;;
+        mpi) printf '%s\n' libopenmpi-dev openmpi-bin ;;
+        zoltan) echo libtrilinos-zoltan-dev ;;
         gnuplot) echo gnuplot-nox ;;
         aarch64) printf '%s\n' gcc-aarch64-linux-gnu g++-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
         clang) echo clang ;;
