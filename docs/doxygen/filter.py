@@ -255,13 +255,15 @@ def page(path, text):
 def examples():
     """A page for each example, found by Doxygen's search, with links from the functions that it calls."""
     folder = os.path.join(ROOT, "examples")
-    for below in ("", "cpp", "fortran", "python"):
+    for below in ("", "cpp", "fortran", "python", "distributed"):
         for name in sorted(os.listdir(os.path.join(folder, below))):
             inside = os.path.join(below, name) if below else name
-            if not name.endswith((".c", ".cpp", ".f90", ".py")):
+            if not name.endswith((".c", ".cpp", ".f90", ".py", ".h")):
                 continue
             text = read(os.path.join(folder, inside))
             comment = re.match(r"/\*(.*?)\*/", text, re.S)
+            if not comment and below == "distributed":
+                continue  # its header has the words
             first = " ".join(text_of(comment.group(0))) if comment else re.match(r'(?:#!.*\n)?(?:! |""")(.*)', text).group(1)
             print(f"/** \\example {inside}\n{escaped(first.rstrip(chr(34)))} */")
 

@@ -1,25 +1,41 @@
 #include "boxes.h"
 #include <math.h>
 
-int box_with(const struct box *boxes, int count, const double *x)
+bool box_holds(const struct box *box, const double *x)
 {
-    for (int k = 0; k < count; k++) {
-        const struct box *b = &boxes[k];
-        if (x[0] >= b->low[0] && x[0] < b->high[0] && x[1] >= b->low[1] && x[1] < b->high[1] &&
-            x[2] >= b->low[2] && x[2] < b->high[2])
-            return k;
+    for (int a = 0; a < 3; a++)
+        if (!(x[a] >= box->low[a] && x[a] < box->high[a]))
+            return false;
+    return true;
+}
+
+static bool is_empty(const struct box *box)
+{
+    return !(box->low[0] < box->high[0] && box->low[1] < box->high[1] &&
+             box->low[2] < box->high[2]);
+}
+
+bool boxes_are_near(const struct box *box, const struct box *other, double reach)
+{
+    double square = 0;
+    if (is_empty(box) || is_empty(other))
+        return false;
+    for (int a = 0; a < 3; a++) {
+        const double gap =
+            fmax(fmax(box->low[a] - other->high[a], other->low[a] - box->high[a]), 0);
+        square += gap * gap;
     }
-    return -1;
+    return square <= reach * reach;
 }
 
 bool box_is_near(const struct box *box, const double *x, double reach)
 {
     double square = 0;
+    if (is_empty(box))
+        return false;
     for (int a = 0; a < 3; a++) {
-        if (!(box->low[a] < box->high[a]))
-            return false;
-        const double out = fmax(fmax(box->low[a] - x[a], x[a] - box->high[a]), 0);
-        square += out * out;
+        const double gap = fmax(fmax(box->low[a] - x[a], x[a] - box->high[a]), 0);
+        square += gap * gap;
     }
     return square <= reach * reach;
 }

@@ -10,11 +10,11 @@ struct box {
     double low[3], high[3]; /* low <= x < high */
 };
 
-/* The rank whose box holds x; -1 if x is not finite. */
-int box_with(const struct box *boxes, int count, const double *x);
+bool box_holds(const struct box *box, const double *x);
 
-/* Whether x is closer to the box than reach; a box that holds nothing is near nobody. */
+/* Whether x, or another box, is within reach of the box. What holds nothing is near nobody. */
 bool box_is_near(const struct box *box, const double *x, double reach);
+bool boxes_are_near(const struct box *box, const struct box *other, double reach);
 
 /* The particles of this rank: x of the first, and the next `stride` bytes on. */
 struct places {

@@ -28,6 +28,7 @@ void domain_free(struct domain *domain)
     transfer_free(&domain->moving);
     free(domain->parcels.list);
     free(domain->spare);
+    free(domain->near);
     free(domain->boxes);
     free(domain->items);
     free(domain->inner);
@@ -60,14 +61,23 @@ static void add_parcel(struct parcels *parcels, int32_t item, int rank)
     parcels->list[parcels->count++] = (struct parcel){item, rank};
 }
 
-/* Everybody goes to its owner, most of them to where they are. */
+/* Most stay where they are. */
+static int owner_of(const struct domain *domain, const double *x)
+{
+    if (box_holds(&domain->boxes[domain->rank], x))
+        return domain->rank;
+    for (int rank = 0; rank < domain->rank_count; rank++)
+        if (box_holds(&domain->boxes[rank], x))
+            return rank;
+    stop("the boxes do not fill space");
+}
+
+/* Everybody goes to its owner. */
 static void send_home(struct domain *domain)
 {
     domain->parcels.count = 0;
     for (int k = 0; k < domain->own; k++) {
-        const int owner = box_with(domain->boxes, domain->rank_count, position(domain, k));
-        if (owner < 0)
-            stop("the boxes do not fill space");
+        const int owner = owner_of(domain, position(domain, k));
         domain->moved += owner != domain->rank;
         add_parcel(&domain->parcels, k, owner);
     }
@@ -85,19 +95,20 @@ static void send_home(struct domain *domain)
 /* ---- Ghosts ------------------------------------------------------------------------------------
  */
 
-/* Farther than reach from every face of its own box: a look at the others can be saved. */
-static bool is_deep(const struct box *box, const double *x, double reach)
+/* So that particles look at a few boxes only, however many ranks there are. */
+static void find_near_boxes(struct domain *domain, double reach)
 {
-    for (int a = 0; a < 3; a++)
-        if (!(x[a] - box->low[a] > reach && box->high[a] - x[a] > reach))
-            return false;
-    return true;
+    const struct box *mine = &domain->boxes[domain->rank];
+    domain->near = resized(domain->near, (size_t)domain->rank_count, sizeof *domain->near);
+    domain->near_count = 0;
+    for (int rank = 0; rank < domain->rank_count; rank++)
+        if (rank != domain->rank && boxes_are_near(mine, &domain->boxes[rank], reach))
+            domain->near[domain->near_count++] = rank;
 }
 
 /* Who is sent to whom, and who to nobody. */
 static void address(struct domain *domain, double reach)
 {
-    const struct box *mine = &domain->boxes[domain->rank];
     struct parcels *parcels = &domain->parcels;
     parcels->count = 0;
     domain->inner = resized(domain->inner, (size_t)domain->own, sizeof(int32_t));
@@ -106,9 +117,9 @@ static void address(struct domain *domain, double reach)
     for (int k = 0; k < domain->own; k++) {
         const int before = parcels->count;
         const double *x = position(domain, k);
-        for (int rank = 0; rank < domain->rank_count && !is_deep(mine, x, reach); rank++)
-            if (rank != domain->rank && box_is_near(&domain->boxes[rank], x, reach))
-                add_parcel(parcels, k, rank);
+        for (int n = 0; n < domain->near_count; n++)
+            if (box_is_near(&domain->boxes[domain->near[n]], x, reach))
+                add_parcel(parcels, k, domain->near[n]);
         if (parcels->count > before)
             domain->outer[domain->outer_count++] = k;
         else
@@ -118,6 +129,7 @@ static void address(struct domain *domain, double reach)
 
 static void bring_ghosts(struct domain *domain, double reach)
 {
+    find_near_boxes(domain, reach);
     address(domain, reach);
     plan_make(&domain->plan, domain->ranks, domain->parcels.list, domain->parcels.count);
     domain->ghosts = domain->plan.received;

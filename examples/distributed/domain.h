@@ -23,6 +23,8 @@ struct domain {
         struct parcel *list;
         int count, room;
     } parcels;
+    int *near; /* ranks whose boxes are within reach of this one's */
+    int near_count;
     struct plan home;
     struct transfer moving;
     char *spare;
