@@ -44,3 +44,12 @@ const double *place_of(const struct places *places, int k)
 {
     return (const double *)(const void *)((const char *)places->x + (size_t)k * places->stride);
 }
+
+cutter *best_cut(void)
+{
+#ifdef WITH_ZOLTAN
+    return cut_by_bisection;
+#else
+    return cut_into_slabs;
+#endif
+}

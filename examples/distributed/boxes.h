@@ -32,5 +32,6 @@ cutter cut_into_slabs; /* across the longest extent */
 #ifdef WITH_ZOLTAN
 cutter cut_by_bisection; /* recursive coordinate bisection by Zoltan */
 #endif
+cutter *best_cut(void); /* of these */
 
 #endif

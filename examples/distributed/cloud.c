@@ -70,37 +70,31 @@ static void add(struct sums *sums, const double *force, double weight, const dou
     sums->size_of_work += fabs(weight * dot(force, v)) + fabs(expected);
 }
 
-static struct cloud_errors errors_of(const struct sums *sums)
-{
-    return (struct cloud_errors){sqrt(dot(sums->force, sums->force)) / sums->size_of_force,
-                                 fabs(sums->work - sums->expected) / sums->size_of_work};
-}
-
 /* sum f_i . v_i = -sum V_i S_i : grad v, whatever the neighbourhoods are like, if the gradient is
  * exact on v, here v = x. */
-struct cloud_errors cloud_judge_adjoint(const struct cloud_forces *forces, int side)
+static void add_adjoint(struct sums *sums, const struct cloud_particle *p, const double *force)
 {
-    struct sums sums = {.work = 0};
-    for (int name = 0; name < side * side * side; name++) {
-        const struct cloud_particle p = particle_of(name, side);
-        const double trace = p.stress[0] + p.stress[3] + p.stress[5];
-        add(&sums, forces[name].adjoint, 1, p.x, -p.volume * trace);
-    }
-    return errors_of(&sums);
+    const double trace = p->stress[0] + p->stress[3] + p->stress[5];
+    add(sums, force, 1, p->x, -p->volume * trace);
 }
 
 /* sum V_i f_i . v_i = -sum (V_i A_i / rho_i) sum_j rho_j (v_j - v_i) . G_ij, and the inner sum is
  * div (rho v) - v . grad rho if both rho and rho v are linear, here rho v = x. */
-struct cloud_errors cloud_judge_symmetric(const struct cloud_forces *forces, int side)
+static void add_symmetric(struct sums *sums, const struct cloud_particle *p, const double *force)
+{
+    const double v[3] = {p->x[0] / p->density, p->x[1] / p->density, p->x[2] / p->density};
+    add(sums, force, p->volume, v, -p->volume * p->pressure / p->density * (3 - dot(v, slope)));
+}
+
+struct cloud_errors cloud_judge(const struct cloud_forces *forces, int side, enum cloud_form form)
 {
     struct sums sums = {.work = 0};
     for (int name = 0; name < side * side * side; name++) {
         const struct cloud_particle p = particle_of(name, side);
-        const double v[3] = {p.x[0] / p.density, p.x[1] / p.density, p.x[2] / p.density};
-        add(&sums, forces[name].symmetric, p.volume, v,
-            -p.volume * p.pressure / p.density * (3 - dot(v, slope)));
+        (form == CLOUD_ADJOINT ? add_adjoint : add_symmetric)(&sums, &p, forces[name].of[form]);
     }
-    return errors_of(&sums);
+    return (struct cloud_errors){sqrt(dot(sums.force, sums.force)) / sums.size_of_force,
+                                 fabs(sums.work - sums.expected) / sums.size_of_work};
 }
 
 /* ---- Differences -------------------------------------------------------------------------------
@@ -115,24 +109,13 @@ static void widen(double *largest, const double *number, const double *other)
     }
 }
 
-double cloud_difference_of_adjoint(const struct cloud_forces *a, const struct cloud_forces *b,
-                                   int side)
+double cloud_difference(const struct cloud_forces *a, const struct cloud_forces *b, int side,
+                        enum cloud_form form)
 {
     double difference = 0, size = 0;
     for (int k = 0; k < side * side * side; k++) {
-        widen(&difference, a[k].adjoint, b[k].adjoint);
-        widen(&size, b[k].adjoint, NULL);
-    }
-    return size > 0 ? difference / size : difference;
-}
-
-double cloud_difference_of_symmetric(const struct cloud_forces *a, const struct cloud_forces *b,
-                                     int side)
-{
-    double difference = 0, size = 0;
-    for (int k = 0; k < side * side * side; k++) {
-        widen(&difference, a[k].symmetric, b[k].symmetric);
-        widen(&size, b[k].symmetric, NULL);
+        widen(&difference, a[k].of[form], b[k].of[form]);
+        widen(&size, b[k].of[form], NULL);
     }
     return size > 0 ? difference / size : difference;
 }

@@ -8,10 +8,12 @@ struct cloud_particle {
     int32_t name;
 };
 
-/* What came of a particle. */
+enum cloud_form { CLOUD_ADJOINT, CLOUD_SYMMETRIC, CLOUD_FORMS };
+
+/* What came of a particle, in each form. */
 struct cloud_forces {
     int32_t name;
-    double adjoint[3], symmetric[3];
+    double of[CLOUD_FORMS][3];
 };
 
 /* A share of side^3 particles for each rank, wherever they are. */
@@ -22,13 +24,10 @@ struct cloud_errors {
     double momentum; /* sum f_i (adjoint), sum V_i f_i (symmetric): 0 */
     double work;     /* on a flow whose gradient is known: see cloud.c */
 };
-struct cloud_errors cloud_judge_adjoint(const struct cloud_forces *forces, int side);
-struct cloud_errors cloud_judge_symmetric(const struct cloud_forces *forces, int side);
+struct cloud_errors cloud_judge(const struct cloud_forces *forces, int side, enum cloud_form form);
 
-/* The largest difference of one of the forces from that of another run, in units of the largest. */
-double cloud_difference_of_adjoint(const struct cloud_forces *a, const struct cloud_forces *b,
-                                   int side);
-double cloud_difference_of_symmetric(const struct cloud_forces *a, const struct cloud_forces *b,
-                                     int side);
+/* The largest difference of a force from that of another run, in units of the largest force. */
+double cloud_difference(const struct cloud_forces *a, const struct cloud_forces *b, int side,
+                        enum cloud_form form);
 
 #endif

@@ -103,17 +103,17 @@ static void correct(struct work *work, bool forget)
 static void press(struct work *work)
 {
     const sphg_view pressure = of_particles(&work->particles->pressure);
-    const sphg_field field = {.shape = SPHG_SCALAR,
-                              .form = SPHG_SYMMETRIC,
-                              .at_sources = &pressure,
-                              .gradient =
-                                  sphg_view_f64(work->forces->symmetric, sizeof *work->forces)};
+    const sphg_field field = {
+        .shape = SPHG_SCALAR,
+        .form = SPHG_SYMMETRIC,
+        .at_sources = &pressure,
+        .gradient = sphg_view_f64(work->forces->of[CLOUD_SYMMETRIC], sizeof *work->forces)};
     const sphg_request request = {
         .sources = &work->sources, .fields = &field, .set_count = 1, .field_count = 1};
     need(work, sphg_evaluate(work->context, &work->scheme, &request));
     need(work, sphg_force(work->context, &work->scheme, &work->sources, NULL, SPHG_SYM_TENSOR,
                           of_particles(work->particles->stress),
-                          sphg_view_f64(work->forces->adjoint, sizeof *work->forces)));
+                          sphg_view_f64(work->forces->of[CLOUD_ADJOINT], sizeof *work->forces)));
 }
 
 /* By name, on rank 0. */
@@ -146,13 +146,13 @@ static bool has_exact_gradients(int side)
 static bool judge(const char *name, const struct cloud_forces *many, const struct cloud_forces *one,
                   int side)
 {
-    const double adjoint = cloud_difference_of_adjoint(many, one, side);
-    const double symmetric = cloud_difference_of_symmetric(many, one, side);
+    const double adjoint = cloud_difference(many, one, side, CLOUD_ADJOINT);
+    const double symmetric = cloud_difference(many, one, side, CLOUD_SYMMETRIC);
     printf("%-6s %10.1e %10.1e", name, adjoint, symmetric);
     bool good = is_small(adjoint) && is_small(symmetric);
     if (has_exact_gradients(side)) {
-        const struct cloud_errors a = cloud_judge_adjoint(many, side);
-        const struct cloud_errors s = cloud_judge_symmetric(many, side);
+        const struct cloud_errors a = cloud_judge(many, side, CLOUD_ADJOINT);
+        const struct cloud_errors s = cloud_judge(many, side, CLOUD_SYMMETRIC);
         printf("   %10.1e %10.1e   %10.1e %10.1e", a.momentum, s.momentum, a.work, s.work);
         good &=
             is_small(a.momentum) && is_small(s.momentum) && is_small(a.work) && is_small(s.work);
@@ -202,12 +202,7 @@ static int compare(int rank, const struct wanted *wanted)
 
 static bool read_words(int count, char **words, struct wanted *wanted)
 {
-    *wanted = (struct wanted){.side = 9};
-#ifdef WITH_ZOLTAN
-    wanted->cut = cut_by_bisection;
-#else
-    wanted->cut = cut_into_slabs;
-#endif
+    *wanted = (struct wanted){.side = 9, .cut = best_cut()};
     for (int k = 1; k < count; k++) {
         char *end_of_number;
         const long side = strtol(words[k], &end_of_number, 10);

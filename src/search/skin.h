@@ -8,8 +8,8 @@ bool sphgi_skin_asks_the_same(const sphg_neighbors *neighbors,
                               const struct sphgi_geometry *geometry, const sphg_geometry *given,
                               double radius);
 
-/* [L] how far any particle may still move if they stand there now. The pairs cover everything where it
- * is >= 0, and do not where it is negative or NaN. */
+/* [L] how far any particle may still move if they stand there now. The pairs cover everything
+ * where it is >= 0, and do not where it is negative or NaN. */
 double sphgi_skin_left(sphg_context *context, const sphg_neighbors *neighbors,
                        const struct sphgi_geometry *geometry);
 

@@ -49,7 +49,7 @@ case $program in
     *rotating_drop)
         holds 5 6 40 7
         holds 3 6 40 1000 slabs
-        holds 5 1 3 # seven particles
+        holds 5 1 3 # five particles
         fails_when_broken '^Wrong: the radius' zero 6 40
         fails_when_broken 'is not finite' hole 6 40
         fails '^mpirun -n' 1 "$program" 0
