@@ -11,7 +11,7 @@ needs_of_soak() { printf '%s\n' "${building[@]}"; }
 
 # SPHG_NEON_AREAS, a regular expression, selects tests; all of them take half an hour.
 run_neon() {
-    . .ci/foreign.sh
+    . tools/foreign.sh
     require_foreign "$PWD/build/aarch64-packages" arm64 libcmocka-dev liblapacke-dev libcjson-dev &&
         build_preset neon -DSPHG_BUILD_TESTS=ON -DSPHG_WARNINGS_AS_ERRORS=$werror &&
         ctest --preset neon -j "$(nproc)" -R "${SPHG_NEON_AREAS:-.}"

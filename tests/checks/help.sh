@@ -24,13 +24,13 @@ helps() {
 
 # The scripts in a tree where nothing can be built.
 tree=$work/tree
-mkdir -p "$tree/.ci" "$tree/bench" "$tree/examples/scenes" "$tree/examples/cpp" "$tree/tests"
+mkdir -p "$tree/tools" "$tree/bench" "$tree/examples/scenes" "$tree/examples/cpp" "$tree/tests"
 cp "$sources/bench/run" "$sources/bench/main.c" "$tree/bench"
 cp "$sources/examples/run" "$sources/examples/CMakeLists.txt" "$sources"/examples/*.c "$tree/examples"
 cp "$sources"/examples/cpp/*.cpp "$tree/examples/cpp"
 cp "$sources/examples/scenes/CMakeLists.txt" "$sources"/examples/scenes/*.c "$tree/examples/scenes"
 cp "$sources/tests/run" "$sources/tests/more.sh" "$tree/tests"
-cat >"$tree/.ci/setup.sh" <<'END'
+cat >"$tree/tools/setup.sh" <<'END'
 require_packages() { [ -e "$source_dir/may_build" ] || { echo "asks for packages" >&2; return 1; }; }
 build_preset() { [ -e "$source_dir/may_build" ] || { echo "builds" >&2; return 1; }; }
 END
