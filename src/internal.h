@@ -16,6 +16,13 @@
 /* A C "template": called with constant arguments, so that the compiler removes branches on them. */
 #define SPHGI_TEMPLATE  static inline __attribute__((always_inline))
 
+/* A function that takes a format, and what it names from argument `first` on, as printf does. */
+#if defined(__MINGW32__) && !defined(__clang__) /* "printf" means the system's there */
+#define SPHGI_FORMAT(format_at, first) __attribute__((format(gnu_printf, format_at, first)))
+#else
+#define SPHGI_FORMAT(format_at, first) __attribute__((format(printf, format_at, first)))
+#endif
+
 static inline int32_t sphgi_min32(int32_t a, int32_t b)
 {
     return a < b ? a : b;

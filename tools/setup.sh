@@ -138,8 +138,8 @@ require_packages() {
         fi
     fi
     version=$(cmake --version | sed -n '1s/.* //p')
-    if [ "$(printf '%s\n3.23\n' "$version" | sort -V | head -n 1)" != 3.23 ]; then
-        echo "sphgrad needs CMake 3.23 or newer, this is $version (Debian 12, Ubuntu 24.04 have it)" >&2
+    if [ "$(printf '%s\n3.22\n' "$version" | sort -V | head -n 1)" != 3.22 ]; then
+        echo "sphgrad needs CMake 3.22 or newer, this is $version (Debian 12, Ubuntu 22.04 have it)" >&2
         return 1
     fi
 }

@@ -6,8 +6,8 @@
 #include <string.h>
 
 /* A failure before there is a context to keep the message. */
-__attribute__((format(printf, 3, 4))) static sphg_result
-refuse(const sphg_config *config, sphg_result result, const char *format, ...)
+SPHGI_FORMAT(3, 4)
+static sphg_result refuse(const sphg_config *config, sphg_result result, const char *format, ...)
 {
     char message[SPHGI_MESSAGE_LENGTH];
     va_list arguments;

@@ -45,8 +45,8 @@ sphg_result sphgi_leave(sphg_context *context, sphg_result result);
 void sphgi_report(const sphg_config *config, sphg_result result, const char *message);
 
 /* Notes what was objected to, tells the host's log, returns result. */
-__attribute__((format(printf, 3, 4))) sphg_result
-sphgi_fail(sphg_context *context, sphg_result result, const char *format, ...);
+SPHGI_FORMAT(3, 4)
+sphg_result sphgi_fail(sphg_context *context, sphg_result result, const char *format, ...);
 
 /* Memory failures all read alike: who asked, and for how much. */
 sphg_result sphgi_fail_memory(sphg_context *context, const char *function);

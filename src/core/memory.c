@@ -1,17 +1,28 @@
 #include "memory.h"
 #include <stdlib.h>
+#ifdef _WIN32 /* aligned memory is apart from other memory there, and has functions of its own */
+#include <malloc.h>
+#endif
 
 static void *libc_allocate(size_t size, size_t alignment, void *user)
 {
     (void)user;
+#ifdef _WIN32
+    return _aligned_malloc(size, alignment);
+#else
     return aligned_alloc(alignment, sphgi_round_up(size, alignment));
+#endif
 }
 
 static void libc_release(void *memory, size_t size, void *user)
 {
     (void)size;
     (void)user;
+#ifdef _WIN32
+    _aligned_free(memory);
+#else
     free(memory);
+#endif
 }
 
 struct sphgi_allocator sphgi_allocator_of(const sphg_config *config)

@@ -6,7 +6,7 @@ SPHGI_TEMPLATE bool read_as(const struct sphgi_columns *columns, int64_t begin, 
 {
     real difference = R(0); /* of x - x: 0, or NaN */
     for (int64_t k = begin; k < end; ++k, row += SPHGI_ROW) {
-        const ptrdiff_t offset = k * columns->stride;
+        const ptrdiff_t offset = (ptrdiff_t)k * columns->stride;
         row[2] = row[3] = R(0);
         for (int32_t c = 0; c < count; ++c) {
             const real x = number_at(columns->at[c] + offset);

@@ -8,22 +8,48 @@ struct four {
 typedef real quad
     __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
 
-#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes */
+#if VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8 /* eight lanes, of AVX-512 or of AVX2 */
+#if REAL_IS_F64
+SPHGI_TEMPLATE vec joined(quad low, quad high)
+{
+    return (vec)_mm512_insertf64x4(_mm512_castpd256_pd512((__m256d)low), (__m256d)high, 1);
+}
+SPHGI_TEMPLATE quad lower(vec v)
+{
+    return (quad)_mm512_castpd512_pd256((__m512d)v);
+}
+SPHGI_TEMPLATE quad upper(vec v)
+{
+    return (quad)_mm512_extractf64x4_pd((__m512d)v, 1);
+}
+#else
+SPHGI_TEMPLATE vec joined(quad low, quad high)
+{
+    return (vec)_mm256_insertf128_ps(_mm256_castps128_ps256((__m128)low), (__m128)high, 1);
+}
+SPHGI_TEMPLATE quad lower(vec v)
+{
+    return (quad)_mm256_castps256_ps128((__m256)v);
+}
+SPHGI_TEMPLATE quad upper(vec v)
+{
+    return (quad)_mm256_extractf128_ps((__m256)v, 1);
+}
+#endif
 SPHGI_TEMPLATE vec two_rows(const real *low, const real *high)
 {
-    return __builtin_shufflevector(*(const quad *)low, *(const quad *)high, 0, 1, 2, 3, 4, 5, 6, 7);
+    return joined(*(const quad *)low, *(const quad *)high);
 }
 /* [row][number] to [number][row] in each half, and back. */
 SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
 {
-    const vec ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
-    const vec AB = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
-    const vec cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
-    const vec CD = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-    return (struct four){__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
-                         __builtin_shufflevector(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13),
-                         __builtin_shufflevector(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
+    const vec ab = SHUFFLED(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+    const vec AB = SHUFFLED(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+    const vec cd = SHUFFLED(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+    const vec CD = SHUFFLED(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    return (struct four){
+        SHUFFLED(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13), SHUFFLED(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+        SHUFFLED(AB, CD, 0, 1, 8, 9, 4, 5, 12, 13), SHUFFLED(AB, CD, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
 SPHGI_TEMPLATE struct four transpose(const real *const *row)
 {
@@ -32,8 +58,8 @@ SPHGI_TEMPLATE struct four transpose(const real *const *row)
 }
 SPHGI_TEMPLATE void put_parts(vec v, quad *to)
 {
-    to[0] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
-    to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    to[0] = lower(v);
+    to[4] = upper(v);
 }
 #elif VECTOR_BYTES == 64
 SPHGI_TEMPLATE __m256 two_rows(const real *low, const real *high)
@@ -63,17 +89,17 @@ SPHGI_TEMPLATE struct four transpose(const real *const *row)
 }
 SPHGI_TEMPLATE void put_parts(vec v, quad *to)
 {
-    to[0] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
-    to[4] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
-    to[8] = __builtin_shufflevector(v, v, 8, 9, 10, 11);
-    to[12] = __builtin_shufflevector(v, v, 12, 13, 14, 15);
+    to[0] = (quad)_mm512_extractf32x4_ps((__m512)v, 0);
+    to[4] = (quad)_mm512_extractf32x4_ps((__m512)v, 1);
+    to[8] = (quad)_mm512_extractf32x4_ps((__m512)v, 2);
+    to[12] = (quad)_mm512_extractf32x4_ps((__m512)v, 3);
 }
 #elif REAL_IS_F64 && VECTOR_BYTES == 16
 SPHGI_TEMPLATE struct four transpose(const real *const *row)
 {
     const vec a = load(row[0]), A = load(row[0] + 2), b = load(row[1]), B = load(row[1] + 2);
-    return (struct four){__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3),
-                         __builtin_shufflevector(A, B, 0, 2), __builtin_shufflevector(A, B, 1, 3)};
+    return (struct four){SHUFFLED(a, b, 0, 2), SHUFFLED(a, b, 1, 3), SHUFFLED(A, B, 0, 2),
+                         SHUFFLED(A, B, 1, 3)};
 }
 SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
 {
@@ -83,13 +109,12 @@ SPHGI_TEMPLATE void rows_of(struct four v, quad *rows)
 #else /* four lanes */
 SPHGI_TEMPLATE struct four turned(vec a, vec b, vec c, vec d)
 {
-    const vec ab = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-    const vec AB = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    const vec cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    const vec CD = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    return (struct four){
-        __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(AB, CD, 0, 1, 4, 5),
-        __builtin_shufflevector(ab, cd, 2, 3, 6, 7), __builtin_shufflevector(AB, CD, 2, 3, 6, 7)};
+    const vec ab = SHUFFLED(a, b, 0, 4, 2, 6);
+    const vec AB = SHUFFLED(a, b, 1, 5, 3, 7);
+    const vec cd = SHUFFLED(c, d, 0, 4, 2, 6);
+    const vec CD = SHUFFLED(c, d, 1, 5, 3, 7);
+    return (struct four){SHUFFLED(ab, cd, 0, 1, 4, 5), SHUFFLED(AB, CD, 0, 1, 4, 5),
+                         SHUFFLED(ab, cd, 2, 3, 6, 7), SHUFFLED(AB, CD, 2, 3, 6, 7)};
 }
 SPHGI_TEMPLATE struct four transpose(const real *const *row)
 {

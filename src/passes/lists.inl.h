@@ -17,14 +17,14 @@ SPHGI_TEMPLATE void turn_four(const uint32_t *const *lists, const int32_t *count
     four_ids a[4];
     for (int32_t i = 0; i < 4; ++i)
         a[i] = *(const four_ids *)four_from(lists[i], count[i], k, none);
-    const four_ids ac = __builtin_shufflevector(a[0], a[2], 0, 4, 1, 5);
-    const four_ids AC = __builtin_shufflevector(a[0], a[2], 2, 6, 3, 7);
-    const four_ids bd = __builtin_shufflevector(a[1], a[3], 0, 4, 1, 5);
-    const four_ids BD = __builtin_shufflevector(a[1], a[3], 2, 6, 3, 7);
-    *(four_ids *)to = __builtin_shufflevector(ac, bd, 0, 4, 1, 5);
-    *(four_ids *)(to + stride) = __builtin_shufflevector(ac, bd, 2, 6, 3, 7);
-    *(four_ids *)(to + 2 * stride) = __builtin_shufflevector(AC, BD, 0, 4, 1, 5);
-    *(four_ids *)(to + 3 * stride) = __builtin_shufflevector(AC, BD, 2, 6, 3, 7);
+    const four_ids ac = SHUFFLED_BY(four_ids, a[0], a[2], 0, 4, 1, 5);
+    const four_ids AC = SHUFFLED_BY(four_ids, a[0], a[2], 2, 6, 3, 7);
+    const four_ids bd = SHUFFLED_BY(four_ids, a[1], a[3], 0, 4, 1, 5);
+    const four_ids BD = SHUFFLED_BY(four_ids, a[1], a[3], 2, 6, 3, 7);
+    *(four_ids *)to = SHUFFLED_BY(four_ids, ac, bd, 0, 4, 1, 5);
+    *(four_ids *)(to + stride) = SHUFFLED_BY(four_ids, ac, bd, 2, 6, 3, 7);
+    *(four_ids *)(to + 2 * stride) = SHUFFLED_BY(four_ids, AC, BD, 0, 4, 1, 5);
+    *(four_ids *)(to + 3 * stride) = SHUFFLED_BY(four_ids, AC, BD, 2, 6, 3, 7);
 }
 
 #if VECTOR_BYTES >= 32 && !REAL_IS_F64

@@ -21,7 +21,7 @@ SPHGI_TEMPLATE void load_rows_as(const struct sphgi_columns *columns, const int3
     const ptrdiff_t stride = columns->stride;
     const char *base = columns->at[first];
     for (int64_t k = begin; k < end; ++k, row += SPHGI_ROW) {
-        const ptrdiff_t offset = (order ? order[k] : k) * stride;
+        const ptrdiff_t offset = (ptrdiff_t)(order ? order[k] : k) * stride;
         if (order && k + AHEAD < end)
             __builtin_prefetch(base + order[k + AHEAD] * stride);
         if (together) {

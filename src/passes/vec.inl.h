@@ -56,6 +56,15 @@ typedef lane_int bit_pattern __attribute__((vector_size(VECTOR_BYTES), may_alias
 typedef real vec_anywhere
     __attribute__((vector_size(VECTOR_BYTES), aligned(__alignof__(real)), may_alias));
 
+/* Lanes of two vectors of one type by their numbers, those of b following those of a. GCC has the
+ * function of Clang since 12; that of GCC 11 takes the numbers as a vector of integers as wide. */
+#if defined(__clang__) || __GNUC__ >= 12
+#define SHUFFLED_BY(integers, a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define SHUFFLED_BY(integers, a, b, ...) __builtin_shuffle(a, b, (integers){__VA_ARGS__})
+#endif
+#define SHUFFLED(a, b, ...) SHUFFLED_BY(bit_pattern, a, b, __VA_ARGS__)
+
 SPHGI_TEMPLATE vec load(const real *p)
 {
     return *(const vec_anywhere *)p;

@@ -37,7 +37,7 @@ static void copy_gradients(const struct sphgi_worker *w, const int32_t *at, int3
 {
     const struct sphgi_columns *to = &w->sweep->pairs->gradient;
     const void *from = w->tile.arrays;
-    const ptrdiff_t stride = to->stride, first = place * stride;
+    const ptrdiff_t stride = to->stride, first = (ptrdiff_t)place * stride;
     const bool three = to->count == 3;
     char *x = (char *)(uintptr_t)(to->at[0] + first), *y = (char *)(uintptr_t)(to->at[1] + first);
     char *z = three ? (char *)(uintptr_t)(to->at[2] + first) : y;

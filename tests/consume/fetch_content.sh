@@ -10,7 +10,7 @@ awk '/^```cmake$/ { inside = 1; block = ""; next }
     inside { block = block $0 "\n" }' "$root/README.md" >"$folder/block"
 [ -s "$folder/block" ]
 {
-    echo 'cmake_minimum_required(VERSION 3.23)'
+    echo 'cmake_minimum_required(VERSION 3.22)'
     echo 'project(app LANGUAGES C)'
     echo "add_executable(app $root/examples/gradient.c)"
     cat "$folder/block"
