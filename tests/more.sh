@@ -2,6 +2,9 @@
 # for each option, run_<option>, with the words behind the option; and needs_of_<option>, the packages
 # that it takes, where these are not those of the tests.
 
+. tests/platforms/platforms.sh
+. tests/packages/packages.sh
+
 building=(build_essential cmake pkg_config cmocka lapacke cjson hdf5)
 needs_of_coverage() { printf '%s\n' "${building[@]}" clang clang_openmp clang_runtime llvm python3; }
 needs_of_analyse() { printf '%s\n' "${building[@]}" clang clang_tidy cppcheck; }

@@ -22,18 +22,29 @@ probe_hdf5() { pkg-config --exists hdf5 2>/dev/null || pkg-config --exists hdf5-
 probe_mpi() { command -v mpicc mpirun >/dev/null && printf '#include <mpi.h>\n' | mpicc -x c -fsyntax-only - 2>/dev/null; }
 probe_zoltan() { printf '#include <zoltan.h>\n' | mpicc -x c -I/usr/include/trilinos -fsyntax-only - 2>/dev/null; }
 probe_gnuplot() { gnuplot -e 'set terminal pngcairo' >/dev/null 2>&1; }
-# AArch64: cross compilers, and what runs their programs.
-probe_aarch64() {
-    local out program='#include <math.h>
-        int main(int n, char **v) { (void)v; return (int)sqrt(n - 1.0); }' status
+# probe_foreign TRIPLE QEMU [LANGUAGE...]: cross compilers, and what runs their programs.
+probe_foreign() {
+    local out status=0 language program='#include <math.h>
+        int main(int n, char **v) { (void)v; return (int)sqrt(n - 1.0); }'
     out=$(mktemp) || return 1
-    printf '%s\n' "$program" | aarch64-linux-gnu-gcc -x c - -o "$out" -lm >/dev/null 2>&1 &&
-        printf '%s\n' "$program" | aarch64-linux-gnu-g++ -x c++ - -o "$out" >/dev/null 2>&1 &&
-        qemu-aarch64 -L /usr/aarch64-linux-gnu "$out" >/dev/null 2>&1
-    status=$?
+    for language in "${@:3}"; do
+        printf '%s\n' "$program" | "$1-$([ "$language" = c ] && echo gcc || echo g++)" -x "$language" - -o "$out" -lm \
+            >/dev/null 2>&1 && "qemu-$2" -L "/usr/$1" "$out" >/dev/null 2>&1 || status=1
+    done
     rm -f "$out"
     return $status
 }
+probe_aarch64() { probe_foreign aarch64-linux-gnu aarch64 c c++; }
+probe_cross_i386() { probe_foreign i686-linux-gnu i386 c; }
+probe_cross_s390x() { probe_foreign s390x-linux-gnu s390x c; }
+probe_cross_riscv64() { probe_foreign riscv64-linux-gnu riscv64 c; }
+probe_cross_ppc64el() { probe_foreign powerpc64le-linux-gnu ppc64le c; }
+probe_cross_armhf() { probe_foreign arm-linux-gnueabihf arm c; }
+probe_cross_windows() { command -v x86_64-w64-mingw32-gcc >/dev/null && command -v wine >/dev/null; }
+probe_musl() { probe_compiler musl-gcc c; }
+probe_gcc_11() { probe_compiler gcc-11 c; }
+# Of the packages: what makes them, and what judges them.
+probe_debian_packages() { command -v lintian >/dev/null && command -v dpkg-shlibdeps >/dev/null; }
 probe_clang() { probe_compiler clang c && probe_compiler clang++ c++; }
 probe_clang_openmp() { probe_compiler clang c -fopenmp; }
 # What its sanitizers, fuzzers and counters link with: a package of its own, recommended only.
@@ -70,6 +81,15 @@ package_of() {
         zoltan) echo libtrilinos-zoltan-dev ;;
         gnuplot) echo gnuplot-nox ;;
         aarch64) printf '%s\n' gcc-aarch64-linux-gnu g++-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user ;;
+        cross_i386) printf '%s\n' gcc-i686-linux-gnu libc6-dev-i386-cross qemu-user ;;
+        cross_s390x) printf '%s\n' gcc-s390x-linux-gnu libc6-dev-s390x-cross qemu-user ;;
+        cross_riscv64) printf '%s\n' gcc-riscv64-linux-gnu libc6-dev-riscv64-cross qemu-user ;;
+        cross_ppc64el) printf '%s\n' gcc-powerpc64le-linux-gnu libc6-dev-ppc64el-cross qemu-user ;;
+        cross_armhf) printf '%s\n' gcc-arm-linux-gnueabihf libc6-dev-armhf-cross qemu-user ;;
+        cross_windows) printf '%s\n' gcc-mingw-w64-x86-64 wine wine64 ;;
+        musl) echo musl-tools ;;
+        gcc_11) echo gcc-11 ;;
+        debian_packages) printf '%s\n' dpkg-dev lintian ;;
         clang) echo clang ;;
         clang_openmp) echo libomp-dev ;;
         clang_runtime) echo libclang-rt-dev ;;

@@ -30,6 +30,7 @@ cp "$sources/examples/run" "$sources/examples/CMakeLists.txt" "$sources"/example
 cp "$sources"/examples/cpp/*.cpp "$tree/examples/cpp"
 cp "$sources/examples/scenes/CMakeLists.txt" "$sources"/examples/scenes/*.c "$tree/examples/scenes"
 cp "$sources/tests/run" "$sources/tests/more.sh" "$tree/tests"
+cp -R "$sources/tests/platforms" "$sources/tests/packages" "$tree/tests"
 cat >"$tree/tools/setup.sh" <<'END'
 require_packages() { [ -e "$source_dir/may_build" ] || { echo "asks for packages" >&2; return 1; }; }
 build_preset() { [ -e "$source_dir/may_build" ] || { echo "builds" >&2; return 1; }; }

@@ -1,0 +1,124 @@
+# tests/run --platforms [NAME...] (sourced by tests/more.sh): each platform builds the library as a host
+# does, with warnings as errors, and runs smoke.c; all of them if none is named. What is built for another
+# machine is run by qemu or wine. Where the table says `same`, the base set must give the bits of `native`,
+# the first platform, which is always tried.
+
+# name | C compiler | system, processor (of another machine) | options of CMake | what runs it | bits
+platform_table() {
+    sed 's/ *| */|/g' <<'END'
+native   | cc                        |                | -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF | | same
+gcc-11   | gcc-11                    |                | -DBUILD_SHARED_LIBS=ON | | same
+musl     | musl-gcc                  |                | -DSPHG_OPENMP=OFF -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF -DCMAKE_EXE_LINKER_FLAGS=-static | | same
+i386     | i686-linux-gnu-gcc        | Linux i686     | -DSPHG_OPENMP=OFF | qemu-i386 -L /usr/i686-linux-gnu | own
+i386-sse | i686-linux-gnu-gcc        | Linux i686     | -DSPHG_OPENMP=OFF -DCMAKE_C_FLAGS=-msse2;-mfpmath=sse | qemu-i386 -L /usr/i686-linux-gnu | same
+s390x    | s390x-linux-gnu-gcc       | Linux s390x    | | qemu-s390x -L /usr/s390x-linux-gnu | own
+riscv64  | riscv64-linux-gnu-gcc     | Linux riscv64  | | qemu-riscv64 -L /usr/riscv64-linux-gnu | own
+ppc64el  | powerpc64le-linux-gnu-gcc | Linux ppc64le  | | qemu-ppc64le -L /usr/powerpc64le-linux-gnu | own
+armhf    | arm-linux-gnueabihf-gcc   | Linux armv7l   | | qemu-arm -L /usr/arm-linux-gnueabihf | same
+arm64    | aarch64-linux-gnu-gcc     | Linux aarch64  | | qemu-aarch64 -L /usr/aarch64-linux-gnu | own
+windows  | x86_64-w64-mingw32-gcc    | Windows x86_64 | -DBUILD_SHARED_LIBS=ON | run_by_wine | same
+windows-static | x86_64-w64-mingw32-gcc | Windows x86_64 | -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF | run_by_wine | same
+msvc     | clang                     |                | | the header alone | none
+END
+}
+
+# platform_row NAME: its columns into the variables of that name.
+platform_row() {
+    local row
+    row=$(platform_table | grep "^$1|") || return 1
+    IFS='|' read -r _ compiler machine options runner bits <<<"$row"
+}
+
+platform_names() { platform_table | cut -d '|' -f 1; }
+
+# needs_of_platforms NAME...: cmake, and what compiles for them and runs that.
+needs_of_platforms() {
+    local name
+    printf '%s\n' build_essential cmake
+    for name in ${*:-$(platform_names)}; do
+        case $name in
+            native) ;;
+            i386*) echo cross_i386 ;;
+            windows*) echo cross_windows ;;
+            gcc-11) echo gcc_11 ;;
+            arm64) echo aarch64 ;;
+            msvc) echo clang ;;
+            musl) echo musl ;;
+            *) echo "cross_$name" ;;
+        esac
+    done | sort -u
+}
+
+# Its own home, and no word of what it has not got. The libraries of the compiler lie beside the compiler.
+run_by_wine() {
+    local folder file
+    folder=$(dirname "$1")
+    for file in libgomp-1.dll libgcc_s_seh-1.dll; do
+        cp "$(x86_64-w64-mingw32-gcc -print-file-name=$file)" "$folder" || return 1
+    done
+    cp "$(dirname "$(x86_64-w64-mingw32-gcc -print-sysroot)")/lib/libwinpthread-1.dll" "$folder" 2>/dev/null ||
+        cp /usr/x86_64-w64-mingw32/lib/libwinpthread-1.dll "$folder" || return 1
+    WINEPREFIX=$PWD/build/platforms/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree=;mshtml=' wine "$@" | tr -d '\r'
+    return "${PIPESTATUS[0]}"
+}
+
+# What a compiler of Windows that knows nothing of GCC reads of the header: C11 and C++11, a static and a shared library.
+check_msvc() {
+    local target language macro
+    for target in x86_64 i686 aarch64; do
+        for language in c11:c c++11:c++ c++20:c++; do
+            for macro in SPHG_STATIC SPHG_SHARED SPHG_SHARED_BUILD; do
+                clang --target=$target-pc-windows-msvc -fms-compatibility -fms-extensions -U__GNUC__ -fsyntax-only -Werror \
+                    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -D$macro -Iinclude \
+                    -std=${language%:*} -x ${language#*:} tests/checks/header_alone.c || return 1
+            done
+        done
+    done
+    echo 'the header is read'
+}
+
+# build_platform: the platform whose row was read, into $folder.
+build_platform() {
+    local words=(-DCMAKE_C_COMPILER="$compiler") word
+    [ -z "$machine" ] || words+=(-DCMAKE_SYSTEM_NAME="${machine% *}" -DCMAKE_SYSTEM_PROCESSOR="${machine#* }")
+    [ -f "$folder/CMakeCache.txt" ] || ! probe_ninja || words+=(-G Ninja)
+    for word in $options; do
+        words+=("${word//;/ }")
+    done
+    quietly cmake -S tests/platforms -B "$folder" -DSPHG_OPENMP=ON "${words[@]}" &&
+        quietly cmake --build "$folder" -j "$(nproc)"
+}
+
+# try_platform NAME: its hashes on stdout, one a line behind the name of the instruction set.
+try_platform() {
+    local compiler machine options runner bits folder=build/platforms/$1 program
+    platform_row "$1" || return 1
+    [ "$1" != msvc ] || { check_msvc; return; }
+    build_platform || return 1
+    program=$folder/smoke
+    [ -f "$program" ] || program=$program.exe
+    $runner "$program"
+}
+
+# run_platforms NAME...
+run_platforms() {
+    local name names="$*" output native passed=0 failed=() compiler machine options runner bits
+    for name; do
+        platform_row "$name" || { echo "tests/run: there is no platform '$name'; there are:" $(platform_names) >&2; return 2; }
+    done
+    [ -n "$names" ] || names=$(platform_names)
+    for name in native $(printf '%s\n' $names | grep -vx native); do
+        platform_row "$name"
+        output=$(try_platform "$name") || { echo "$name: FAILED"; echo "$output"; failed+=("$name"); continue; }
+        [ "$name" != native ] || native=$(grep '^base' <<<"$output")
+        if [ "$bits" = same ] && [ "$(grep '^base' <<<"$output")" != "$native" ]; then
+            echo "$name: not the bits of native"
+            failed+=("$name")
+        fi
+        printf '%-15s %s\n' "$name" "$(paste -sd ' ' <<<"$output")"
+        passed=$((passed + 1))
+    done
+    [ ${#failed[@]} -eq 0 ] || echo "not green: ${failed[*]}"
+    echo "$((passed)) passed, ${#failed[@]} failed"
+    [ ${#failed[@]} -eq 0 ]
+}
