@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The commands of sphgrad-bench. A new one: a declaration here, a row in main.c, a file. */
 #ifndef SPHGRAD_BENCH_COMMANDS_H
 #define SPHGRAD_BENCH_COMMANDS_H

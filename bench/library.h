@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The library as the benchmark uses it: any failure ends the program with the library's words. */
 #ifndef SPHGRAD_BENCH_LIBRARY_H
 #define SPHGRAD_BENCH_LIBRARY_H

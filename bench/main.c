@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* sphgrad-bench: finds the command and hands over. */
 #include "commands.h"
 #include "command_line.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Options that the commands share: a command's table of options begins with those it takes. */
 #ifndef SPHGRAD_BENCH_SETTINGS_H
 #define SPHGRAD_BENCH_SETTINGS_H

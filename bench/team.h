@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Threads for loops of the benchmark's own: those of OpenMP that the library uses, too, so that
  * neither waits for the other's. */
 #ifndef SPHGRAD_BENCH_TEAM_H

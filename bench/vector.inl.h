@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Vectors of float for loops of the benchmark's own, written apart from the library's so that a
  * weakness there is not repeated here. Parameter: VECTOR_BYTES (16, 32 or 64). */
 #if defined(__SSE2__)

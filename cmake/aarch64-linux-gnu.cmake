@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # AArch64 Linux from another machine: Debian's cross compiler, and qemu to run what it made. Libraries
 # that do not come with the compiler are taken from SPHG_AARCH64_ROOT, where `tests/run --neon` unpacks
 # them.

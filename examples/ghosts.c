@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Ghosts between two processes, here the halves of a block in one. Each half has its own particles,
  * and behind them ghosts, copies of the other's within the support radius. For forces it receives
  * the corrections of its ghosts as well. Prints how far these forces are from those of the whole

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The gradient of a velocity field. A block of particles rotates like a rigid body, so that dvx/dy
  * is -1 everywhere. Prints what the corrected gradient and plain SPH find at a corner of the block,
  * where most of the neighbours are missing. */

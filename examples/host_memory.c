@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Memory from the host's allocator, and the host's log. The log hears of each call that is refused.
  * Prints what it hears, the error of a gradient, how many bytes were in use, and how many are left
  * at the end. */

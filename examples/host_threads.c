@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Threads of the host, here two POSIX threads, instead of OpenMP's. Prints the error of a gradient,
  * and whether it has the same bits as on one thread. */
 #include <sphgrad/sphgrad.h>

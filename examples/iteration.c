@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An implicit step of diffusion by conjugate gradients. Neighbours, corrections and the weights of
  * pairs are computed once and kept through the iteration; the difference and the adjoint form make
  * the system symmetric. A wave in a closed box should shrink by 1 / (1 + k q^2): prints by how much

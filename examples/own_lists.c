@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Neighbour lists of the host, in each of their three forms. They are one array (CSR), a pointer
  * per particle, or a function that the library calls. Prints the error of a gradient with each, and
  * whether all have the same bits. */

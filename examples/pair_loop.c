@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A loop of the host over pairs, in blocks of targets. The library gives the pairs and their
  * gradients G_ij, the blocks stay in the cache, and the host forms any sums. Prints the error of
  * the divergence of v = (x, y, z), which is 3, and the mean distance of neighbours. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A support radius per particle: the forces of a gas whose resolution varies, with grad-h terms.
  * With P/(Omega rho^2) in the plain adjoint form momentum is conserved, and heating takes back what
  * forces do to the velocities. Prints both errors, that of a corrected divergence whose value is 2,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Second order: a quadratic field, whose Laplacian is 12 everywhere, on a block with a free
  * surface. Prints the largest errors of gradient and Laplacian by order 1, by order 2, and by order
  * 2 when particles that cannot resolve curvature take it from neighbours that can: twice, since

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A wall of particles is a second source set. A block of fluid stands on a floor, and its pressure
  * falls by 1 per unit of height. Prints dp/dz in the lowest layer for two kinds of walls: particles
  * that have a pressure give -1; particles that mirror the fluid's add no difference, and halve it.

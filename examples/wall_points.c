@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A wall without particles, as volume maps describe it. Each fluid particle near the floor sees one
  * point of it, with the volume of the floor that its support holds; the points are a second source
  * set with lists of the host. Prints dp/dz in the lowest layer, which should be -1. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command line of a program, described by a table of its options: argp reads it, with one line
  * on stderr and exit status 2 for what is refused. */
 #ifndef SHARED_COMMAND_LINE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures by gnuplot. */
 #ifndef SHARED_GNUPLOT_H
 #define SHARED_GNUPLOT_H

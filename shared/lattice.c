@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lattice.h"
 #include "splitmix64.h"
 #include <math.h>

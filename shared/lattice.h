@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Square and cubic lattices of particles, jittered and shuffled on request. */
 #ifndef SHARED_LATTICE_H
 #define SHARED_LATTICE_H

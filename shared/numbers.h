@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tables of numbers whose precision is chosen at run time. */
 #ifndef SHARED_NUMBERS_H
 #define SHARED_NUMBERS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Random numbers that are the same on every machine: splitmix64 (Steele, Lea, Flood 2014,
  * doi:10.1145/2714064.2660195). Any state is a seed. */
 #ifndef SHARED_SPLITMIX64_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What tests/run does beside the tests (sourced by it, from the root of the sources): one function
 # for each option, run_<option>, with the words behind the option; and needs_of_<option>, the packages
 # that it takes, where these are not those of the tests.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Everything the library computes, against the quadruple precision oracle: the error over its
  * bound D stays below one gate for all scenes, precisions, methods and kernels. */
 #include "support/scenes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Parts of the examples' solver, each by the property that its scenes rely on. */
 #include "support/test.h"
 #include "../examples/scenes/solver/conjugate_gradient.h"

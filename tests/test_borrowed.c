@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Curvature that is lent and borrowed: against the oracle, by known errors of lattices, exact where
  * order 2 alone is not, continuous, and without a trace where nobody lends. */
 #include "support/second_order.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The classic methods: an interpolant and its full derivative. Partition of unity everywhere,
  * linear exactness in the directions that are kept, Shepard's average in the others. */
 #include "support/comparison.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the two-sided forms conserve and what they do not (docs/theory.md, forms). Sums are taken
  * in double over forces that the library stored, relative to the sum of their sizes. */
 #include "support/incomplete_lists.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lists of the host that are copied: the bits of borrowed ones, whatever is asked of them, and
  * nothing of the host's is read after the build. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* More sources around a target than are searched at once, and many times the pairs that are summed
  * at once: kept or found on the way, with corrections of the same sweep or of a table. */
 #include "support/setup.h"

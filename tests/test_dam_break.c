@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A moment of a real dam break, with its sheets, strings and droplets: how many particles can be
  * corrected how far, and that nothing else comes out than finite numbers and exact derivatives.
  * Needs dam_break_splash.csv in the folder that the environment variable SPHG_TEST_DATA names, or

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Planes, lines, pairs, loners, coincident particles and closing sheets are ordinary input: never
  * NaN, ranks as geometry has them, each policy as it is defined, and no jump under blend. */
 #include "support/comparison.h"

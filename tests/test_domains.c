@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Domains of any extent: periodic axes, and open ones that reach as far as numbers do while memory
  * stays linear in the number of particles. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Nothing is ordinary: an empty std::vector hands over NULL and 0, and no call minds. */
 #include "support/setup.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every way to say no: contexts, neighbours and small matrices refuse bad arguments with the right
  * code and a message that names the argument, write nothing, and work on the next call. */
 #include "support/public_calls.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* First-order exactness: linear fields have their exact gradient at every particle of full rank,
  * wherever it lies. Positions are multiples of 2^-10 and fields have small integer slopes, so
  * that fields are exact in f32 too and all error is the library's own. */

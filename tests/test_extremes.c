@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sizes and distances that break grids and 32-bit counts: an escapee, everybody in one cell, more
  * than 2^31 pairs. SPHG_TEST_LONG=1 takes a million particles. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Whatever rounding mode, flushing of denormals and traps the host has set, on whichever thread:
  * the same bits, no trap, and the host finds its environment and errno as they were. */
 #include "support/bad_argument_rows.h"

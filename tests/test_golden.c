@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One number for all results of a scene: the same for 1 to 64 threads, for every executor, wherever
  * the arrays begin and for vectors of any length; and, on the baseline path, the same for every
  * compiler and machine. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The library within its host's process: it prints nothing, leaves locale and signals alone, works
  * on many threads at once and after a fork. */
 #include "support/bad_argument_rows.h"

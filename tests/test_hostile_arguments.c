@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every function of the header, every argument, every class of bad value, in both precisions: the
  * right code, a message that names argument and value, nothing written, and the next call works.
  * The list of functions, parameters and members comes from the header: what is new there and has no

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What may change without changing the results (docs/theory.md, errors): to the bit where only
  * exact operations are involved and sums keep their order, within the error bound elsewhere. */
 #include "support/comparison.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Weights that neighbours keep beside their lists: the same bits as without, read only where they
  * are those of the sweep, and really read. */
 #include "support/setup.h"

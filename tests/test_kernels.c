@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The smoothing functions W and W'/r against the table of docs/theory.md: closed forms, quadrature
  * that is exact for the polynomial pieces, and finite differences. */
 #include "support/setup.h"

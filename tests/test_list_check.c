@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* sphg_neighbors_check(): complete lists pass, however they are handed over and whatever else they
  * hold; of others the first fault is named. Who is near whom is decided by brute force. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The host's allocator: every allocation may fail and leaves nothing behind, every release names
  * the size that was asked for, and warm calls ask for nothing. */
 #include "support/setup.h"

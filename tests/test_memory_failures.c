@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The k-th allocation of a call fails, once or from then on, for every k and every public function,
  * each on a context as cold as it can be: a clean code, nothing leaked, and the next call gives the
  * bits that it would have given. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Random scenes and what must not change them: relations that hold to the bit, so that no reference
  * is needed. SPHG_TEST_LONG=1 takes 100 000 scenes. */
 #include "support/setup.h"

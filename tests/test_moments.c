@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* sphg_invert_moments: C = f(M / m_ref) / m_ref for every policy, the decisions around the
  * threshold, and the certificate that keeps healthy matrices off the eigensolver. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Neighbours that the host brings, and the life of a neighbours object: copies, borrowed lists,
  * rebuilds, order and report. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A NaN or an infinity in a field, a density or a table reaches its own particle and the targets
  * that have it as neighbour, and nobody else: whatever the host lists, whatever skin and padding
  * hold. */

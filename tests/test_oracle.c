@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The reference checked on its own: what the mathematics promises, it keeps to quadruple
  * precision. No call of the library here. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pairs and their gradients as CSR, for loops of the host: whose they are, which of their arrays
  * are wanted, and which targets. Their values are compared with the oracle in test_accuracy.c. */
 #include "support/brute_force.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Periodic axes far from their box: escapees cost nothing and keep the pairs of brute force, and a
  * skin does not care whether its host wraps positions. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Order 2: against the oracle, exact on quadratic fields where the rank says so, on linear ones
  * wherever order 1 is, continuous, and never worse than finite. */
 #include "support/second_order.h"

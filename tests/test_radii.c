@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A support radius per particle: the pairs of brute force, results against the oracle, and the same
  * bits as with one radius where all are the same. */
 #include "support/brute_force.h"

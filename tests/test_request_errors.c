@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Requests that cannot be served: refused with the right code and the argument's name, outputs
  * untouched, and the next call works. */
 #include "support/public_calls.h"

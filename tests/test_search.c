@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The search against brute force: the same pairs, exactly, wherever particles stand. */
 #include "support/setup.h"
 #include "support/fake_host.h"

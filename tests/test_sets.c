@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fluid and wall as two source sets give what their union gives; targets may lie anywhere; fields
  * and calls add up. */
 #include "support/brute_force.h"

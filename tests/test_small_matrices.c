@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* sphg_eigen and sphg_svd on random and adversarial matrices, judged by residual beside LAPACK:
  * near multiple eigenvalues no vector is right or wrong, but the product must be. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A host that runs for days, in minutes: scenes of all kinds on contexts that live long, with
  * failing allocators, bad numbers and bad arguments in between. What fails is repeated without the
  * fault and has the bits of a fresh context; memory stays flat. SPHG_SOAK_SECONDS says how long. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Eigenvalues, singular values and thresholds of many small matrices, adversarial ones included,
  * against quadruple precision. SPHG_TEST_LONG=1 takes ten million for each precision. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The source sets of a request must mean the same targets: in number, place and order. */
 #include "support/setup.h"
 #include <math.h>

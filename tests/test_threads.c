@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Same input, same bits: for any number of threads, any executor, any split into subsets, and for
  * contexts that work at the same time on shared neighbours. */
 #include "support/setup.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Clouds whose lists are of all lengths, so that lists that stand side by side, lists that stand
  * one after the other and lists of nobody follow one another: kept, found on the way, told by the
  * host, and taken in any company, they give the same bits on every instruction set. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Views: the same numbers in any layout give the same bits, land where the view says, and leave
  * every other byte alone. */
 #include "support/setup.h"

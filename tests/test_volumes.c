@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Volumes that differ by twelve orders of magnitude: sums whose terms cancel, and moments of which
  * one source is all. */
 #include "support/random.h"

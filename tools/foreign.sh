@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Libraries for another architecture (sourced by tests/run behind setup.sh): Debian's own packages, unpacked
 # into a folder of the build. The system keeps its one architecture, and nothing here needs root.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Shared by bench/run, examples/run and tests/run (sourced by bash): packages, and builds that are quiet unless
 # they fail or warn. A need is met if its probe works, from whichever package that came.
 

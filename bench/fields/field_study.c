@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "field_study.h"
 #include "lattice.h"
 #include "library.h"

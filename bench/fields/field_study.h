@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The study behind Figs. 2 and 4 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933: velocity
  * fields on the square [-1, 1]^2, full of particles with nothing around, and how far computed
  * gradients and curls are from the true ones. Volumes are V_j = 1 / sum_k W_jk, j included. */

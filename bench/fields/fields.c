@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `fields`: errors of plain and corrected derivatives on a square, Figs. 2 and 4 of
  * Westhofen, Jeske, Bender 2023, doi:10.1145/3606933. */
 #include "commands.h"

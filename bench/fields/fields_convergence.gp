@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The largest gradient error of the trigonometric field over N, at the boundary and inside.
 data = 'fields_convergence.csv'
 of(m) = strcol('lattice') eq lattice && strcol('field') eq 'trigonometric' && strcol('method') eq m

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Three panels: the velocity, the error of plain SPH, the error of KGC. Of every particle, on the smallest
 # lattice; `quantity` above is gradient or curl.
 data = 'fields_'.field.'_'.lattice.'.csv'

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `forces`. */
 #include "forces.h"
 #include "commands.h"

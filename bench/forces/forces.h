@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Time of the operators that a solver iterates: forces and divergences, with lists alone and with
  * weights that neighbours keep. */
 #ifndef SPHGRAD_BENCH_FORCES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of forces. */
 #include "forces.h"
 #include "library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `frontier`. */
 #include "frontier.h"
 #include "commands.h"

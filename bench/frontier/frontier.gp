@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The frontier: two panels, every way a point, the frontier a line whose points are marked and named beneath.
 # Reads frontier.csv and frontier_steps.csv; `title` stands above.
 set terminal pngcairo size 1500,880 font 'Sans,12' background '#ffffff'

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Run time against error of every way to a velocity gradient: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_FRONTIER_H
 #define SPHGRAD_BENCH_FRONTIER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of frontier. A round goes once through all ways. */
 #include "frontier.h"
 #include "lattice.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `lists`. */
 #include "lists.h"
 #include "commands.h"

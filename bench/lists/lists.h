@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Time a pair where a host's own arrays meet the library: sums over lists that a host brings, and
  * pairs that the library writes out for loops of a host's own. */
 #ifndef SPHGRAD_BENCH_LISTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of lists. */
 #include "lattice.h"
 #include "library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The field v = (-y, x, 2z), in 2D (-y, x), on which a corrected gradient is exact. */
 #ifndef SPHGRAD_BENCH_LINEAR_FIELD_H
 #define SPHGRAD_BENCH_LINEAR_FIELD_H

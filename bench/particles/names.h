@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What precisions, kernels and methods are called on the command line and in tables. */
 #ifndef SPHGRAD_BENCH_NAMES_H
 #define SPHGRAD_BENCH_NAMES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The particles that table1 runs on: a cubic lattice, or a host's own from a file. */
 #ifndef SPHGRAD_BENCH_PARTICLES_H
 #define SPHGRAD_BENCH_PARTICLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 // CGAL: a k-d tree of points with their numbers, searched with fuzzy spheres that are not fuzzy.
 #include "peer.h"
 #include <CGAL/Fuzzy_sphere.h>

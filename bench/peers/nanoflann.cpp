@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 // nanoflann: a k-d tree over the host's array.
 #include "peer.h"
 #include <cstdio>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A search by somebody else's library. */
 #ifndef SPHGRAD_BENCH_PEER_H
 #define SPHGRAD_BENCH_PEER_H

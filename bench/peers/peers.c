@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* peers [PARTICLES]: the search of one peer beside the library's, on one thread. */
 #include "lattice.h"
 #include "library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE /* gethostname, tm_gmtoff, sysconf */
 #include "machine.h"
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What this machine is and how the program was built. */
 #ifndef SPHGRAD_BENCH_MACHINE_H
 #define SPHGRAD_BENCH_MACHINE_H

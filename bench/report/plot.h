@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures by gnuplot: the CSV and the scripts that read it. */
 #ifndef SPHGRAD_BENCH_PLOT_H
 #define SPHGRAD_BENCH_PLOT_H

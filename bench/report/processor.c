@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "processor.h"
 
 #ifdef BENCH_HAVE_X86

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which of the benchmark's own loops this processor can run. */
 #ifndef SPHGRAD_BENCH_PROCESSOR_H
 #define SPHGRAD_BENCH_PROCESSOR_H

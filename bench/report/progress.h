@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One line on a terminal that says how far things are; nothing at all in a pipe. */
 #ifndef SPHGRAD_BENCH_PROGRESS_H
 #define SPHGRAD_BENCH_PROGRESS_H

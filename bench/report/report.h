@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Measurements for programs, in Google Benchmark's JSON format, which bench/compare and its
  * compare.py read. */
 #ifndef SPHGRAD_BENCH_REPORT_H

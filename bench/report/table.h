@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a command has measured: rows of cells under columns, each with a name and a unit. The same
  * table is printed, written as CSV, and added to the report in JSON (report.h). */
 #ifndef SPHGRAD_BENCH_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How tables write numbers, and the lines that name the machine. */
 #ifndef SPHGRAD_BENCH_TEXT_H
 #define SPHGRAD_BENCH_TEXT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Clocks, and the statistics of repeated measurements. */
 #ifndef SPHGRAD_BENCH_TIMING_H
 #define SPHGRAD_BENCH_TIMING_H

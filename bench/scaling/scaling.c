@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `scaling`. */
 #include "scaling.h"
 #include "commands.h"

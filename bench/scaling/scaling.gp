@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Scaling: a panel each for sizes, threads, neighbours, and for clouds and orders.
 # Reads scaling.csv; `title` and `threads` stand above.
 set terminal pngcairo size 1400,1000 font 'Sans,12' background '#ffffff'

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Time a particle over sizes, threads, neighbours, orders and clouds: what is measured. */
 #ifndef SPHGRAD_BENCH_SCALING_H
 #define SPHGRAD_BENCH_SCALING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The cases of scaling: in each group one thing changes. */
 #include "scaling.h"
 #include "report/table.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "scaling_cloud.h"
 #include "lattice.h"
 #include "particles/particles.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Clouds of particles that a solver may bring. */
 #ifndef SPHGRAD_BENCH_SCALING_CLOUD_H
 #define SPHGRAD_BENCH_SCALING_CLOUD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of scaling. */
 #include "library.h"
 #include "particles/linear_field.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `skip`. */
 #include "skip.h"
 #include "commands.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What it saves not to compute what a scene does not need: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_SKIP_H
 #define SPHGRAD_BENCH_SKIP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "skip_compare.h"
 #include <math.h>
 #include <string.h>

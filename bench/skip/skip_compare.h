@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Are the outputs of a part those of the full evaluation? */
 #ifndef SPHGRAD_BENCH_SKIP_COMPARE_H
 #define SPHGRAD_BENCH_SKIP_COMPARE_H

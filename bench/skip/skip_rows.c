@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Each row of the table: the full evaluation, and the part of it that a scene may need. */
 #include "skip.h"
 

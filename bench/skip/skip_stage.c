@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "skip_stage.h"
 #include "lattice.h"
 #include "particles/particles.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the command `skip` measures on: particles, neighbours of every kind, fields, outputs. */
 #ifndef SPHGRAD_BENCH_SKIP_STAGE_H
 #define SPHGRAD_BENCH_SKIP_STAGE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `solver`. */
 #include "solver.h"
 #include "commands.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Time a matrix of the library's batches: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_SOLVER_H
 #define SPHGRAD_BENCH_SOLVER_H

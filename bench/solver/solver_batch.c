@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Batches of matrices with chosen spectra. */
 #include "lattice.h"
 #include "numbers.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of solver. */
 #include "report/progress.h"
 #include "solver.h"

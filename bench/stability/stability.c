@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `stability`. */
 #include "stability.h"
 #include "commands.h"

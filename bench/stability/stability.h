@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How the operators bear degenerate, distant and uneven particles: what is swept and measured. */
 #ifndef SPHGRAD_BENCH_STABILITY_H
 #define SPHGRAD_BENCH_STABILITY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The cases of stability: in each sweep one thing changes. */
 #include "numbers.h"
 #include "stability.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What no case may break. The limits of errors are those of the tests. */
 #include "stability.h"
 #include "support/tolerances.h"

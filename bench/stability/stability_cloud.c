@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stability_cloud.h"
 #include "lattice.h"
 #include "numbers.h"

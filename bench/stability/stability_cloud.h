@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The particles at one place of a sweep. */
 #ifndef SPHGRAD_BENCH_STABILITY_CLOUD_H
 #define SPHGRAD_BENCH_STABILITY_CLOUD_H

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What the three pictures of stability share. They read stability.csv; `support`, in spacings, and `machine`
 # stand above.
 set terminal pngcairo size 1600,900 font 'Sans,12' background '#ffffff'

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The walk through the cases of stability. Each case is measured by one thread, so that figures
  * do not depend on their number. */
 #include "library.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Mean ranks as lines, and the share of particles that the eigensolver decides as marks.
 set output 'stability_ranks.png'
 dashes = '1 1 2 1 2' # of the lines; RKPM and CRKPM lie on others

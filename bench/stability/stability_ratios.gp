@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Largest error of a gradient over its bound: a panel for each sweep.
 set output 'stability_ratios.png'
 worse(a, b) = a > b ? a : b > 0 ? b : NaN

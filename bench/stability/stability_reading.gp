@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What a solver's author reads from the sweeps: KGC but for the last panel.
 set output 'stability_reading.png'
 set multiplot title 'KGC, H = '.support.' spacings, cubic spline, blend, eps = 0.01, but for what a panel changes'

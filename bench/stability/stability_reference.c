@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stability_reference.h"
 #include "support/oracle.h"
 #include <math.h>

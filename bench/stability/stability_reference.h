@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Trials beside the reference in quadruple precision. */
 #ifndef SPHGRAD_BENCH_STABILITY_REFERENCE_H
 #define SPHGRAD_BENCH_STABILITY_REFERENCE_H

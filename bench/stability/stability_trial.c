@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stability_trial.h"
 #include "lattice.h"
 #include "library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The library's answer for one cloud. */
 #ifndef SPHGRAD_BENCH_STABILITY_TRIAL_H
 #define SPHGRAD_BENCH_STABILITY_TRIAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `limit`. */
 #include "limit.h"
 #include "commands.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How near the library comes to the arithmetic limit: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_LIMIT_H
 #define SPHGRAD_BENCH_LIMIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of limit. Each round goes once through the probe, the library and all
  * arrangements of all sets, so that a slow second of the machine hits all of them. */
 #include "library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "limit_pack.h"
 #include "lattice.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A few targets of a jittered lattice and their pairs, packed for limit_passes.h. */
 #ifndef SPHGRAD_BENCH_LIMIT_PACK_H
 #define SPHGRAD_BENCH_LIMIT_PACK_H

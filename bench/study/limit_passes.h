@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The pair arithmetic of KGC with the cubic spline, on a few targets whose pairs lie packed in the
  * first-level cache: what an evaluation costs when lists, staging and memory cost nothing. One
  * set of passes per instruction set and vector width. */

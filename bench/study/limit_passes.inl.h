@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The passes of limit_passes.h. Parameters: VECTOR_BYTES, LIMIT_SET, LIMIT_SET_NAME. */
 #include "limit_passes.h"
 #include "vector.inl.h"

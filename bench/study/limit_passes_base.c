@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* limit_passes.inl.h for any machine. */
 #define VECTOR_BYTES   16
 #define LIMIT_SET      limit_set_base

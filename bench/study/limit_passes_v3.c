@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* limit_passes.inl.h for AVX2 and FMA. */
 #define VECTOR_BYTES   32
 #define LIMIT_SET      limit_set_v3

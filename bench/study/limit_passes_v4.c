@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* limit_passes.inl.h for AVX-512. */
 #define VECTOR_BYTES   64
 #define LIMIT_SET      limit_set_v4

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* limit_passes.inl.h for AVX-512 in vectors of AVX2's length: twice the registers. */
 #define VECTOR_BYTES   32
 #define LIMIT_SET      limit_set_v4_narrow

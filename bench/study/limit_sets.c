@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which sets of passes there are, and which of them this processor can run. */
 #include "limit_passes.h"
 #include "report/processor.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "probe.h"
 #include "lattice.h"
 #include "probe_passes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A fixed yardstick for machines: KGC matrices and the gradient of a vector field over int32 CSR
  * lists of sorted 16-byte rows, with code that never changes with the library. */
 #ifndef SPHGRAD_BENCH_PROBE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The loops of the probe, compiled for the baseline and for AVX2. */
 #ifndef SPHGRAD_BENCH_PROBE_PASSES_H
 #define SPHGRAD_BENCH_PROBE_PASSES_H

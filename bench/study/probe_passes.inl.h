@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The passes of probe_passes.h. Parameters: VECTOR_BYTES (16 or 32), PROBE_MATRICES_PASS,
  * PROBE_GRADIENT_PASS. */
 #include "probe_passes.h"

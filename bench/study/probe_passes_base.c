@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* probe_passes.inl.h for any machine. */
 #define VECTOR_BYTES        16
 #define PROBE_MATRICES_PASS probe_matrices_base

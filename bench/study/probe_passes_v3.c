@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* probe_passes.inl.h for AVX2 and FMA. */
 #define VECTOR_BYTES        32
 #define PROBE_MATRICES_PASS probe_matrices_v3

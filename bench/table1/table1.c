@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command `table1`. */
 #include "table1.h"
 #include "commands.h"

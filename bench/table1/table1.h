@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Table 1 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_TABLE1_H
 #define SPHGRAD_BENCH_TABLE1_H

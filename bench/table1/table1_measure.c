@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The measurements of table1. Each repetition goes once through everything: the search, then each
  * method's three calls. So a slow second of the machine hits all columns alike. */
 #include "library.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Table 1 on a terminal of 100 columns, and for programs. */
 #include "library.h"
 #include "particles/linear_field.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """filter.py FILE: what Doxygen reads instead of FILE. Of the header, whose comments are written for readers of text,
 comments that Doxygen attributes to what they describe; of a page, links to other pages and to declarations. With
 --examples it makes the pages of the examples from the comments that they begin with."""
@@ -261,6 +262,7 @@ def examples():
             if not name.endswith((".c", ".cpp", ".f90", ".py", ".h")):
                 continue
             text = read(os.path.join(folder, inside))
+            text = re.sub(r"^.*SPDX-License-Identifier: .*\n", "", text, count=1, flags=re.M)
             comment = re.match(r"/\*(.*?)\*/", text, re.S)
             if not comment and below == "distributed":
                 continue  # its header has the words

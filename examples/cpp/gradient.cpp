@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A rotating block of particles in C++17: dvx/dy at its corner is -1. Plain SPH finds -0.36. */
 #include <sphgrad/sphgrad.hpp>
 #include <array>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An elastic bar in C++17. Its neighbours and corrections are those of the rest configuration,
  * built once; each step takes the deformation gradient over them, a stress, and forces. Prints the
  * error of the deformation gradient of a stretched and twisted bar, the sum of all forces, and how

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The cuts of Zoltan's recursive coordinate bisection. Zoltan also says which particles have to
  * move; here the boxes decide that, as they decide who is a ghost. */
 #include "boxes.h"

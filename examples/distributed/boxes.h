@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Space is cut into a box for each rank. Boxes fill space: the outer ones have no end, so that no
  * particle is ever outside. */
 #ifndef DISTRIBUTED_BOXES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Particles whose forces can be judged without a second run: a cube of unlike ones. */
 #ifndef DISTRIBUTED_CLOUD_H
 #define DISTRIBUTED_CLOUD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "domain.h"
 #include "stop.h"
 #include <limits.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The particles of one rank: its own, those in its box, and behind them ghosts, copies of others'
  * particles that its own may reach. */
 #ifndef DISTRIBUTED_DOMAIN_H

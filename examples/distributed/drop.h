@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A drop of a fluid that turns and travels. Any two of its particles attract each other in
  * proportion to their distance, which holds the drop together and keeps momentum and angular
  * momentum. Flattened as it is, it turns like a rigid body for ever. */

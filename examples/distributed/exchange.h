@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Items of an array on their way to other ranks. A plan says which items go to whom. It is made
  * once and serves every array whose items are numbered alike: positions, fields, corrections. */
 #ifndef DISTRIBUTED_EXCHANGE_H

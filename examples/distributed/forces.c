@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Forces of particles that are spread over many ranks, beside those found on one: for each method
  * the adjoint form of a stress and the symmetric form of a pressure, in double precision. The word
  * `forget` leaves out the exchange of corrections, and shows what the library cannot see. Start it

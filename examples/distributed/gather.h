@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What all ranks know of their own particles, together on rank 0. */
 #ifndef DISTRIBUTED_GATHER_H
 #define DISTRIBUTED_GATHER_H

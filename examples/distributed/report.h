@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What came of a run: measured over all ranks, printed beside the same run on one. */
 #ifndef DISTRIBUTED_REPORT_H
 #define DISTRIBUTED_REPORT_H

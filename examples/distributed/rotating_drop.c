@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A rotating drop on many ranks. It turns and travels through boxes that are cut anew now and then,
  * and is compared with the same drop on one rank. Start it with mpirun. */
 #define _POSIX_C_SOURCE 199309L /* nanosleep */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a step of the rotating drop costs on many ranks: a model from what was measured on few. It
  * holds for boxes inside a large fluid, cubes with neighbours on all sides. */
 #include <math.h>

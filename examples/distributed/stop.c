@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "stop.h"
 #include <mpi.h>
 #include <stdint.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The one way out when something is wrong: all ranks end. */
 #ifndef DISTRIBUTED_STOP_H
 #define DISTRIBUTED_STOP_H

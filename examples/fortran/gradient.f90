@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 ! A rotating block of particles in Fortran: dvx/dy at its corner is -1. Plain SPH finds -0.36.
 program gradient
   use, intrinsic :: iso_c_binding

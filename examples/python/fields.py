@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """A trigonometric field on a shaken square of particles, cut off at its border: the error of its gradient
 by plain SPH and by three corrections, printed, and drawn if Matplotlib is there.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A sheet of a very viscous fluid, standing on its edge, buckles as it sinks (the paper's Fig. 7).
  * Folding is mostly rotation, which uncorrected viscosity resists. In 2D; the full size adds the
  * same in 3D, and other viscosities. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A cube in rigid rotation under viscosity alone (the paper's Fig. 6). What rotates it is the body
  * force omega x v, integrated exactly: a rigid rotation is then a solution, it keeps |v|, and
  * whatever slows or tears the cube comes from the viscous force, which should be zero. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A cube of water without gravity (the paper's Fig. 8): surface tension should make it a ball. How
  * round it is says its support function, the extent from the centre in 400 directions; moments of
  * inertia would not do, because those of a cube are already those of a ball. */

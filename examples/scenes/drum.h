@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is in the washing machine: a drum around the z axis, an elastic bunny, soap, water, nozzles.
  */
 #ifndef EXAMPLES_DRUM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A grid of particles slides down an inclined plane (the paper's Fig. 5). The particles are too far
  * apart to feel each other: each is held up by an irregularly sampled wall alone, so that the grid
  * stays a grid only where the pressure of the wall has the direction of its normal. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Boundary normals on an irregularly sampled wall (the paper's Fig. 3). Queries above a plane,
  * above a plane with fluid on it, and above a sphere ask for sum G_ik over the wall's particles. */
 #include "solver/output.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A spinning top of elastic material, free of outer forces (the paper's Fig. 9): its angular
  * momentum is the measure, by implicit steps and by explicit ones. */
 #include "solver/elasticity.h"

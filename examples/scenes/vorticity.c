@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Vorticity near a free surface (the paper's Fig. 4 and section 5.4): the curl of a rigid rotation,
  * the spin of a micropolar fluid (Bender et al. 2017, doi:10.1145/3099564.3099578) held in that
  * rotation, and what becomes of its angular momentum where spin and flow drive each other. */

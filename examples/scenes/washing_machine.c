@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* An elastic bunny, viscous soap and water in a rotating drum, all coupled (the paper's Fig. 1),
  * with its Table 2: where the time of a step goes, and how little of it the correction matrices
  * take. */

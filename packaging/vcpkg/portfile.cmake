@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # SOURCE_PATH is the checkout that this file lies in: an overlay port. A port of a release fetches its
 # archive instead (vcpkg_from_github).
 get_filename_component(SOURCE_PATH "${CURRENT_PORT_DIR}/../.." ABSOLUTE)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cells.h"
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A line of a table, cut into cells, and the numbers in them. */
 #ifndef SHARED_TABLES_CELLS_H
 #define SHARED_TABLES_CELLS_H

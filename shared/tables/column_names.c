@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "column_names.h"
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the columns of a table hold, told from the names that solvers and viewers give them. */
 #ifndef SHARED_TABLES_COLUMN_NAMES_H
 #define SHARED_TABLES_COLUMN_NAMES_H

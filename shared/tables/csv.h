@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Particles from a text table: one line of names, then one of numbers for each particle. Takes what
  * solvers, viewers and spreadsheets write: any usual separator, lines before the names, comments,
  * columns that nobody needs, no names at all (x, y, z), dumps of LAMMPS, XYZ. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "csv_layout.h"
 #include <ctype.h>
 #include <stdio.h>

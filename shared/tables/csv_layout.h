@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where in a text table the names stand, where the numbers begin, and what separates them. */
 #ifndef SHARED_TABLES_CSV_LAYOUT_H
 #define SHARED_TABLES_CSV_LAYOUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #define _POSIX_C_SOURCE 200809L /* strncasecmp */
 #include "text_file.h"
 #include <ctype.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A text file in memory, as lines. What is no text is refused by the name of what it is. */
 #ifndef SHARED_TABLES_TEXT_FILE_H
 #define SHARED_TABLES_TEXT_FILE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What one entry point does for another: objects and lists of pairs within a call that is under
  * way. */
 #ifndef SPHGI_ENTRIES_H

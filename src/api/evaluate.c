@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* sphg_evaluate and the short ways to call it. */
 #include "core/check.h"
 #include "plan/make.h"

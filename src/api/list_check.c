@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Do lists hold what the positions demand? A search of the same positions tells. */
 #include "core/digits.h"
 #include "entries.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The gradient of one pair, from the formulas alone. */
 #include "core/check.h"
 #include "core/float_environment.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pairs one by one: export as CSR, with their G_ij. */
 #include "core/check.h"
 #include "entries.h"

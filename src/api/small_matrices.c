@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
 #include "core/check.h"
 #include "core/digits.h"

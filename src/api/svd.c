@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "svd.h"
 #include <math.h>
 #include <stdbool.h>

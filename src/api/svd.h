@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Singular value decomposition of one 3 x 3 matrix. */
 #ifndef SPHGI_SVD_H
 #define SPHGI_SVD_H

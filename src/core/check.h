@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every rule about arguments. The door of the library: nothing behind it looks at them again. */
 #ifndef SPHGI_CHECK_H
 #define SPHGI_CHECK_H

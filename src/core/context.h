@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The context: the host's hooks, the chosen passes, scratch memory, the last message. */
 #ifndef SPHGI_CONTEXT_H
 #define SPHGI_CONTEXT_H

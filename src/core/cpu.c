@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "cpu.h"
 
 #if defined(SPHG_HAVE_V3) || defined(SPHG_HAVE_V4)

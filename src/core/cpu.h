@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which instruction sets this machine has. */
 #ifndef SPHGI_CPU_H
 #define SPHGI_CPU_H

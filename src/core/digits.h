@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Numbers in messages: with the fewest digits that read back as the same number, so that no message
  * shows a value that equals the limit it breaks. Nothing else prints a floating-point number. */
 #ifndef SPHGI_DIGITS_H

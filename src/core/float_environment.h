@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Results must not depend on the rounding mode, on flushing of denormals or on traps that the host
  * (or anything linked with -ffast-math into its process) has set for a thread. So arithmetic runs
  * in the default environment of IEEE 754, and what was there before, sticky flags included, is put

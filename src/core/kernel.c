@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "kernel.h"
 #include "float_environment.h"
 #include "passes/kernel_list.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Smoothing kernels, number by number: constants and values in double. */
 #ifndef SPHGI_KERNEL_H
 #define SPHGI_KERNEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "memory.h"
 #include <stdlib.h>
 #ifdef _WIN32 /* aligned memory is apart from other memory there, and has functions of its own */

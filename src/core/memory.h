@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Memory comes from the host's allocator, in buffers that grow and are kept. */
 #ifndef SPHGI_MEMORY_H
 #define SPHGI_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #define _POSIX_C_SOURCE 200809L /* getpid */
 #include "parallel.h"
 #ifdef SPHG_USE_OPENMP

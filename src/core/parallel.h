@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Work on [0, count) by the context's executor: the host's, OpenMP, or the calling thread. */
 #ifndef SPHGI_PARALLEL_H
 #define SPHGI_PARALLEL_H

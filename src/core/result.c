@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Result codes in words, and the version. */
 #include "internal.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "view.h"
 
 int32_t sphgi_components(sphg_shape shape, int32_t dimension)

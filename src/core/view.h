@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The host's views, resolved into one pointer per component. */
 #ifndef SPHGI_VIEW_H
 #define SPHGI_VIEW_H

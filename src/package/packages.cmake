@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Packages for Debian by CPack: the library, and what is needed to build with it. Configured with
 # the prefix /usr, GNUInstallDirs knows Debian's folders; the preset "package" does that, and
 # `tests/run --packages` tries what comes out.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Borrowed curvature (theory.md, section 9): who may lend, what lenders sum up to, and what it
  * makes of a target that cannot resolve its own. One target a lane. */
 

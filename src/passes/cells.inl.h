@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Positions into rows, and rows into cells. */
 
 /* x y z 0 of a view of `count` components; false: one is not finite. */

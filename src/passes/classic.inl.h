@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Classic MLS and RKPM: the full derivative of the interpolant (theory.md, section 4), with
  * xi_j = -x_ij / H, p_j = (1, xi_j). Weights: S = w, D = w'/r, both times V_j if `weighted`. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Divergences of vectors and tensors and squares of gradients, contracted pair by pair: as few sums
  * as results where nothing is to come. */
 

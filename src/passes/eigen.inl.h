@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Eigenvalues and eigenvectors of symmetric matrices, one matrix a lane, in double: cyclic Jacobi.
  * No closed form: Cardano's loses all digits exactly on near-identity matrices, the common case.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Adjoint and symmetric sums whose terms of the sources, weight_j C_j A_j, are multiplied out once
  * a particle (theory.md, section 5): first that, then the sums over them. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Distances between particles: differences in the precision of the positions, periodic images, and
  * the neighbour predicate. */
 

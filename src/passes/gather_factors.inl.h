@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pairs and their factors in one loop: what most sweeps do, and most of what they do. */
 
 SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pairs into the arrays of a tile: x_ij and |x_ij|, narrowed to OUT after the difference was
  * taken, and V_j in units of H^d. What is no pair gets a distance beyond the cutoff and finite
  * offsets: every weight is exactly 0 there.

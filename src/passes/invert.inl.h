@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From moments to corrections (theory.md, section 3), one target a lane. Healthy matrices are
  * inverted by LDL^T under a certificate; lanes that lack it are decomposed. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Factors s_ij that stay in memory beside the ids of their pairs: written after a sweep has formed
  * them, read by later ones, which need the offsets alone. */
 

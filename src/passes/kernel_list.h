@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The smoothing kernels: one row here and one pair of functions in passes/kernels.inl.h each.
  * W(r) = sigma w(q) / H^d, q = r/H. Columns: name, the functions' prefix, sigma in 2D and 3D,
  * mu2 = (1/H^2) int W x_k^2 dV in 2D and 3D. Sources of w: cubic and quintic B-splines: Monaghan

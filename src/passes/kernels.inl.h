@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* w(q) and w'(q)/q of each kernel, for q >= 0; both vanish from q = 1 on. Written for vectors and
  * for plain numbers alike: the includer has defined vec, R, vmax, select, less and splat.
  * Close to q = 0 the splines use their inner polynomial: the sum of truncated powers would cancel.

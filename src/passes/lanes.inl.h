@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What crosses the lanes of vectors: rows of four numbers turned into vectors and back. */
 
 /* Four numbers each of LANES rows, as four vectors. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lists of ids: side by side for the lanes of a tile, and what becomes of the host's numbers. */
 
 /* ---- Side by side --------------------------------------------------------------------------- */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which of a list's ids are neighbours, by the same test as a search: for lists of the host that
  * are copied. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* s_ij with the radius of j in place of i's: for the other half of what acts between particles that
  * have radii of their own. Rows hold H / H_j, H being the radius of the units. */
 

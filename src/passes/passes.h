@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The passes: arithmetic on validated memory, compiled once per scalar type and instruction set and
  * chosen at run time through a table of functions. They keep no state, allocate nothing and cannot
  * fail. Lengths inside are in units of H, volumes in units of H^d (docs/theory.md, section 2).

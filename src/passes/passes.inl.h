@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* All passes for one scalar type and one instruction set. Include once per translation unit, with
  *   REAL_IS_F64   0 or 1
  *   SUFFIX        of the one exported symbol, sphgi_passes_SUFFIX

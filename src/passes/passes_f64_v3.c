@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* All passes for double, x86-64-v3 (AVX2, FMA). */
 #define REAL_IS_F64 1
 #define SUFFIX      f64_v3

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* All passes for double, x86-64-v4 (AVX-512 F, BW, DQ, VL). */
 #define REAL_IS_F64 1
 #define SUFFIX      f64_v4

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The second block of order 2 (theory.md, section 9): from moments of second, third and fourth
  * order to the correction. One target a lane. */
 

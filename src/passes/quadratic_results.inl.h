@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Order 2 (theory.md, section 9) from moments to corrections, and from these to results: gradients
  * of pairs, gradients, Hessians and Laplacians of fields. */
 

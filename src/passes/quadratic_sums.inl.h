@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums of order 2 (theory.md, section 9). Offsets x = x_ij / H, so that xi / H = -x and the weight
  * is -s. Index of x_a x_b: pair_index; sums of third and fourth order hold each product once, in
  * the order of the alphabet. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From sums and corrections to results. jacobian: [component][axis][target]. Loops over the vectors
  * of a group stand outermost: one vector's numbers fit the registers. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rows: from the host's strided memory into 4 numbers a particle, and back. */
 
 SPHGI_TEMPLATE real number_at(const char *at)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Search: which sources are neighbours of a few targets that lie close together. Candidates
  * within reach of the targets' bounding box are packed once; each target then tests the packed ones
  * with the exact predicate. Testing first and packing in a second loop over the stored bits is a

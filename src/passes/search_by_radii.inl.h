@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Search among particles that have radii of their own: r < H_i, or r < max(H_i, H_j). As in
  * search.inl.h candidates are packed once for a few targets, each of which then tests them. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Weights of the pairs of a tile: from distances and V_j to what is summed. */
 
 SPHGI_TEMPLATE real *array_of(void *arrays, enum sphgi_array array)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums over the pairs of a tile, each lane's for itself. */
 
 /* Index of x_a x_b in an upper triangle. */

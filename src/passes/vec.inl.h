@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Vectors of REAL: GCC and Clang vector extensions, and the few operations that those lack.
  * Parameters: REAL_IS_F64. Gives real, vec, mask, LANES, UNIT_ROUNDOFF. */
 #if defined(__SSE2__)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From a request to its plan. */
 #ifndef SPHGI_MAKE_H
 #define SPHGI_MAKE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the files that make a plan share. */
 #ifndef SPHGI_MAKING_H
 #define SPHGI_MAKING_H

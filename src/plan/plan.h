@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A request, checked and turned into what has to be summed: which rows are read, which sums are
  * formed, where the results go. */
 #ifndef SPHGI_PLAN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The fields of a request: what is read of them, and where their results go. */
 #include "making.h"
 #include "core/view.h"

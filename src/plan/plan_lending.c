@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Curvature that is lent and borrowed: what is refused, what a field offers and reads. */
 #include "making.h"
 #include "core/view.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which sums, streams and rows a plan needs, and their numbers. */
 #include "plan.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The views of a request: each is checked, named for messages, and remembered for overlaps. */
 #include "making.h"
 #include "core/view.h"

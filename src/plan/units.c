@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "units.h"
 #include "core/kernel.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Units: between the tables of the host and coefficients in units of H. */
 #ifndef SPHGI_UNITS_H
 #define SPHGI_UNITS_H

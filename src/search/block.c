@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "block.h"
 
 /* Numbers of cells reach to 3 2^40 on either side, those of blocks along x to a 32nd of that. */

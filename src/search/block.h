@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Blocks of cells, and their keys. Only blocks that hold a particle exist. */
 #ifndef SPHGI_BLOCK_H
 #define SPHGI_BLOCK_H

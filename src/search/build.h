@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Builds: positions in, and who is near whom, found by a search or told by the host. */
 #ifndef SPHGI_BUILD_H
 #define SPHGI_BUILD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lists of the host, read group by group as a search would find them. */
 #ifndef SPHGI_COPY_H
 #define SPHGI_COPY_H

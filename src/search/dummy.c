@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "dummy.h"
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The row that padding stands for, behind the last source. */
 #ifndef SPHGI_DUMMY_H
 #define SPHGI_DUMMY_H

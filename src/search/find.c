@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "find.h"
 #include "walk.h"
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Neighbours of targets in the order of storage, found cell by cell. */
 #ifndef SPHGI_FIND_H
 #define SPHGI_FIND_H

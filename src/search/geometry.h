@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The question that a build answers. */
 #ifndef SPHGI_GEOMETRY_H
 #define SPHGI_GEOMETRY_H

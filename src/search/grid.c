@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "grid.h"
 
 static size_t hash_bytes(size_t blocks)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The uniform grid: cells gathered in blocks. Only blocks that hold a particle exist, so that
  * memory depends on the number of particles alone. Particles are sorted by z, y and x of their
  * cells, inside a cell by number: whatever lies in neighbouring cells along x follows one another.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How space is cut into cells and blocks. */
 #include "lattice.h"
 #include <math.h>

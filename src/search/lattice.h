@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* How space is cut into cells a little wider than the search radius, and these into blocks, bars of
  * cells along x: shared by the grids of sources and targets. */
 #ifndef SPHGI_LATTICE_H

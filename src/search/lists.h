@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Keeping all pairs: those of a search, and those of the host's lists. */
 #ifndef SPHGI_LISTS_H
 #define SPHGI_LISTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Neighbours: a copy of the positions, and who sums over whom. */
 #ifndef SPHGI_NEIGHBORS_H
 #define SPHGI_NEIGHBORS_H

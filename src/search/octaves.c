@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "octaves.h"
 #include <string.h>
 

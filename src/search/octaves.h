@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Particles whose radii differ: each stands in the cells of its octave. Those of octave k hold the
  * radii from 2^-(k + 1) up to 2^-k of the largest, and are 2^-k as wide as those of octave 0; all
  * of them are in one grid, one octave behind the other. */

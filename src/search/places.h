@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Where the targets stand: do two objects mean the same ones? */
 #ifndef SPHGI_PLACES_H
 #define SPHGI_PLACES_H

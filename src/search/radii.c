@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "radii.h"
 #include "core/digits.h"
 #include "core/parallel.h"

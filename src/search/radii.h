@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Radii of their own: read from the host's views, checked, and put beside the positions. */
 #ifndef SPHGI_RADII_H
 #define SPHGI_RADII_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "skin.h"
 #include "core/parallel.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pairs found up to H + skin serve until a particle has moved skin / 2. */
 #ifndef SPHGI_SKIN_H
 #define SPHGI_SKIN_H

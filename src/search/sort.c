@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sorting particles into the blocks and cells of a grid. */
 #include "grid.h"
 #include "core/parallel.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What lies around a block of the grid. */
 #include "surroundings.h"
 

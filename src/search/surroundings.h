@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What is near a block: the bars of cells beside it, and from these the candidates of a cell. */
 #ifndef SPHGI_SURROUNDINGS_H
 #define SPHGI_SURROUNDINGS_H

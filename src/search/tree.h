@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A tree over the blocks of a grid with octaves. Where many small cells are within the reach of a
  * large particle, most of them empty, it finds the blocks that count. */
 #ifndef SPHGI_TREE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Candidates among sources whose radii differ: a walk through the octaves and their tree. */
 #ifndef SPHGI_WALK_H
 #define SPHGI_WALK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "weights.h"
 
 struct sphgi_weights_book {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Factors s_ij that are kept beside the ids of pairs, for sweeps that would form the same again. */
 #ifndef SPHGI_WEIGHTS_H
 #define SPHGI_WEIGHTS_H

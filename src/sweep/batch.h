@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A batch: the lanes of a group that are at work, from their lists to their sums. */
 #ifndef SPHGI_BATCH_H
 #define SPHGI_BATCH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "borrow.h"
 #include "core/view.h"
 #include "table.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Borrowed curvature (theory.md, section 9): what targets lend, and what they take from lenders. */
 #ifndef SPHGI_BORROW_H
 #define SPHGI_BORROW_H

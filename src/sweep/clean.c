@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "clean.h"
 #include "core/view.h"
 #include "rows.h"

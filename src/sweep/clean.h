@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The host's numbers of sources become ids of rows that can be read. */
 #ifndef SPHGI_CLEAN_H
 #define SPHGI_CLEAN_H

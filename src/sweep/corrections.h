@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From the moments of a group to its corrections. */
 #ifndef SPHGI_CORRECTIONS_H
 #define SPHGI_CORRECTIONS_H

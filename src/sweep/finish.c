@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "finish.h"
 #include "core/kernel.h"
 #include "lane_radii.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* From the sums of a group to the results of its fields. */
 #ifndef SPHGI_FINISH_H
 #define SPHGI_FINISH_H

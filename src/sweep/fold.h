@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Terms of the sources that are multiplied out once a particle: b_j = weight_j C_j A_j. */
 #ifndef SPHGI_FOLD_H
 #define SPHGI_FOLD_H

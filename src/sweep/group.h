@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A group of targets whose sums are done: results are written, or sums put away until those of the
  * other source sets have come in. */
 #ifndef SPHGI_GROUP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One sweep over one source set: what it is to do, the same for all its workers. */
 #ifndef SPHGI_JOB_H
 #define SPHGI_JOB_H

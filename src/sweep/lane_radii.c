@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "lane_radii.h"
 #include "core/kernel.h"
 

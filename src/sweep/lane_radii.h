@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Targets with radii of their own: what takes the place of H, a number per lane. */
 #ifndef SPHGI_LANE_RADII_H
 #define SPHGI_LANE_RADII_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the targets of a batch bring: A_i, V_i, rho_i; and what they weigh as their own sources. */
 #ifndef SPHGI_OWN_H
 #define SPHGI_OWN_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "pair_rows.h"
 
 /* Where the pairs of a lane stand in the arrays, and their ids: what is no pair has the dummy's.

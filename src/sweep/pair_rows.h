@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pairs one by one, from a tile to the rows of the host. */
 #ifndef SPHGI_PAIR_ROWS_H
 #define SPHGI_PAIR_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A target whose list comes in pieces: it is too long to be kept, or found as it is summed. */
 #ifndef SPHGI_PIECES_H
 #define SPHGI_PIECES_H

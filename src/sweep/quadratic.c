@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "quadratic.h"
 #include "borrow.h"
 #include "core/kernel.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Order 2: what it sums, corrects and finishes otherwise than order 1 (theory.md, section 9). */
 #ifndef SPHGI_QUADRATIC_H
 #define SPHGI_QUADRATIC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Rows of the sources: packed in storage order, or copied for single pairs. */
 #ifndef SPHGI_ROWS_H
 #define SPHGI_ROWS_H

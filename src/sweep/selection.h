@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Which targets of a subset, in the order in which a source set visits them. */
 #ifndef SPHGI_SELECTION_H
 #define SPHGI_SELECTION_H

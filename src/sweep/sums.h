@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The pairs of a tile into the sums of a plan. */
 #ifndef SPHGI_SUMS_H
 #define SPHGI_SUMS_H

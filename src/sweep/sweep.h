@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Carries out a plan: sweeps over the source sets, in parallel over blocks of targets. */
 #ifndef SPHGI_SWEEP_H
 #define SPHGI_SWEEP_H

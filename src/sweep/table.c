@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "table.h"
 #include "core/view.h"
 #include "lane_radii.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Tables of corrections: from the coefficients of a batch to the numbers of the host, and back. */
 #ifndef SPHGI_TABLE_H
 #define SPHGI_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Totals of one worker, added up when all are done. */
 #ifndef SPHGI_TALLY_H
 #define SPHGI_TALLY_H

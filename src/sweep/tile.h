@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A tile: some steps of the lists of a batch, gathered and summed. */
 #ifndef SPHGI_TILE_H
 #define SPHGI_TILE_H

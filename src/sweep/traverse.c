@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "traverse.h"
 #include "batch.h"
 #include "group.h"

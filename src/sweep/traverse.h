@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The tasks of a sweep: they walk over targets and hand groups of them to a worker. */
 #ifndef SPHGI_TRAVERSE_H
 #define SPHGI_TRAVERSE_H

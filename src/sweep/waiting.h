@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Targets wait until the lanes of a batch are full, and batches until their group is. */
 #ifndef SPHGI_WAITING_H
 #define SPHGI_WAITING_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "worker.h"
 #include "core/kernel.h"
 #include "core/view.h"

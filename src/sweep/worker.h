@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One worker's share of a sweep, and its memory: it takes groups of targets, gathers their pairs
  * tile by tile, sums, and finishes the group. */
 #ifndef SPHGI_WORKER_H

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # layout.sh HEADER NAMES: a C program that prints what a binding must agree with: sizes of the structs,
 # offsets and sizes of their members, values of the enumerators, and the functions with their parameters.
 set -eu

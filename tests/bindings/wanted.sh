@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # wanted.sh CMAKE SOURCES COMPILER: a binding that is asked for by name and cannot be built is an error; one that is
 # AUTO is left out with a word.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # abi.sh HEADER LAYOUT KEPT: what a program compiled against the header relies on is what src/package/abi.txt
 # keeps: sizes, offsets, values of enumerators, and functions with their types, on machines with pointers of 64
 # bits. Who changes the interface on purpose copies what is printed at the end; the difference is then part of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Put in front of every file by tests/run --analyse: what an analyser that sees one file at a time
  * cannot know of the others. Nothing that fails returns SPHG_OK; what was reserved is there. */
 #include "check.h"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # bench_compare.sh PYTHON ROOT PROGRAM: bench/compare finds a report like itself, and sees what takes longer.
 set -eu
 python=$1 root=$2 program=$3

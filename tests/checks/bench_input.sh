@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # bench_input.sh PROGRAM [READER]: sphgrad-bench --input takes particles as other programs write them, runs files of
 # two dimensions in two, and says what is wrong with what it cannot take.
 # With a READER, which reads many files in one process, for builds that are slow to start: it reads what only

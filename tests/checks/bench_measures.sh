@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # bench_measures.sh PROGRAM CHECKER COMMAND: a small run of the command succeeds, says on which
 # machine, prints no NaN, and its report is sound.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # bench_options.sh PROGRAM: a bad option is answered by one line on stderr and exit status 2.
 program=$1
 status=0

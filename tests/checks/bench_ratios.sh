@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # bench_ratios.sh PROGRAM CHECKER: leaving something out saves time. Ratios of processor times of
 # one thread, measured in turn, the least of many rounds, with room for a busy machine; what disturbs
 # one measurement of three does not disturb all.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* bench_report FILE [NAME COUNTER LEAST MOST | ratio PART WHOLE MOST]...: the report parses, names
  * its machine, and holds nothing but finite numbers; every benchmark whose name contains NAME has
  * the COUNTER, in [LEAST, MOST], and there is at least one; the least processor time of PART is at

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """compiles_with.py COMPILER COMPILE_COMMANDS FOLDER...: another compiler has no word on the sources below these
 folders, with the flags that they are built with. It only reads them, which is when it warns."""
 import concurrent.futures

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Lines and branches of the library's sources that the tests reach, and those they do not.
 
     coverage.py PROFILE LIBRARY [PROGRAM...]

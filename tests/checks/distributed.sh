@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # distributed.sh START PROGRAM [BROKEN_LIBRARY]: a program of examples/distributed agrees with one rank on every
 # number of ranks, more than there are particles included, and fails where the exchange of corrections is
 # forgotten or the library is broken (broken_library.c). START: the script

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """documented_figures.py ROOT SPHGRAD_BENCH TEST_HOSTILE_ARGUMENTS PUBLIC_NAMES EXAMPLE [SEED...]: figures of the
 documents beside what their commands print today: the tables of docs/stability.md, the counts of
 docs/reliability.md, the errors in the README, the angles of normals in docs/applications.md.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """documents.py ROOT CC [CXX]: what the pages tell a reader to do can be done. Blocks of C and C++ compile, whole
 programs as they are, fragments beside documents/fragment.h. Blocks of CMake name targets and functions that exist.
 Commands name scripts, their commands, presets, options and files that are there. Links lead somewhere."""

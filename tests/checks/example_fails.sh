@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # example_fails.sh PROGRAM BROKEN_LIBRARY WAY...: an example of the staircase prints a number and ends with status 0 with the
 # library as it is, seen through the wrapper that can break it, and with another when the library is broken
 # in each of these ways (broken_library.c).

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # exported_names.sh NM HEADER LIBRARY: the shared library exports what the header declares with
 # SPHG_API, no more and no less.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # gates_fail.sh PROGRAM BROKEN_LIBRARY WAY...: the gates of a scene hold with the library as it is, seen
 # through the wrapper that can break it, and one on a corrected method fails for each WAY to break it.
 program=$1 wrapper=$2

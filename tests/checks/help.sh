@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # help.sh SOURCES BENCH EXAMPLES: --help and -h of every program and script answer on stdout with status 0, the
 # scripts without building anything; `examples/run` knows every example and every scene.
 sources=$1 bench=$2 examples=$3

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # layers.sh ROOT: the folders of src are layers, and each file may include its own folder and those below it.
 # The public header is what all of them serve: everyone may include it, it includes the standard.
 cd "$1" || exit 1

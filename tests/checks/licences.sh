@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # licences.sh ROOT: every source and script names its licence in its first lines, as SPDX has it.
 cd "$1" || exit 1
 status=0

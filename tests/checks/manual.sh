@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # manual.sh ROOT FOLDER: docs/run makes the manual without a warning; each function of the header has a text in it,
 # each example a page, no link leads nowhere, and nothing is fetched from a network.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # messages_in_a_locale.sh TEST_ERRORS: in a host with decimal commas messages have decimal points, and
 # numbers that read back. Skips (77) where no such locale can be made.
 work=$(mktemp -d)

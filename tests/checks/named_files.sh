@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # named_files.sh ROOT: what the tables of docs/theory.md (equations to functions) and docs/design.md (layers)
 # name is there, and design.md names every source of the library.
 cd "$1" || exit 1

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # openmp_wanted.sh CMAKE SOURCES COMPILER: without OpenMP in reach, a build that asks for it stops, one
 # that leaves it open warns, one that does without is silent.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # public_names.sh HEADER: the functions that the header declares with their parameters, and the
 # members of its structs, as X-macros. Tests expand them, so that what is new must have its rows.
 set -eu

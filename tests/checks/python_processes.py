@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """python_processes.py LIBRARY: what multiprocessing does by fork(). Children give the gradients of the
 parent, with its context and with new ones; so does one that was there before the parent worked."""
 import ctypes as c

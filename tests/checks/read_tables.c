@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* read_tables FILE...: reads tables of particles in one process, for builds that watch what it
  * does; prints how many rows each has, or what is wrong with it. */
 #include "tables/csv.h"

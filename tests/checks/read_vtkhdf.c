@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* read_vtkhdf FILE FIELD: whether FILE is what the reader of VTK 9.1 asks for: VTKHDF 1.0, an
  * UnstructuredGrid of vertices, with a vector FIELD beside the points. Says the first thing that is
  * wrong. */

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # release.sh ROOT: files that name the version have that of the header, and recipes know options that are there.
 cd "$1" || exit 1
 status=0

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """scene_figures.py ROOT EXAMPLES [--brief] [SCENE[:METHOD...]... [-- SEED...]]: the tables of docs/applications.md
 beside what the scenes print for these seeds (4, 5, 6): all that a row says of a method must hold for every seed.
 --brief: the rows that are measured before a scene is simulated. Without scenes: all of them, which takes

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # scene_output.sh PROGRAM DIR [READER]: a scene (vorticity) prints a line of metrics per method, refuses
 # bad options, and leaves tables, particles and, where there is gnuplot, a picture in its output directory.
 program=$1 directory=$2 reader=$3

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # style.sh ROOT: what clang-format does not see to is the same in every file of C: how counters are increased,
 # includes, guards of headers, tags of structs, blank lines, the length of lines and of functions.
 cd "$1" || exit 1

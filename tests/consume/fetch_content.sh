@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # fetch_content.sh CMAKE ROOT FOLDER COMPILER: the block of the README that fetches the sources makes a project, whose
 # program would be linked with the library. Configured only: other projects build.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # optimised.sh COMPILE_COMMANDS: each file of the library is compiled with optimisation, although its
 # host asked for none, and in IEEE arithmetic, although its host did without.
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # pkg_config.sh shared|static LIBDIR PROGRAM SOURCE COMPILER: builds and runs a program with the flags
 # that pkg-config gives.
 set -eu

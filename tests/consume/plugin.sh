@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # plugin.sh shared|static LIBDIR FOLDER SOURCES COMPILER RESIDENT: builds a plugin with the flags
 # that pkg-config gives, and a host that loads and unloads it.
 # RESIDENT: what has started threads has to stay loaded.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # stage.sh CMAKE BUILD PREFIX: installs a build and moves the result to PREFIX.
 set -eu
 cmake=$1 build=$2 prefix=$3

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Memory for an allocator that is asked for the same large blocks again and again: mapping them
  * would take half of the time of a fuzz target. What nobody holds, and what is behind a block, is
  * poisoned under AddressSanitizer. */

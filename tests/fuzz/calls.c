@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Calls in any order on objects in any state, with an allocator that fails now and then: a code
  * that the header names, every block given back at the end. */
 #include "blocks.h"

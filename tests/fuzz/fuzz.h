@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the fuzz targets share: numbers from bytes, and a requirement that ends the process. A
  * target is LLVMFuzzerTestOneInput(); libFuzzer or replay.c brings main(). */
 #ifndef TESTS_FUZZ_FUZZ_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Lists of the host, right and wrong: refused, found wrong by the operators, or summed; never read
  * beyond their ends. Offsets decide how long the indices must be: a copy of just that size. */
 #include "fuzz.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Any 2 x 2 or 3 x 3 matrix: factors that are orthogonal and multiply to it, corrections that are
  * finite where the matrix is; NaN and infinity stay in their own item. */
 #include "fuzz.h"

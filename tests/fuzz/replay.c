@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* replay FILE...: a fuzz target without libFuzzer, on inputs that were kept. */
 #include "fuzz.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The search finds the pairs of brute force, or refuses, whatever the positions. */
 #include "fuzz.h"
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Ways to break a line of C: each gives places in a source file and what to put there instead."""
 import collections
 import re

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Breaks the library on purpose, one place at a time, and counts which breaks the tests see.
 
     run.py BUILD OUT [--count N] [--seed S] [--jobs J] [--again]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # tests/run --packages (sourced by tests/more.sh): Debian's packages as CPack makes them, judged by lintian,
 # unpacked and compiled against, and made again in a folder of another name: the same bits.
 needs_of_packages() { printf '%s\n' build_essential cmake pkg_config debian_packages; }

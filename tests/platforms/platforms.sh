@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # tests/run --platforms [NAME...] (sourced by tests/more.sh): each platform builds the library as a host
 # does, with warnings as errors, and runs smoke.c; all of them if none is named. What is built for another
 # machine is run by qemu or wine. Where the table says `same`, the base set must give the bits of `native`,

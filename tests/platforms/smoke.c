@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Does the library compute on this machine? KGC, MLS and RKPM in 2D and 3D, f32 and f64, on every
  * instruction set that is here, by one thread and by two: gradients exact on linear fields, forces
  * that sum to nothing, the adjoint of the gradient, pairs of brute force, an SVD, words of an

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The arguments of each public function and what is wrong with them, a table per function. */
 #include "bad_argument_rows.h"
 #include "public_names.h"

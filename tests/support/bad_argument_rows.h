@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every public function with its valid calls and the arguments of each. */
 #ifndef TESTS_SUPPORT_BAD_ARGUMENT_ROWS_H
 #define TESTS_SUPPORT_BAD_ARGUMENT_ROWS_H

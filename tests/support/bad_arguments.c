@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "bad_arguments.h"
 #include <float.h>
 #include <limits.h>

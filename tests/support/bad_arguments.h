@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What can be wrong with an argument, by its kind: each kind spoils a valid call in as many ways as
  * it knows, and says what must become of it. */
 #ifndef TESTS_SUPPORT_BAD_ARGUMENTS_H

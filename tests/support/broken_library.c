@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Stands before the library (LD_PRELOAD) and spoils what corrected methods find, as BROKEN_LIBRARY
  * says: "zero", "minus" (the other sign), "late" (what the call before wrote to this place, at
  * first 0), "1.01" (times that), "random" (1e-6 of each number), "hole" (item 3 of each result is

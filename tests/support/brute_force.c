@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "brute_force.h"
 #include "setup.h"
 #include <float.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Who is whose neighbour, by brute force: r < H decided in the precision of the positions, without
  * FMA, as docs/theory.md says; and the rows that the library lists, to compare with. */
 #ifndef TESTS_SUPPORT_BRUTE_FORCE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Particle clouds for tests: positions as doubles, which hold f32 positions exactly as well. */
 #ifndef TESTS_SUPPORT_CLOUDS_H
 #define TESTS_SUPPORT_CLOUDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One scene twice: before the library and before the oracle, on the same rounded numbers. */
 #ifndef TESTS_SUPPORT_COMPARISON_H
 #define TESTS_SUPPORT_COMPARISON_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The host's side of sphg_config: an allocator that counts, checks and fails on demand, a log that
  * remembers the last failure, and executors that split and order work in awkward ways. */
 #ifndef TESTS_SUPPORT_FAKE_HOST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "incomplete_lists.h"
 #include "brute_force.h"
 

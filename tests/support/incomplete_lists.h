@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Comparisons on lists that lack pairs, as hosts may hand them over. */
 #ifndef TESTS_SUPPORT_INCOMPLETE_LISTS_H
 #define TESTS_SUPPORT_INCOMPLETE_LISTS_H

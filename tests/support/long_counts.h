@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* SPHG_TEST_LONG=1 asks for the long figures: tests/run --long. */
 #ifndef TESTS_SUPPORT_LONG_COUNTS_H
 #define TESTS_SUPPORT_LONG_COUNTS_H

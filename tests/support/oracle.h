@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The reference: every result by brute force in quadruple precision, written from docs/theory.md
  * and sharing no code with the library, on the same rounded inputs. Beside each result stands
  * its bound D (docs/theory.md, errors): what one rounding of everything could do to it. Tests and

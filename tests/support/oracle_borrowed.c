@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "oracle_borrowed.h"
 #include "oracle_internal.h"
 #include "oracle_second.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The reference of borrowed curvature: docs/theory.md, section 9. */
 #ifndef TESTS_SUPPORT_ORACLE_BORROWED_H
 #define TESTS_SUPPORT_ORACLE_BORROWED_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums over pairs: every form, contracted to every operator, with its bound. */
 #include "oracle.h"
 #include "oracle_internal.h"

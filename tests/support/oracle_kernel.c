@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "oracle_kernel.h"
 
 /* w(q) = sum of spline pieces c (b - a q)+^p, or (1 - q)^p times a polynomial in q. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The smoothing functions in quadruple precision, from docs/theory.md alone. */
 #ifndef TESTS_SUPPORT_ORACLE_KERNEL_H
 #define TESTS_SUPPORT_ORACLE_KERNEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Small symmetric matrices in quadruple precision, and what a threshold policy makes of them. */
 #ifndef TESTS_SUPPORT_ORACLE_MATRIX_H
 #define TESTS_SUPPORT_ORACLE_MATRIX_H

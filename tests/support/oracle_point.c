@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One target: neighbours, moments, corrections, G_ij. */
 #include "oracle.h"
 #include "oracle_internal.h"

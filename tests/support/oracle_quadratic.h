@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The reference of order 2, on the pairs and moments of oracle_point: docs/theory.md, section 9, in
  * quadruple precision, sharing no code with the library. */
 #ifndef TESTS_SUPPORT_ORACLE_QUADRATIC_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the parts of the reference of order 2 share. */
 #ifndef TESTS_SUPPORT_ORACLE_SECOND_H
 #define TESTS_SUPPORT_ORACLE_SECOND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Two-sided forms of order 2: w_i A_i G_ij - w_j A_j G_ji, each G from the blocks of its own
  * target. */
 #include "oracle_internal.h"

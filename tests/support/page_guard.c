@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "page_guard.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Arrays that end where a page begins that nobody may touch: reading behind them is a fault, with
  * no sanitizer at hand. */
 #ifndef TESTS_SUPPORT_PAGE_GUARD_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "public_calls.h"
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The calls of every public function with the arguments of a valid call, and variants of its
  * request. */
 #ifndef TESTS_SUPPORT_PUBLIC_CALLS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Quadruple precision for the oracle: only the arithmetic that the compiler itself provides. */
 #ifndef TESTS_SUPPORT_QUAD_H
 #define TESTS_SUPPORT_QUAD_H

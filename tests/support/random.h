@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Seeded random numbers for tests. The same seed gives the same cloud on every machine.
  * SPHG_TEST_SEED in the environment draws others everywhere. */
 #ifndef TESTS_SUPPORT_RANDOM_H

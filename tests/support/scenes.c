@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "scenes.h"
 
 static cloud block(int d, random_state *random)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The scenes that accuracy tests run through, from easy to hard. */
 #ifndef TESTS_SUPPORT_SCENES_H
 #define TESTS_SUPPORT_SCENES_H

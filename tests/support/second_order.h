@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Requests of order 2 in a comparison: every derivative that a field has, and what is lent. */
 #ifndef TESTS_SUPPORT_SECOND_ORDER_H
 #define TESTS_SUPPORT_SECOND_ORDER_H

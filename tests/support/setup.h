@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What operator tests stand on: a context, typed arrays, neighbours of a cloud. All of it is
  * released by the runner when the case ends. */
 #ifndef TESTS_SUPPORT_SETUP_H

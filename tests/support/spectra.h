@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Small matrices that break solvers: random and adversarial spectra, and the long double
  * eigendecomposition they are judged by. */
 #ifndef TESTS_SUPPORT_SPECTRA_H

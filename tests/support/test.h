@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The run loop of all tests: a property is a function of one test_case; the runner turns each
  * combination of the parameters it varies over into one named CMocka case. */
 #ifndef TESTS_SUPPORT_TEST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Every tolerance of the tests, in one table: multiples of the unit roundoff u (2^-24 in f32 and
  * mixed, 2^-53 in f64), one number for all precisions. `measured` is the worst value seen when the
  * row was last set (all cases, GCC and Clang); the run prints what it measured beside the limit. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "valid_call.h"
 #include <string.h>
 

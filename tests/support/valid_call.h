@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* One valid call of every public function, with each of its arguments as a member that can be
  * spoilt: bad_arguments.h knows how. */
 #ifndef TESTS_SUPPORT_VALID_CALL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Arrays of the solver, and how the library is shown them. */
 #ifndef SOLVER_ARRAYS_H
 #define SOLVER_ARRAYS_H

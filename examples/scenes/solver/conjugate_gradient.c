@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "conjugate_gradient.h"
 #include <math.h>
 #include <string.h>

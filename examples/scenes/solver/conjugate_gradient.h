@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The method of conjugate gradients (Hestenes, Stiefel 1952, doi:10.6028/jres.049.044) for a
  * symmetric positive definite A that is given as a function. */
 #ifndef SOLVER_CONJUGATE_GRADIENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "elasticity.h"
 #include <math.h>
 #include <stdlib.h>

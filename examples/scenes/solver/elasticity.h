@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Corotated linear elasticity on a rest configuration (Peer et al. 2018, doi:10.1111/cgf.13317; the
  * paper's Eqs. (51) to (53), the last with the volumes that make it a force). */
 #ifndef SOLVER_ELASTICITY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "implicit.h"
 #include "conjugate_gradient.h"
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Steps of v that are implicit in a force linear in v: (mass - scale K) v = momentum, solved by
  * conjugate gradients. */
 #ifndef SOLVER_IMPLICIT_H

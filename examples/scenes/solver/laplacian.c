@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "laplacian.h"
 
 struct laplacian laplacian_new(const struct sph *sph, const sphg_neighbors *neighbors,

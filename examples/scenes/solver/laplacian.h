@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Viscous forces of a fluid that is hardly viscous, from the Laplacian of v in the form of Monaghan
  * 2005 (doi:10.1088/0034-4885/68/8/R01), over pairs with plain gradients: explicit, and implicit as
  * in Weiler et al. 2018 (doi:10.1111/cgf.13349). With both volumes of a pair in it, the force keeps

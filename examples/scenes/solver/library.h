@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The library as the scenes use it: a failure ends the program with the library's words. */
 #ifndef SOLVER_LIBRARY_H
 #define SOLVER_LIBRARY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What a run came to, as named numbers, and the bounds that are put on them. */
 #ifndef SOLVER_METRICS_H
 #define SOLVER_METRICS_H

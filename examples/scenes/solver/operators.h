@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Corrected derivatives of what particles carry, over the particles themselves. Built again in each
  * step they are those of a fluid; built once, of the rest configuration of a solid. */
 #ifndef SOLVER_OPERATORS_H

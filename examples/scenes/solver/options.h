@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The command line that all scenes share. */
 #ifndef SOLVER_OPTIONS_H
 #define SOLVER_OPTIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "output.h"
 #include "vtkhdf.h"
 #include <errno.h>

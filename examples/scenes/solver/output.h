@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Files that a run leaves in its output directory: SCENE_METHOD_LABEL.dat for gnuplot, and
  * SCENE_METHOD_0001.vtkhdf for ParaView. Without a directory all calls do nothing. */
 #ifndef SOLVER_OUTPUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The pairs of a neighbourhood with their gradients, for loops that the library has no operator
  * for. */
 #ifndef SOLVER_PAIRS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The particles of a scene, fluid or solid, all with the same volume at rest. */
 #ifndef SOLVER_PARTICLES_H
 #define SOLVER_PARTICLES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Pictures by gnuplot: SCENE.gp and SCENE.png beside the tables of the runs, plain SPH to the left
  * of the method that ran beside it. */
 #ifndef SOLVER_PICTURE_H

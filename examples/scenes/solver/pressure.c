@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "pressure.h"
 #include "stopwatch.h"
 #include <math.h>

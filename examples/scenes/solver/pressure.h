@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Divergence-free SPH (Bender, Koschier 2017, doi:10.1109/TVCG.2016.2578335) for fluids of several
  * rest densities that share one particle volume, beside walls of particles. Its Jacobi iterations
  * are accelerated (Nesterov 1983) and begin anew as O'Donoghue and Candes propose (2015,

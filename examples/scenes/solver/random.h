@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Random numbers that are the same everywhere. */
 #ifndef SOLVER_RANDOM_H
 #define SOLVER_RANDOM_H

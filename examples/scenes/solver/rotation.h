@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The rotation nearest to a matrix, by the library's singular values. */
 #ifndef SOLVER_ROTATION_H
 #define SOLVER_ROTATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Irregular samples of surfaces, as scanned or imported walls have them. */
 #ifndef SOLVER_SAMPLING_H
 #define SOLVER_SAMPLING_H

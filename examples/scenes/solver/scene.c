@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE /* fork, isatty, MAP_ANONYMOUS */
 #include "scene.h"
 #include "output.h"

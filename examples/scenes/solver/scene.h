@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What makes a scene, and the main function that all scenes share. */
 #ifndef SOLVER_SCENE_H
 #define SOLVER_SCENE_H

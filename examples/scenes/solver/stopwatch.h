@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Time. */
 #ifndef SOLVER_STOPWATCH_H
 #define SOLVER_STOPWATCH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "surface_tension.h"
 #include <math.h>
 #include <stdlib.h>

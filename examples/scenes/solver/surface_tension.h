@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Surface tension after He et al. 2014 (doi:10.1145/2682630), from the gradient of a colour field:
  * with plain SPH the paper's Eqs. (42) and (43), with a corrected method Eqs. (44) and (45). Both
  * live on the sum of the gradients G_ij, which vanishes inside and not at the surface: a heuristic,

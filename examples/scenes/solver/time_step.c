@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "time_step.h"
 #include <math.h>
 

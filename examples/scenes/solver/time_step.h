@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Time steps. */
 #ifndef SOLVER_TIME_STEP_H
 #define SOLVER_TIME_STEP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "viscosity.h"
 #include <math.h>
 #include <stdlib.h>

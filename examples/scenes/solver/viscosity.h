@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Viscous forces of a fluid that is very viscous. */
 #ifndef SOLVER_VISCOSITY_H
 #define SOLVER_VISCOSITY_H

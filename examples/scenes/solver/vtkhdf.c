@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "vtkhdf.h"
 #include <hdf5.h>
 #include <stdlib.h>

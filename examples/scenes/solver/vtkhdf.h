@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Particles in the form VTKHDF 1.0, UnstructuredGrid, a vertex per particle: what VTK 9.1
  * (ParaView 5.11) reads. docs.vtk.org, "VTKHDF file format". */
 #ifndef SOLVER_VTKHDF_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "vtkhdf.h"
 
 bool vtkhdf_is_there(void)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Walls of particles (Akinci et al. 2012, doi:10.1145/2185520.2185558), and what a fluid feels of
  * them through shape functions of the wall's particles alone. */
 #ifndef SOLVER_WALL_H

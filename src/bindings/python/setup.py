@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The wheel: modules in Python, and the shared library as a file beside them. Nothing is compiled; the
 CMake target python_wheel puts the files together."""
 import re

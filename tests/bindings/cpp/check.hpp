@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What the tests of the C++ header share. */
 #include <sphgrad/sphgrad.hpp>
 #include <cmath>

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # covered.sh HEADER HPP LAYOUT: the C++ header calls every function of the C header, and sets or leaves to the
 # host every member of its structs.
 set -eu

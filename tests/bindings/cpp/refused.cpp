@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What must not compile: one mistake each, chosen by MISTAKE; 0 is none. */
 #include <sphgrad/sphgrad.hpp>
 

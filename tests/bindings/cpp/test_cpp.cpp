@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The C++ header: handles, views of standard containers, checks of every length, all operators. */
 #include "check.hpp"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Fields in matrices of Eigen, n x 3 and 3 x n, in either storage order: the same bits, no copies. */
 #include "check.hpp"
 #include <Eigen/Core>

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # layout.sh LAYOUT MODULE: a Fortran program that compares sizes, places and values with those of C (LAYOUT). Before
 # that: the module declares each function, with the parameters of C in their order.
 set -eu

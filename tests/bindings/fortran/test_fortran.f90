@@ -1,3 +1,4 @@
+! SPDX-License-Identifier: MIT
 ! The Fortran module: every function of C, views of arrays of both kinds, of ranks 1 to 3, and of sections.
 program test_fortran
   use, intrinsic :: iso_c_binding

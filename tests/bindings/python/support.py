@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of the Python package share: clouds, and a reference in plain NumPy."""
 import os
 import sys

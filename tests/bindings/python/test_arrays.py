@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Arrays: what a view can express is used in place, everything else is copied or refused, and nothing
 is ever written where it must not be."""
 import ctypes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """test_layout.py LAYOUT HEADER: structs, enumerations and functions of the package are those that a C
 compiler saw (LAYOUT) and that the header declares; whatever Python leaves out has its reason."""
 import ctypes as c

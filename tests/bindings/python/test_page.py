@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """test_page.py PAGE: what the page shows runs, from top to bottom."""
 import re
 import sys

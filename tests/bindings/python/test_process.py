@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The process around: fork, threads, the GIL."""
 import multiprocessing
 import os

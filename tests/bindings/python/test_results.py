@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Results: exact where they must be, those of a reference in NumPy, and of one another."""
 import dataclasses
 import numpy as np

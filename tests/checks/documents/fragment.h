@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What fragments of C in the documents take as given: the names that a reader knows by then. */
 #include <sphgrad/sphgrad.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* host PLUGIN REPETITIONS [resident FILE] [hides|shows NAME]...: loads a plugin, runs it and
  * unloads it while the threads that it left may still be at work, again and again, in all ways that
  * hosts do. Then: FILE is still loaded, the plugin hides or shows a name. */

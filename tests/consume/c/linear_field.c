@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A host in C: the gradient of a linear field must come out, at corners too. */
 #include <math.h>
 #include <sphgrad/sphgrad.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A plugin: the gradient of a linear field on as many threads as there are, then nothing remains;
  * or, if its host says so, what it made. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 // A host in C++: the Jacobian of a linear field must come out, at corners too.
 #include <array>
 #include <cmath>

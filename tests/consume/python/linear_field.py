@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """linear_field.py PREFIX: the package lies below PREFIX, so does the library it loads, and it computes
 the gradient of a linear field."""
 import os

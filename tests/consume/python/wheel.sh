@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: MIT
 # wheel.sh CMAKE BUILD WORK PYTHON PROGRAM: the target python_wheel makes one wheel, pip installs it without a
 # network, and PROGRAM finds package and library there.
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """sphgrad: corrected first-order SPH derivatives (KGC, MLS, RKPM; linearised and classic) on NumPy.
 
     neighbors = sphgrad.Neighbors(positions, 2 * spacing)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The C interface as it is: the library, its structs, enumerations and functions.
 
 Members have the names and the order of sphgrad.h; a test compares every offset, value and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Context: who works. Errors of the library become exceptions here."""
 import contextlib
 import ctypes as c

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Requests: which results of which fields, in one sweep over the pairs."""
 import ctypes as c
 import dataclasses

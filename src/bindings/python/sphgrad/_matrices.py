@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Small matrices in batches: moments of your own, eigenvalues, singular values."""
 import ctypes as c
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Neighbors: who sums over whom, and where everyone stood."""
 import ctypes as c
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The usual operators: requests of one field."""
 import numpy as np
 from . import _c

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Pairs as CSR, with their gradients: for loops and matrices of your own."""
 import ctypes as c
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scheme: which derivative. Kernels and single pairs need no more than that."""
 import ctypes as c
 import dataclasses

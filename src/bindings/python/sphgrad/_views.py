@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """NumPy arrays as views of the C interface.
 
 Every array is checked here: type, length, layout, and for outputs that it may be written. What a
