@@ -8,9 +8,14 @@ set(library libsphgrad${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}) # as De
 
 # What Debian wants beside the files: the licence and a changelog, in each package.
 find_program(SPHG_GZIP gzip REQUIRED)
-set(changelog ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian)
+set(changelog ${CMAKE_CURRENT_BINARY_DIR}/changelog)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/changelog.in ${changelog} @ONLY)
 execute_process(COMMAND ${SPHG_GZIP} -9 -n -k -f ${changelog} COMMAND_ERROR_IS_FATAL ANY)
+# Programs that link the library depend on this package; the loader hears of it when it is installed.
+set(control ${CMAKE_CURRENT_BINARY_DIR}/control)
+file(WRITE ${control}/shlibs
+    "libsphgrad ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${library} (>= ${PROJECT_VERSION})\n")
+file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
 configure_file(${CMAKE_CURRENT_LIST_DIR}/debian/copyright.in ${CMAKE_CURRENT_BINARY_DIR}/copyright @ONLY)
 foreach(component IN ITEMS Runtime Development)
     set(package ${library})
@@ -39,20 +44,21 @@ set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-set(about "It computes gradients, divergences, curls and Jacobians of fields that SPH particles carry,
- corrected so that they are exact on linear fields at free surfaces, too.")
+set(about "A C library for gradients, divergences, curls and Jacobians of fields
+that SPH particles carry, corrected so that they are exact on linear
+fields at free surfaces, too.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME ${library})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_MULTIARCH same)
+set(CPACK_DEBIAN_PACKAGE_MULTIARCH same)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
-set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "corrected SPH derivatives\n ${about}")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${control}/shlibs ${control}/triggers)
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "${about}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsphgrad-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_MULTIARCH same)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library} (= ${PROJECT_VERSION})")
-set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "corrected SPH derivatives, development files\n ${about}")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "${about}
+This package has the headers for C and C++, the source of the Fortran
+module, the CMake package and the file for pkg-config.")
 
 include(CPack)
 include(CPackComponent)
