@@ -37,6 +37,7 @@ needs_of_platforms() {
     local name
     printf '%s\n' build_essential cmake
     for name in ${*:-$(platform_names)}; do
+        platform_names | grep -qxFe "$name" || continue # refused below
         case $name in
             native) ;;
             i386*) echo cross_i386 ;;
@@ -120,6 +121,6 @@ run_platforms() {
         passed=$((passed + 1))
     done
     [ ${#failed[@]} -eq 0 ] || echo "not green: ${failed[*]}"
-    echo "$((passed)) passed, ${#failed[@]} failed"
+    echo "$passed passed, ${#failed[@]} failed"
     [ ${#failed[@]} -eq 0 ]
 }
