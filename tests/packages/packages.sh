@@ -17,6 +17,15 @@ judge_packages() {
         --suppress-tags initial-upload-closes-no-bugs,bogus-mail-host "$@"
 }
 
+# declare_packages PACKAGE...: on what each depends, and that other architectures may stand beside it.
+declare_packages() {
+    local package
+    for package; do
+        dpkg-deb --field "$package" Depends | grep -qE '^(libc6|libsphgrad)' &&
+            [ "$(dpkg-deb --field "$package" Multi-Arch)" = same ] || { echo "$package: wrong fields" >&2; return 1; }
+    done
+}
+
 # use_packages FOLDER PACKAGE...: apt could install them, and a program compiles and runs with what they hold.
 use_packages() {
     local root=$1 package multiarch
@@ -38,7 +47,7 @@ run_packages() {
     again=$(mktemp -d) || return 1
     make_packages "$PWD" || return 1
     made=(build/package/*.deb)
-    judge_packages "${made[@]}" && use_packages "$PWD/build/package/unpacked" "${made[@]}" || return 1
+    judge_packages "${made[@]}" && declare_packages "${made[@]}" && use_packages "$PWD/build/package/unpacked" "${made[@]}" || return 1
     mkdir "$again/elsewhere" && git ls-files -z --cached --others --exclude-standard | tar -c --null -T - | tar -x -C "$again/elsewhere" &&
         make_packages "$again/elsewhere" || return 1
     for package in "${made[@]}"; do
