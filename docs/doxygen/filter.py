@@ -8,7 +8,9 @@ import re
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-HEADER = os.path.join(ROOT, "include", "sphgrad", "sphgrad.h")
+INCLUDE = os.path.join(ROOT, "include", "sphgrad")
+HEADER = os.path.join(INCLUDE, "sphgrad.h")
+HEADERS = [HEADER, os.path.join(INCLUDE, "small_matrices.h")]
 
 
 def read(path):
@@ -103,7 +105,7 @@ def split_declarators(text):
 
 
 def header(text):
-    text = split_declarators(results(text))
+    text = split_declarators(results(text) if "#define SPHG_RESULT_LIST" in text else text)
     pieces = re.split(r"(/\*(?:[^*]|\*(?!/))*\*/)", text)
     out, depth, group, section = [], -1, False, None  # in extern "C" {
     for number, piece in enumerate(pieces):
@@ -196,16 +198,17 @@ def link(page, words, target):
         return f"[{words}](pages.html)"
     if inside.endswith(".md") and not inside.startswith("tests"):
         return f"[{words}](@ref {label(file, anchor)})"
-    if inside == "include/sphgrad/sphgrad.h":
-        return f'[{words}](@ref sphgrad.h)'
+    if file in HEADERS:
+        return f'[{words}](@ref {os.path.basename(file)})'
     if inside.startswith("examples/") and inside.count("/") <= 2 and not inside.startswith("examples/scenes"):
         return f"[{words}]({example_page(inside[len('examples/'):])})"
     return words  # not in the manual
 
 
 def names():
-    described = set(re.findall(r"\b(SPHG_[A-Z0-9_]+) = \d+,? +/\*", read(HEADER)))
-    text = re.sub(r"/\*.*?\*/", "", read(HEADER), flags=re.S)
+    whole = "".join(read(path) for path in HEADERS)
+    described = set(re.findall(r"\b(SPHG_[A-Z0-9_]+) = \d+,? +/\*", whole))
+    text = re.sub(r"/\*.*?\*/", "", whole, flags=re.S)
     structs = dict(re.findall(r"typedef struct (\w+) \{(.*?)\n\} \1;", text, re.S))
     functions = set(re.findall(r"\b(sphg_\w+)\(", text))
     enumerators = described | {"SPHG_" + name for name in re.findall(r"X\((\w+), -?\d", text)}
@@ -275,4 +278,4 @@ if sys.argv[1] == "--examples":
 else:
     given = os.path.abspath(sys.argv[1])
     contents = read(given)
-    print(header(contents) if given == HEADER else page(given, contents) if given.endswith(".md") else contents, end="")
+    print(header(contents) if given in HEADERS else page(given, contents) if given.endswith(".md") else contents, end="")

@@ -11,7 +11,7 @@ rm -rf "$folder"
 "$root/docs/run" "$folder" >/dev/null
 cd "$folder"
 [ -d search ] || complain 'there is no search'
-for name in $(sed -n 's/^SPHG_API [a-z_0-9 ]*[ *]\(sphg_[a-z_]*\)(.*/\1/p' "$root/include/sphgrad/sphgrad.h"); do
+for name in $(sed -n 's/^SPHG_API [a-z_0-9 ]*[ *]\(sphg_[a-z_]*\)(.*/\1/p' "$root"/include/sphgrad/*.h); do
     cat group__*.html | grep -qE "(>|\b)$name(<|</b>)" || complain "$name is not in the manual"
 done
 for example in "$root"/examples/*.c; do

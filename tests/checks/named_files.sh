@@ -34,7 +34,7 @@ find_source() {
 # Of the interface: declared in the header, members after a dot.
 interface=$(column 3 docs/theory.md equation | quoted | tr -d '()' | tr . ' ')
 [ -n "$interface" ] || complain "docs/theory.md has no table of functions"
-declared=" $(tr -cs 'A-Za-z0-9_' ' ' <include/sphgrad/sphgrad.h) "
+declared=" $(cat include/sphgrad/*.h | tr -cs 'A-Za-z0-9_' ' ') "
 for name in $interface; do
     case $declared in
         *" $name "*) ;;
