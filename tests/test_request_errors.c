@@ -194,7 +194,8 @@ static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *tes
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "divergence",
             own->field.gradient = sphg_absent();
             own->field.divergence = own->vector_out);
-    REFUSES(call_evaluate, VALID_CALL_REFUSED, "value", own->field.value = own->scalar_out);
+    REFUSES(call_evaluate, VALID_CALL_REFUSED, "value", own->field.form = SPHG_ADJOINT;
+            own->field.value = own->scalar_out);
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "square", own->field.gradient = sphg_absent();
             own->field.square = own->scalar_out);
     REFUSES(call_evaluate, SPHG_ERROR_UNSUPPORTED, "square", own->field.gradient = sphg_absent();

@@ -484,8 +484,9 @@ typedef struct sphg_field {
                                     `mirror`, else 0, and refused in DIFFERENCE */
     sphg_view at_targets;        /* A_i [a]; absent: from the set the targets are part of. DIRECT:
                                     read by `mirror` only, where that set has none */
-    sphg_view value;             /* DIRECT only: sum A_j Phi_j(x_i) [a], shape as A, self included.
-                                    Classic: exact on linear fields; others: sum A_j V_j W */
+    sphg_view value;             /* [a], shape as A. DIRECT: sum A_j Phi_j(x_i), self included.
+                                    Classic: exact on linear fields; others: sum A_j V_j W.
+                                    DIFFERENCE: the same of A_j - A_i, as XSPH and density diffusion */
     sphg_view gradient;          /* [a/L] scalar -> vector, vector -> tensor */
     sphg_view divergence;        /* [a/L] vector -> scalar, tensor or symmetric -> vector */
     sphg_view curl;              /* [a/L] vector -> vector, in 2D -> scalar */
@@ -496,7 +497,13 @@ typedef struct sphg_field {
     sphg_view hessian;           /* [a/L^2] DIFFERENCE, order 2: scalar -> symmetric tensor, vector
                                     -> d of them, one for each component (y and z start those) */
     sphg_view laplacian;         /* [a/L^2] DIFFERENCE, order 2: its trace, shape as A. For diffusion
-                                    in time only where no surface is free: unstable there */
+                                    in time only where no surface is free: unstable there.
+                                    [a k L^(d - 2)] ADJOINT, order 1, not classic: heat, or momentum,
+                                    that flows into i: sum k_ij L_ij (A_j - A_i) with
+                                    L_ij = -(V_i G_ij - V_j G_ji) . x_ij / r^2 >= 0. Symmetric,
+                                    conservative, nothing leaves through surfaces; result / V_i stands
+                                    for div(k grad A): solutions converge, the values themselves do
+                                    not. PLAIN: Brookshaw, Morris */
     sphg_view curvature; /* DIFFERENCE, order 2: what a target lends: c in [0, 1], how sure it is,
                             and c times the Hessian of each component; 1 + d (d + 1) / 2 numbers, of
                             a vector 1 + d times as many. Never accumulated */
@@ -504,6 +511,16 @@ typedef struct sphg_field {
                                  view per source set (absent: it lends nothing); NULL: nobody lends.
                                  Curvature that a target cannot resolve is then its lenders', not 0.
                                  MPI: between the calls refresh the ghosts' rows */
+    const sphg_view *coefficient; /* k_j [k] >= 0 of ADJOINT laplacian, a view per source set; NULL: 1.
+                                     k_ij = 2 k_i k_j / (k_i + k_j), 0 where either is */
+    sphg_view coefficient_at_targets; /* k_i; absent: from the set the targets are part of */
+    int32_t shepard;               /* 1: DIRECT value divided by sum V_j W, self included: exact on
+                                      constants at surfaces, too (0 where nobody is). Not classic */
+    const sphg_view *value_volume; /* V_j of value alone, a view per source set; NULL: the sets'. Not
+                                      classic */
+    sphg_view tensor;      /* T_i [t], TENSOR, at the targets: with contraction */
+    sphg_view contraction; /* [a t/L] vector -> scalar: sum J[a][b] T[a][b], J the gradient of the
+                              field's form */
 } sphg_field;
 
 /* Counts over those targets of one call whose corrections were computed. */

@@ -332,8 +332,8 @@ inline sphg_scheme scheme(double support_radius, sphg_method method = SPHG_KGC, 
     return {dimension, method, kernel, policy, support_radius, threshold, order};
 }
 
-/* Positions, radii of their own, and counts. Precision, skin, period, list_free and mutual are set in
- * `options`, whose views and counts are not read. */
+/* Positions, radii of their own, and counts. Precision, skin, period, list_free and mutual are set
+ * in `options`, whose views and counts are not read. */
 struct geometry {
     input sources, targets;
     std::int64_t own = -1; /* targets that are part of the sources; -1: all, or `targets` */
@@ -420,6 +420,12 @@ struct field {
     output hessian = {}, laplacian = {};
     output curvature = {};           /* what targets lend ... */
     std::vector<input> lenders = {}; /* ... and sources offer, one per source set; empty: nobody */
+    std::vector<input> coefficient = {}; /* of diffusion, one per source set; empty: 1 */
+    input coefficient_at_targets = {};
+    bool shepard = false;
+    std::vector<input> value_volume = {}; /* one per source set; empty: those of the sets */
+    input tensor = {};
+    output contraction = {};
 };
 
 struct request {
@@ -619,12 +625,20 @@ template <class Errors> class basic_context
             sets.push_back(of_set(check, scheme, set, infos.back()));
         }
         const std::int64_t n = infos.empty() ? 0 : infos[0].target_count;
-        std::vector<std::vector<sphg_view>> views, loans;
+        std::vector<std::vector<sphg_view>> views, loans, coefficients, volumes;
         std::vector<sphg_field> fields;
         for (const field &one : wanted.fields) {
             views.push_back(at_sources(check, one, infos, d));
-            loans.push_back(lenders(check, one, infos, d));
-            fields.push_back(of_field(check, one, views.back(), loans.back(), n, d));
+            loans.push_back(
+                of_sets(check, one.lenders, infos, numbers_lent(one.shape, d), "lenders"));
+            coefficients.push_back(of_sets(check, one.coefficient, infos, 1, "coefficient"));
+            volumes.push_back(of_sets(check, one.value_volume, infos, 1, "value_volume"));
+            fields.push_back(of_field(check, one, n, d));
+            sphg_field &made = fields.back();
+            made.at_sources = views.back().data();
+            made.lenders = first_of(loans.back());
+            made.coefficient = first_of(coefficients.back());
+            made.value_volume = first_of(volumes.back());
         }
         sphg_request made = {};
         made.sources = sets.data();
@@ -836,22 +850,25 @@ template <class Errors> class basic_context
     {
         return 1 + detail::numbers_of(shape, d) * detail::numbers_of(SPHG_SYM_TENSOR, d);
     }
-    static std::vector<sphg_view> lenders(detail::checker &check, const field &one,
-                                          const std::vector<sphg_neighbors_info> &infos, int d)
+    /* What a field may have of each source set. */
+    static std::vector<sphg_view> of_sets(detail::checker &check, const std::vector<input> &given,
+                                          const std::vector<sphg_neighbors_info> &infos,
+                                          int numbers, const char *name)
     {
         std::vector<sphg_view> made;
-        if (!one.lenders.empty() && one.lenders.size() != infos.size())
-            check.refuse("lenders", " has " + std::to_string(one.lenders.size()) +
-                                        " views, none or one per source set is needed");
+        if (!given.empty() && given.size() != infos.size())
+            check.refuse(name, " has " + std::to_string(given.size()) +
+                                   " views, none or one per source set is needed");
         else
-            for (std::size_t k = 0; k < one.lenders.size(); ++k)
-                made.push_back(check.take(one.lenders[k], infos[k].source_count,
-                                          numbers_lent(one.shape, d), "lenders"));
+            for (std::size_t k = 0; k < given.size(); ++k)
+                made.push_back(check.take(given[k], infos[k].source_count, numbers, name));
         return made;
     }
-    static sphg_field of_field(detail::checker &check, const field &one,
-                               const std::vector<sphg_view> &views,
-                               const std::vector<sphg_view> &loans, std::int64_t n, int d)
+    static const sphg_view *first_of(const std::vector<sphg_view> &views)
+    {
+        return views.empty() ? nullptr : views.data();
+    }
+    static sphg_field of_field(detail::checker &check, const field &one, std::int64_t n, int d)
     {
         const sphg_shape up = one.shape == SPHG_SCALAR ? SPHG_VECTOR : SPHG_TENSOR;
         const sphg_shape down = one.shape == SPHG_VECTOR ? SPHG_SCALAR : SPHG_VECTOR;
@@ -860,7 +877,6 @@ template <class Errors> class basic_context
         made.form = one.form;
         made.accumulate = one.accumulate;
         made.mirror = one.mirror;
-        made.at_sources = views.data();
         made.at_targets = check.take(one.at_targets, n, one.shape, d, "at_targets");
         made.value = check.take(one.value, n, one.shape, d, "value");
         made.gradient = check.take(one.gradient, n, up, d, "gradient");
@@ -871,7 +887,11 @@ template <class Errors> class basic_context
                                   (one.shape == SPHG_VECTOR ? d : 1) * d * (d + 1) / 2, "hessian");
         made.laplacian = check.take(one.laplacian, n, one.shape, d, "laplacian");
         made.curvature = check.take(one.curvature, n, numbers_lent(one.shape, d), "curvature");
-        made.lenders = loans.empty() ? nullptr : loans.data();
+        made.coefficient_at_targets =
+            check.take(one.coefficient_at_targets, n, 1, "coefficient_at_targets");
+        made.shepard = one.shepard;
+        made.tensor = check.take(one.tensor, n, SPHG_TENSOR, d, "tensor");
+        made.contraction = check.take(one.contraction, n, 1, "contraction");
         return made;
     }
     using short_function = sphg_result(sphg_context *, const sphg_scheme *, const sphg_sources *,

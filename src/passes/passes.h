@@ -61,7 +61,9 @@ enum sphgi_array {
     SPHGI_TY,
     SPHGI_TZ,
     SPHGI_PHI, /* weight of the value: V_j W, classic Phi_j */
-    SPHGI_ARRAYS
+    SPHGI_ARRAYS,
+    SPHGI_L = SPHGI_GX, /* L_ij of diffusion, which no G_ij stand beside */
+    SPHGI_W = SPHGI_D   /* W of linearised methods, where fields have volumes of their own */
 };
 
 /* The vectors that a sum over pairs contains. */
@@ -329,6 +331,11 @@ struct sphgi_passes {
                         const void *rows);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
+    /* W of shape_weights where factors leave it alone; and V_j W of it, V_j in rows, times unit and
+     * a number per lane, or 1. */
+    void (*keep_kernel)(void *arrays, int32_t count);
+    void (*values_of_volumes)(const struct sphgi_tile *tile, const void *rows, double unit,
+                              const void *each);
     void (*classic_vectors)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                             const void *coefficients);
     /* G_ij = scale times what order 2 has. */
@@ -339,6 +346,14 @@ struct sphgi_passes {
                            enum sphgi_vectors vectors, const void *correction, double scale);
     void (*transposed)(const struct sphgi_tile *tile, int32_t dimension, const void *const rows[4],
                        const void *density, enum sphgi_weight kind);
+    /* L_ij from the direction e of each pair: -s_ij e^T (E_i + unit weight_j C_j) e, E_i of the
+     * targets and rows of C_j, of which either may be NULL; and -s_ij factor each for C = 1.
+     * Written, or added to what stands there. */
+    void (*pair_laplacian)(const struct sphgi_tile *tile, int32_t dimension, const void *own,
+                           const void *const *table, double inverse_h, double unit,
+                           enum sphgi_weight kind, bool add);
+    void (*pair_laplacian_plain)(const struct sphgi_tile *tile, double factor, const void *each,
+                                 bool add);
     void (*transposed_classic)(const struct sphgi_tile *tile, int32_t dimension,
                                const void *const rows[4], const struct sphgi_scales *scales,
                                const void *target_volume, const void *density,
@@ -375,6 +390,11 @@ struct sphgi_passes {
                         const void *at_target, void *sums);
     void (*sum_value)(const struct sphgi_tile *tile, const void *rows, int32_t count,
                       const void *at_target, void *sums);
+    void (*sum_weights)(const struct sphgi_tile *tile, void *sums); /* of values */
+    /* sum k_ij L_ij (A_j - at_target), k_ij the harmonic mean of both ends' coefficients, or 1 */
+    void (*sum_diffusion)(const struct sphgi_tile *tile, const void *rows, int32_t count,
+                          const void *coefficients, const void *own_coefficient,
+                          const void *at_target, void *sums);
     void (*sum_vectors)(const struct sphgi_tile *tile, int32_t dimension,
                         enum sphgi_vectors vectors, const void *rows, void *sums);
     /* sum s_ij b_j x_ij; and, unless vectors is NULL, sum s_ij x_ij or, where rho_j stands behind
@@ -445,6 +465,7 @@ struct sphgi_passes {
     /* tr(C S C) of the triangle S */
     void (*trace_between)(int32_t width, int32_t dimension, const void *correction,
                           const void *sums, void *trace);
+    void (*double_product)(int32_t width, int32_t count, const void *a, const void *b, void *out);
     void (*contract)(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
                      void *divergence, void *curl);
     /* Asks the memory for what load_lanes or store_lanes will touch. */

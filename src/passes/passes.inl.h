@@ -38,6 +38,8 @@
 #include "folded.inl.h"
 #include "classic.inl.h"
 #include "quadratic_sums.inl.h"
+#include "diffusion.inl.h"
+#include "values.inl.h"
 #include "eigen.inl.h"
 #include "invert.inl.h"
 #include "results.inl.h"
@@ -78,10 +80,14 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .shape_other = shape_other,
     .shape_weights = shape_weights,
     .shape_values = shape_values,
+    .keep_kernel = keep_kernel,
+    .values_of_volumes = values_of_volumes,
     .classic_vectors = classic_vectors,
     .quadratic_gradients = quadratic_gradients,
     .pair_gradients = pair_gradients,
     .transposed = transposed,
+    .pair_laplacian = pair_laplacian,
+    .pair_laplacian_plain = pair_laplacian_plain,
     .transposed_classic = transposed_classic,
     .transposed_quadratic = transposed_quadratic,
     .sum_moments = sum_moments,
@@ -94,6 +100,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_divergence = sum_divergence,
     .sum_squares = sum_squares,
     .sum_value = sum_value,
+    .sum_weights = sum_weights,
+    .sum_diffusion = sum_diffusion,
     .sum_vectors = sum_vectors,
     .sum_folded = sum_folded,
     .sum_volume = sum_volume,
@@ -117,6 +125,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .add_outer = add_outer,
     .add_product = add_product,
     .trace_between = trace_between,
+    .double_product = double_product,
     .contract = contract,
     .ask_for_lanes = ask_for_lanes,
     .pack_lanes = pack_lanes,

@@ -154,6 +154,18 @@ SPHGI_TEMPLATE void rotate_field(int32_t d, const real *j, real *curl)
     }
 }
 
+/* out = sum a b of count numbers */
+static void double_product(int32_t width, int32_t count, const void *a, const void *b, void *out)
+{
+    for (int32_t l = 0; l < width; l += LANES) {
+        vec sum = load((const real *)a + l) * load((const real *)b + l);
+        for (int32_t k = 1; k < count; ++k)
+            sum += load((const real *)a + k * SPHGI_WIDTH + l) *
+                   load((const real *)b + k * SPHGI_WIDTH + l);
+        store((real *)out + l, sum);
+    }
+}
+
 /* Divergence, and curl of a vector. NULL: not wanted. */
 static void contract(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
                      void *divergence, void *curl)

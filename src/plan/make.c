@@ -146,7 +146,7 @@ static sphg_result check_needed(struct sphgi_making *making)
     const sphg_method method = plan->scheme.method;
     const bool transposes = plan->adjoint || plan->transposes[1];
     const bool in_weight = method != SPHG_MLS && method != SPHG_CMLS;
-    const bool in_value = plan->wants_value && !plan->classic;
+    const bool in_value = plan->values_by_volume && !plan->classic;
     const bool anything = plan->computes || plan->differentiates || plan->wants_value;
     const bool at_sources = (anything && in_weight) || transposes || in_value || plan->mean_volume;
     for (int32_t s = 0; s < plan->set_count && at_sources; ++s)
@@ -176,14 +176,14 @@ static bool make_room(struct sphgi_making *making)
     sphg_context *context = making->checker.context;
     const sphg_request *request = making->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
-    size_t each = 0, lenders = 0;
+    size_t each = 0, more = 0; /* views of each set */
     for (int32_t k = 0; k < request->field_count; ++k) {
         each += (size_t)sphgi_streams_of(&request->fields[k]);
-        lenders += request->fields[k].lenders != NULL;
+        more += sphgi_views_of(&request->fields[k]);
     }
     const size_t corrections = making->plan->scheme.order == 2 ? 6 : 4;
     const size_t streams = sets * (each + corrections + 1);
-    const size_t views = sets * (fields + lenders + 3) + 11 * fields + 8;
+    const size_t views = sets * (fields + more + 3) + 15 * fields + 8;
     const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
                             fields * sizeof(struct sphgi_field_plan),
                             streams * sizeof(struct sphgi_stream),

@@ -51,7 +51,21 @@ sphg_result sphgi_check_lending(struct sphgi_making *making, int32_t k);
 sphg_result sphgi_take_lending(struct sphgi_making *making, int32_t k);
 sphg_result sphgi_take_lenders(struct sphgi_making *making, int32_t s, int32_t k);
 sphg_result sphgi_take_borrows(struct sphgi_making *making);
-/* Streams that a field takes of a set, at most. */
+/* Diffusion: what is refused, and the coefficients of both sides. */
+sphg_result sphgi_check_diffusion(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_coefficient_at_target(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_coefficient_at_sources(struct sphgi_making *making, int32_t s, int32_t k);
+/* Sums of values: what is refused, and volumes of their own. */
+sphg_result sphgi_check_value(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_value_volume(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_value_volume_of_set(struct sphgi_making *making, int32_t s, int32_t k);
+
+/* J : T_i: what is refused, T_i, and where it goes. */
+sphg_result sphgi_check_contraction(struct sphgi_making *making, int32_t k);
+sphg_result sphgi_take_contraction(struct sphgi_making *making, int32_t k);
+
+/* Streams that a field takes of a set, at most, and views that it has of each beside A_j. */
 int32_t sphgi_streams_of(const sphg_field *field);
+size_t sphgi_views_of(const sphg_field *field);
 
 #endif

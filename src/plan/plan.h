@@ -26,6 +26,7 @@ struct sphgi_field_plan {
     bool accumulate, differentiates; /* gradient, divergence, curl or square is wanted */
     bool forward;                    /* summed over G_ij; else over G_ji, too */
     bool antisymmetric;              /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
+    bool diffuses;                   /* the Laplacian of the adjoint form is wanted */
     bool contracts;                  /* the divergence is summed as such */
     bool sums_gradient;              /* what gradient and curl are made of is summed */
     bool mirrors;                    /* at any set */
@@ -42,8 +43,18 @@ struct sphgi_field_plan {
     int32_t lent_stream, lent_row; /* what lenders offer, as the host has it, and in rows ... */
     int32_t lent_rows;             /* ... so many; 0: nobody lends */
     int32_t lent_sum;              /* first of 1 + components times pairs of axes */
+    bool normalises;               /* the value is divided by the sum of its weights ... */
+    int32_t filling_sum;           /* ... which is this one */
+    int32_t volume_stream, volume_row; /* V_j of the value, as the host has them and in rows; -1: the
+                                          sets' */
+    int32_t coefficient_stream, coefficient_row; /* k_j, as the host has them and in rows; -1: 1 */
+    int32_t diffusion_sum;         /* first of components sums of k_ij L_ij (A_j - A_i) */
     int32_t at_target;             /* first of the lanes that hold A_i */
+    int32_t coefficient_at_target; /* the lane that holds k_i */
     struct sphgi_columns target;   /* A_i */
+    struct sphgi_columns coefficient; /* k_i */
+    struct sphgi_columns own_volume;  /* V_i of the value, of targets as sources */
+    struct sphgi_columns tensor, contraction; /* T_i, and J : T_i */
     struct sphgi_columns value, gradient, divergence, curl, square, laplacian;
     struct sphgi_columns hessian[3]; /* of each component */
     struct sphgi_columns curvature;  /* what targets lend */
@@ -75,6 +86,9 @@ struct sphgi_plan {
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
+    bool values_by_volume; /* any value with the volumes of the sets ... */
+    bool values_by_own;    /* ... and with those of its field */
+    bool diffuses; /* any field */
     bool mirrors;                              /* any field, at any set */
     bool mean_volume;                          /* MLS without volumes at the targets */
     int32_t correction_stream, density_stream; /* -1: not needed */

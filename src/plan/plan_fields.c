@@ -11,17 +11,19 @@ static sphg_result check_second_order(struct sphgi_making *making, int32_t k)
     const char *f = making->checker.function;
     const sphg_field *field = &making->request->fields[k];
     const bool hessian = !sphgi_is_absent(&field->hessian);
+    const bool laplacian = !sphgi_is_absent(&field->laplacian) && field->form != SPHG_ADJOINT;
     if (making->plan->quadratic && field->form == SPHG_DIRECT)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].form is direct: order 2 would read the surface as curvature; "
                      "use order 1 there",
                      f, (int)k);
-    if ((hessian || !sphgi_is_absent(&field->laplacian)) && !making->plan->quadratic)
+    if ((hessian || laplacian) && !making->plan->quadratic)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].%s needs scheme.order 2", f, (int)k,
                      hessian ? "hessian" : "laplacian");
-    if ((hessian || !sphgi_is_absent(&field->laplacian)) && field->form != SPHG_DIFFERENCE)
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].%s outside the difference form", f,
-                     (int)k, hessian ? "hessian" : "laplacian");
+    if ((hessian || laplacian) && field->form != SPHG_DIFFERENCE)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].%s", f, (int)k,
+                     hessian ? "hessian outside the difference form"
+                             : "laplacian outside the difference and adjoint forms");
     if (hessian && field->shape >= SPHG_SYM_TENSOR)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].hessian of a tensor", f, (int)k);
     return SPHG_OK;
@@ -71,15 +73,18 @@ static sphg_result check_field(struct sphgi_making *making, int32_t k)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].divergence of a scalar", f, (int)k);
     if (field->shape != SPHG_VECTOR && !sphgi_is_absent(&field->curl))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].curl of what is no vector", f, (int)k);
-    if (field->form != SPHG_DIRECT && !sphgi_is_absent(&field->value))
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].value outside the direct form", f,
-                     (int)k);
     if ((field->form != SPHG_DIRECT || !scalar) && !sphgi_is_absent(&field->square))
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: fields[%d].square outside the direct form of a scalar", f, (int)k);
     sphg_result result = check_second_order(making, k);
     if (!result)
         result = sphgi_check_lending(making, k);
+    if (!result)
+        result = sphgi_check_diffusion(making, k);
+    if (!result)
+        result = sphgi_check_value(making, k);
+    if (!result)
+        result = sphgi_check_contraction(making, k);
     if (!result && making->plan->graded && field->form >= SPHG_SYMMETRIC)
         result = check_both_sides(making, k);
     return result;
@@ -147,10 +152,14 @@ static sphg_result take_results(struct sphgi_making *making, int32_t k)
     if (!result)
         result = take_hessian(making, k);
     if (!result)
+        result = sphgi_take_contraction(making, k);
+    if (!result)
         result = sphgi_take_lending(making, k);
+    field->diffuses = given->form == SPHG_ADJOINT && field->laplacian.count;
     field->differentiates = field->gradient.count || field->divergence.count || field->curl.count ||
-                            field->square.count || field->laplacian.count ||
-                            field->hessian[0].count || field->curvature.count;
+                            field->square.count || (field->laplacian.count && !field->diffuses) ||
+                            field->hessian[0].count || field->curvature.count ||
+                            field->contraction.count;
     return result;
 }
 
@@ -181,7 +190,8 @@ static sphg_result take_field_at_target(struct sphgi_making *making, int32_t k)
     const bool direct = given->form == SPHG_DIRECT, mirrors = has_mirrors(making, k);
     const bool of_set_only = direct && !(mirrors && (!of_set || sphgi_is_absent(of_set)));
     const sphg_view *own = of_set_only ? &absent : &given->at_targets;
-    const bool read = direct ? mirrors : field->differentiates;
+    const bool read =
+        direct ? mirrors : field->differentiates || field->diffuses || field->value.count;
     field->mirrors = mirrors;
     plan->mirrors |= mirrors;
     if (sphgi_is_absent(own) && mirrors && of_set && sphgi_is_absent(of_set))
@@ -219,7 +229,11 @@ sphg_result sphgi_take_field(struct sphgi_making *making, int32_t k)
     field->at_target = plan->target_lanes;
     plan->target_lanes += field->streams * SPHGI_ROW; /* whole rows may be loaded */
     result = take_results(making, k);
-    return result ? result : take_field_at_target(making, k);
+    if (!result)
+        result = take_field_at_target(making, k);
+    if (!result)
+        result = sphgi_take_coefficient_at_target(making, k);
+    return result ? result : sphgi_take_value_volume(making, k);
 }
 
 /* ---- Streams: what is read of each source --------------------------------------------------- */
@@ -247,8 +261,9 @@ static sphg_result take_field_at_sources(struct sphgi_making *making, int32_t s,
     const int32_t count = plan->sets[s].neighbors->source_count;
     struct sphgi_columns columns = {.count = 0};
     const bool mirrored = is_mirrored(making, s, k);
-    if (sphgi_is_absent(view) && !mirrored && count > 0 && field->form == SPHG_DIFFERENCE &&
-        field->differentiates)
+    const bool difference = field->diffuses || (field->form == SPHG_DIFFERENCE &&
+                                                (field->differentiates || field->value.count));
+    if (sphgi_is_absent(view) && !mirrored && count > 0 && difference)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: fields[%d].at_sources[%d] is absent: set mirror for A_j = A_i, or give "
                      "one value for all",
@@ -266,7 +281,8 @@ static bool set_transposes(const struct sphgi_making *making, int32_t s, sphg_fo
 {
     for (int32_t k = 0; k < making->plan->field_count; ++k) {
         const sphg_field *field = &making->request->fields[k];
-        if (field->form == form && making->plan->fields[k].differentiates &&
+        const struct sphgi_field_plan *planned = &making->plan->fields[k];
+        if (field->form == form && (planned->differentiates || planned->diffuses) &&
             (field->mirror || !sphgi_is_absent(&field->at_sources[s])))
             return true;
     }
@@ -322,6 +338,10 @@ sphg_result sphgi_take_streams(struct sphgi_making *making)
             result = take_field_at_sources(making, s, k);
             if (!result)
                 result = sphgi_take_lenders(making, s, k);
+            if (!result)
+                result = sphgi_take_coefficient_at_sources(making, s, k);
+            if (!result)
+                result = sphgi_take_value_volume_of_set(making, s, k);
         }
         if (!result && plan->correction_stream >= 0)
             result = take_correction_of_set(making, s);

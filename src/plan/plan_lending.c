@@ -9,12 +9,6 @@ static int32_t numbers_lent(int32_t components, int32_t dimension)
     return 1 + components * dimension * (dimension + 1) / 2;
 }
 
-int32_t sphgi_streams_of(const sphg_field *field)
-{
-    const int32_t most = numbers_lent(9, 3);
-    return 3 + (field->lenders ? (most + SPHGI_ROW - 1) / SPHGI_ROW : 0);
-}
-
 sphg_result sphgi_check_lending(struct sphgi_making *making, int32_t k)
 {
     const char *f = making->checker.function;

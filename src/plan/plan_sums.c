@@ -37,6 +37,10 @@ static void decide_sums(struct sphgi_plan *plan)
         plan->sums += field->square.count ? sphgi_square_sums(plan) : 0;
         field->value_sum = field->value.count ? plan->sums : -1;
         plan->sums += field->value.count ? field->components : 0;
+        field->filling_sum = plan->sums;
+        plan->sums += field->normalises ? 1 : 0;
+        field->diffusion_sum = plan->sums;
+        plan->sums += field->diffuses ? field->components : 0;
     }
 }
 
@@ -45,11 +49,12 @@ static void decide_sums(struct sphgi_plan *plan)
 static void decide_field(struct sphgi_field_plan *field, sphg_method method, bool graded)
 {
     const bool plain = method == SPHG_PLAIN;
-    field->antisymmetric = plain && field->form == SPHG_ADJOINT && !graded;
+    field->antisymmetric = plain && field->form == SPHG_ADJOINT && !graded && !field->diffuses;
     field->forward = field->form <= SPHG_DIRECT || field->antisymmetric;
     field->contracts = field->divergence.count && (plain || !field->forward);
     field->sums_gradient = field->gradient.count || field->curl.count || field->hessian[0].count ||
-                           field->laplacian.count || field->curvature.count ||
+                           field->contraction.count ||
+                           (field->laplacian.count && !field->diffuses) || field->curvature.count ||
                            (field->divergence.count && !field->contracts);
 }
 
@@ -59,8 +64,8 @@ static void decide_field(struct sphgi_field_plan *field, sphg_method method, boo
 static enum sphgi_fold fold_of(const struct sphgi_plan *plan, const struct sphgi_field_plan *field)
 {
     const bool plain = plan->scheme.method == SPHG_PLAIN;
-    if (!field->differentiates || field->forward || field->mirrors || plan->classic ||
-        plan->quadratic)
+    if (!field->differentiates || field->forward || field->mirrors || field->diffuses ||
+        plan->classic || plan->quadratic)
         return SPHGI_NOT_FOLDED;
     if (field->shape == SPHG_SCALAR)
         return plain ? SPHGI_FOLDED_NUMBER : SPHGI_FOLDED_SYMMETRIC;
@@ -93,6 +98,8 @@ static void decide_rows_of(struct sphgi_plan *plan, int32_t k)
     fold_field(plan, k);
     field->lent_row = plan->row_count;
     plan->row_count += field->lent_rows;
+    field->volume_row = field->volume_stream < 0 ? -1 : plan->row_count++;
+    field->coefficient_row = field->coefficient_stream < 0 ? -1 : plan->row_count++;
     if (field->fold && !(field->shape == SPHG_VECTOR && field->sums_gradient))
         return;
     field->row = plan->row_count;
@@ -111,10 +118,10 @@ static void decide_rows(struct sphgi_plan *plan)
     plan->carrier[0] = plan->carrier[1] = -1;
     for (int32_t k = 0; k < plan->field_count; ++k)
         decide_rows_of(plan, k);
-    if (transposes && plan->scheme.method != SPHG_PLAIN) {
+    if ((transposes || plan->diffuses) && plan->scheme.method != SPHG_PLAIN) {
         plan->correction_stream = plan->stream_count;
         plan->stream_count += correction;
-        if (plan->sums_transposed[0] || plan->sums_transposed[1]) {
+        if (plan->sums_transposed[0] || plan->sums_transposed[1] || plan->diffuses) {
             plan->correction_row = plan->row_count;
             plan->row_count += correction;
         }
@@ -124,7 +131,7 @@ static void decide_rows(struct sphgi_plan *plan)
         if (plan->sums_transposed[1] || plan->graded)
             plan->density_row = plan->row_count++;
     }
-    plan->radius_row = transposes && plan->graded ? plan->row_count++ : -1;
+    plan->radius_row = (transposes || plan->diffuses) && plan->graded ? plan->row_count++ : -1;
 }
 
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
@@ -135,11 +142,15 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         struct sphgi_field_plan *field = &plan->fields[k];
         decide_field(field, method, plan->graded);
-        plan->differentiates |= field->differentiates;
+        plan->differentiates |= field->differentiates || field->diffuses;
+        plan->diffuses |= field->diffuses;
         plan->wants_value |= field->value.count > 0;
-        plan->adjoint |= field->differentiates && field->form == SPHG_ADJOINT;
+        plan->values_by_volume |= field->value.count && field->volume_stream < 0;
+        plan->values_by_own |= field->value.count && field->volume_stream >= 0;
+        plan->adjoint |= (field->differentiates || field->diffuses) && field->form == SPHG_ADJOINT;
         plan->transposes[field->form == SPHG_SYMMETRIC] |= field->differentiates && !field->forward;
-        needs_correction |= field->differentiates || (plan->classic && field->value.count);
+        needs_correction |=
+            field->differentiates || field->diffuses || (plan->classic && field->value.count);
     }
     plan->corrects = method != SPHG_PLAIN && needs_correction;
     plan->computes |= plan->corrects && !plan->target_correction.count;

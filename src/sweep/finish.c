@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "finish.h"
+#include "diffusion.h"
 #include "core/kernel.h"
 #include "lane_radii.h"
 #include "own.h"
 #include "quadratic.h"
+#include "values.h"
 
 /* The target's own term of the direct form. */
 static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_plan *field)
@@ -147,24 +149,15 @@ static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan 
                            field->accumulate);
 }
 
-static void finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+/* J : T_i */
+static void store_contraction(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
-    const struct sphgi_plan *plan = w->sweep->plan;
-    char *value = sphgi_lane(w, w->reduced, field->value_sum);
-    if (plan->own_set >= 0) {
-        if (plan->classic) {
-            sphgi_self_weight(w, w->self);
-            w->passes->scale(w->batch.width, 1, w->coefficients, 1, w->self, w->extra);
-        } else {
-            const double at_zero = w->shape.value_scale * sphgi_kernel_w(plan->scheme.kernel, 0);
-            sphgi_load_own_volume(w, &plan->own_volume, w->extra);
-            w->passes->scale(w->batch.width, 1, w->extra, at_zero, NULL, w->extra);
-        }
-        w->passes->add_outer(w->batch.width, 1, field->components,
-                             sphgi_lane(w, w->own.field, field->at_target), w->extra, NULL, value);
-    }
-    w->passes->store_lanes(w->batch.targets, &field->value, sphgi_targets(w), value,
-                           field->accumulate);
+    const struct sphgi_passes *p = w->passes;
+    const int32_t d = w->sweep->plan->dimension;
+    p->load_lanes(w->batch.width, &field->tensor, sphgi_targets(w), w->raw);
+    p->double_product(w->batch.width, d * d, w->jacobian, w->raw, w->extra);
+    p->store_lanes(w->batch.targets, &field->contraction, sphgi_targets(w), w->extra,
+                   field->accumulate);
 }
 
 static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan *field)
@@ -180,6 +173,8 @@ static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan 
         if (columns[k]->count)
             w->passes->store_lanes(w->batch.targets, columns[k], sphgi_targets(w), lanes[k],
                                    field->accumulate);
+    if (field->contraction.count)
+        store_contraction(w, field);
 }
 
 void sphgi_finish_fields(struct sphgi_worker *w)
@@ -198,9 +193,11 @@ void sphgi_finish_fields(struct sphgi_worker *w)
                 finish_forward(w, field);
             store_results(w, field);
         }
+        if (field->diffuses)
+            sphgi_finish_diffusion(w, field);
         if (field->square.count)
             finish_square(w, field);
         if (field->value_sum >= 0)
-            finish_value(w, field);
+            sphgi_finish_value(w, field);
     }
 }

@@ -56,6 +56,9 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
     if (sphgi_is_mirrored(w, field))
         w->passes->scale(w->batch.width, field->components, to, field->antisymmetric ? 2 : -1, NULL,
                          sphgi_lane(w, w->own.opposite, field->at_target));
+    if (field->coefficient.count)
+        w->passes->load_lanes(w->batch.width, &field->coefficient, sphgi_targets(w),
+                              sphgi_lane(w, w->own.field, field->coefficient_at_target));
 }
 
 void sphgi_load_targets(struct sphgi_worker *w)

@@ -78,6 +78,12 @@ void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int6
         for (int32_t s = 0; s < field->rows; ++s)
             load_stream(sweep, field->stream + s, order, begin, end,
                         to + (size_t)(field->row + s) * array);
+        if (field->volume_row >= 0)
+            load_stream(sweep, field->volume_stream, order, begin, end,
+                        to + (size_t)field->volume_row * array);
+        if (field->coefficient_row >= 0)
+            load_stream(sweep, field->coefficient_stream, order, begin, end,
+                        to + (size_t)field->coefficient_row * array);
         for (int32_t s = 0; s < field->lent_rows; ++s)
             load_stream(sweep, field->lent_stream + s, order, begin, end,
                         to + (size_t)(field->lent_row + s) * array);

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "sums.h"
 #include "borrow.h"
+#include "diffusion.h"
 #include "fold.h"
 #include "lane_radii.h"
 #include "own.h"
 #include "pair_rows.h"
 #include "quadratic.h"
+#include "values.h"
 #include "core/view.h"
 
 /* Classic gradients are whole; those of the linearised methods still lack C_i. */
@@ -137,7 +139,6 @@ static void turn_to_other_side(struct sphgi_worker *w)
 static void sum_fields(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const size_t lane = SPHGI_WIDTH * sphgi_size_of_type(plan->type);
     sphgi_load_targets(w);
     if (plan->classic && plan->corrects)
         w->passes->classic_vectors(&w->tile, plan->dimension, plan->weighted,
@@ -146,14 +147,18 @@ static void sum_fields(struct sphgi_worker *w)
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && field->forward)
             sum_forward(w, field);
-        for (int32_t s = 0; field->value_sum >= 0 && s < field->streams; ++s)
-            w->passes->sum_value(&w->tile, w->rows.at[field->row + s],
-                                 sphgi_min32(SPHGI_ROW, field->components - s * SPHGI_ROW),
-                                 subtracted(w, field) + (size_t)(s * SPHGI_ROW) * lane,
-                                 sphgi_lane(w, w->reduced, field->value_sum + s * SPHGI_ROW));
+        if (field->value_sum >= 0 && field->volume_row < 0)
+            sphgi_sum_value(w, field, subtracted(w, field));
     }
+    for (int32_t k = 0; plan->values_by_own && k < plan->field_count; ++k)
+        if (plan->fields[k].value_sum >= 0 && plan->fields[k].volume_row >= 0)
+            sphgi_sum_value(w, &plan->fields[k], subtracted(w, &plan->fields[k]));
+    if (plan->diffuses)
+        sphgi_begin_diffusion(w);
     if (plan->radius_row >= 0)
         turn_to_other_side(w);
+    if (plan->diffuses)
+        sphgi_sum_diffusion(w);
     for (int symmetric = 0; symmetric < 2; ++symmetric)
         if (plan->transposes[symmetric])
             sum_transposed(w, symmetric);
@@ -189,10 +194,8 @@ static void weigh(struct sphgi_worker *w, int32_t count)
         p->shape_weights(&w->shape, w->tile.arrays, count);
     if (plan->classic)
         return;
-    if (plan->wants_value || plan->mean_volume) {
-        p->shape_values(w->tile.arrays, count);
-        sphgi_scale_values(w);
-    }
+    if (plan->wants_value || plan->mean_volume)
+        sphgi_weigh_values(w, count);
     if (plan->mean_volume && (w->batch.summing & SPHGI_SUM_MOMENTS))
         p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */

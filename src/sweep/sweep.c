@@ -148,9 +148,9 @@ static sphg_result sweep_all(struct sphgi_task *task, struct sphgi_selection *se
     if (!sphgi_reserve(&context->allocator, &context->sums, targets * (size_t)plan->sums, size))
         return SPHG_ERROR_MEMORY;
     sweep->arena = context->sums.data;
-    if (!plan->classic || !moments || !fields)
+    if (!(plan->classic || plan->diffuses) || !moments || !fields)
         return sweep_sets(task, selection, moments | fields, tally);
-    /* Classic gradients of several sets: all moments first. */
+    /* Classic gradients and diffusion of several sets: all moments first. */
     const int32_t width = sphgi_plan_width(plan);
     if (!sphgi_reserve(&context->allocator, &context->coefficients, targets * (size_t)width, size))
         return SPHG_ERROR_MEMORY;

@@ -82,12 +82,13 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
     return carve(&measured, sweep, NULL);
 }
 
-/* Classic gradients, and gradients pair by pair, need the target's coefficients before they can be
- * formed; the sums of the linearised methods are multiplied with them at the end. */
+/* Classic gradients, L_ij of diffusion, and gradients pair by pair, need the target's coefficients
+ * before they can be formed; other sums are multiplied with them at the end. */
 static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
-    return (plan->classic || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) && plan->corrects;
+    return (plan->classic || plan->diffuses || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) &&
+           plan->corrects;
 }
 
 /* Linearised methods sum in the units of the positions, classic ones and order 2 in units of H:

@@ -10,7 +10,8 @@ typedef struct host {
     sphg_type type;
     int dimension, count, shape;
     double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 45];
-    double lent[MOST * 55], results[7][MOST * 55];
+    double lent[MOST * 55], coefficient[MOST], weight[MOST], tensor[MOST * 9];
+    double results[7][MOST * 55];
     int64_t offsets[MOST + 1];
     int32_t lengths[MOST], indices[INDICES];
     const int32_t *rows[MOST];
@@ -69,6 +70,34 @@ static int32_t *moved_to_the_end(host *on, sphg_lists *lists)
     return copy;
 }
 
+/* Views of source sets that a field may have beside its values. */
+typedef struct extras {
+    sphg_view coefficient, weight;
+} extras;
+
+/* Diffusion, sums of values, J : T_i: with what they read, or now and then without. */
+static void ask_for_more(fuzz_bytes *from, host *on, int item, int tame, extras *views,
+                         sphg_field *field)
+{
+    const int d = on->dimension, wanted = fuzz_byte(from);
+    if (field->form == SPHG_ADJOINT && wanted & 1) {
+        field->laplacian = fuzz_view(on->type, on->results[5], item);
+        views->coefficient = numbers(from, on, on->coefficient, 1, tame);
+        field->coefficient = wanted & 2 ? &views->coefficient : NULL;
+    }
+    if (field->form <= SPHG_DIRECT && wanted & 4) {
+        field->value = fuzz_view(on->type, on->results[2], item);
+        views->weight = numbers(from, on, on->weight, 1, tame);
+        field->value_volume = wanted & 8 ? &views->weight : NULL;
+        field->shepard = wanted & 16 ? 1 : 0;
+        field->curl = sphg_absent();
+    }
+    if (on->shape == SPHG_VECTOR && wanted & 32) {
+        field->tensor = numbers(from, on, on->tensor, d * d, tame);
+        field->contraction = fuzz_view(on->type, on->results[1], 1);
+    }
+}
+
 static sphg_result evaluate(fuzz_bytes *from, host *on)
 {
     const int d = on->dimension, width = sphg_correction_width(&on->scheme);
@@ -102,6 +131,8 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
             fuzz_view(on->type, on->results[4], d * (d + 1) / 2 * (on->shape == 1 ? 1 : d));
     if (on->scheme.order == 2 && form == SPHG_DIFFERENCE)
         field.laplacian = fuzz_view(on->type, on->results[5], item);
+    extras views = {.coefficient = sphg_absent()};
+    ask_for_more(from, on, item, tame, &views, &field);
     const int lent = 1 + item * d * (d + 1) / 2;
     sphg_view lenders = sphg_absent();
     if (on->scheme.order == 2 && given < 2) {

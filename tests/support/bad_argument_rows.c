@@ -335,12 +335,38 @@ static const argument of_lending[] = {
     {"lenders", ARGUMENT_NUMBERS, AT(lenders[0]), 0, 0, 0, NULL, NULL},
     VIEW("request.borrows", request.borrows, OUTPUT | ARGUMENT_BYTES),
 };
+static const argument of_diffusion[] = {
+    VIEW("sources.volume", sources[0].volume, REQUIRED),
+    ROW("sources.volume", VOLUMES, sources[0].volume),
+    VIEW("sources.correction", sources[0].correction, REQUIRED),
+    ROW("sources.correction", NUMBERS, sources[0].correction),
+    VIEW("fields.at_sources", at_sources[0], REQUIRED),
+    VIEW("fields.laplacian", field.laplacian, OUTPUT),
+    FREE("fields.coefficient"),
+    {"coefficient", ARGUMENT_VIEW, AT(coefficient[0]), REQUIRED, 0, 0, NULL, NULL},
+    {"coefficient", ARGUMENT_NUMBERS, AT(coefficient[0]), 0, 0, 0, NULL, NULL},
+    VIEW("fields.coefficient_at_targets", field.coefficient_at_targets, 0),
+    ROW("fields.coefficient_at_targets", NUMBERS, field.coefficient_at_targets),
+};
+static const argument of_values[] = {
+    VIEW("fields.at_sources", at_sources[0], VECTOR),
+    VIEW("fields.value", field.value, OUTPUT | VECTOR),
+    FREE("fields.shepard"),
+    FREE("fields.value_volume"),
+    {"value_volume", ARGUMENT_VIEW, AT(volumes[0]), REQUIRED, 0, 0, NULL, NULL},
+    {"value_volume", ARGUMENT_NUMBERS, AT(volumes[0]), 0, 0, 0, NULL, NULL},
+    VIEW("fields.tensor", field.tensor, REQUIRED),
+    ROW("fields.tensor", NUMBERS, field.tensor),
+    VIEW("fields.contraction", field.contraction, OUTPUT),
+};
 static const probe probes_sphg_evaluate[] = {PROBE(NULL, call_evaluate, of_evaluate),
                                              PROBE(prepare_two_sided, call_evaluate, of_two_sided),
                                              PROBE(prepare_direct, call_evaluate, of_direct),
                                              PROBE(prepare_square, call_evaluate, of_square),
                                              PROBE(prepare_quadratic, call_evaluate, of_quadratic),
-                                             PROBE(prepare_lending, call_evaluate, of_lending)};
+                                             PROBE(prepare_lending, call_evaluate, of_lending),
+                                             PROBE(prepare_diffusion, call_evaluate, of_diffusion),
+                                             PROBE(prepare_values, call_evaluate, of_values)};
 
 static const argument of_correction[] = {
     CONTEXT,

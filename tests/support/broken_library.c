@@ -160,6 +160,7 @@ static void spoil_field(sphg_context *context, const sphg_scheme *scheme,
 {
     const int32_t d = dimension_of(scheme);
     const int32_t vector = field->shape == SPHG_VECTOR;
+    const int32_t numbers[] = {0, 1, d, d * (d + 1) / 2, d * d};
     if (field->accumulate) {
         fprintf(stderr, "accumulated results cannot be told from what was there\n");
         abort();
@@ -168,6 +169,8 @@ static void spoil_field(sphg_context *context, const sphg_scheme *scheme,
     spoil(context, request->sources, request->subset, &field->divergence, 1, vector ? 1 : d);
     spoil(context, request->sources, request->subset, &field->curl, 1, numbers_of_curl(scheme));
     spoil(context, request->sources, request->subset, &field->square, 1, 1);
+    spoil(context, request->sources, request->subset, &field->laplacian, 1, numbers[field->shape]);
+    spoil(context, request->sources, request->subset, &field->contraction, 1, 1);
 }
 
 sphg_result sphg_evaluate(sphg_context *context, const sphg_scheme *scheme,

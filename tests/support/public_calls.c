@@ -207,6 +207,29 @@ void prepare_lending(valid_call *own)
     own->request.fields = &own->field;
 }
 
+void prepare_diffusion(valid_call *own)
+{
+    prepare_two_sided(own);
+    own->field.form = SPHG_ADJOINT;
+    own->field.gradient = sphg_absent();
+    own->field.laplacian = own->scalar_out;
+    own->field.coefficient = own->coefficient;
+    own->coefficient[0] = own->densities;
+    own->field.coefficient_at_targets = own->densities;
+    own->request.fields = &own->field;
+}
+
+void prepare_values(valid_call *own)
+{
+    prepare_direct(own);
+    own->field.curl = own->field.divergence = sphg_absent();
+    own->field.shepard = 1;
+    own->field.value_volume = own->volumes;
+    own->volumes[0] = own->densities;
+    own->field.tensor = own->squares;
+    own->field.contraction = own->scalar_out;
+}
+
 void prepare_with_table(valid_call *own)
 {
     own->sources[0].correction = own->table;

@@ -39,6 +39,8 @@ void prepare_direct(valid_call *own);
 void prepare_square(valid_call *own);
 void prepare_quadratic(valid_call *own);
 void prepare_lending(valid_call *own);
+void prepare_diffusion(valid_call *own);
+void prepare_values(valid_call *own);
 void prepare_with_table(valid_call *own);
 void prepare_by_mls(valid_call *own);
 /* So that the arrays of pairs suffice. */

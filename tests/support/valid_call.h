@@ -50,7 +50,7 @@ typedef struct valid_call {
     sphg_request request;
     sphg_sources sources[2];
     sphg_field field;
-    sphg_view at_sources[2], lenders[2];
+    sphg_view at_sources[2], lenders[2], coefficient[2], volumes[2];
     sphg_subset subset;
     sphg_pairs pairs;
     sphg_inversion wanted;

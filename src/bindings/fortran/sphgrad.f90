@@ -188,7 +188,11 @@ module sphgrad
     type(sphg_view) :: at_targets, value, gradient, divergence, curl, square
     integer(c_int32_t) :: mirror = 0
     type(sphg_view) :: hessian, laplacian, curvature
-    type(c_ptr) :: lenders = c_null_ptr
+    type(c_ptr) :: lenders = c_null_ptr, coefficient = c_null_ptr
+    type(sphg_view) :: coefficient_at_targets
+    integer(c_int32_t) :: shepard = 0
+    type(c_ptr) :: value_volume = c_null_ptr
+    type(sphg_view) :: tensor, contraction
   end type sphg_field
 
   ! rank(k + 1): targets of rank k

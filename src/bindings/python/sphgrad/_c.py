@@ -157,7 +157,10 @@ class Field(c.Structure):
                 ("at_sources", c.POINTER(View)), ("at_targets", View), ("value", View),
                 ("gradient", View), ("divergence", View), ("curl", View), ("square", View),
                 ("mirror", c.c_int32), ("hessian", View), ("laplacian", View),
-                ("curvature", View), ("lenders", c.POINTER(View))]
+                ("curvature", View), ("lenders", c.POINTER(View)),
+                ("coefficient", c.POINTER(View)), ("coefficient_at_targets", View),
+                ("shepard", c.c_int32), ("value_volume", c.POINTER(View)), ("tensor", View),
+                ("contraction", View)]
 
 
 class Stats(c.Structure):

@@ -29,11 +29,15 @@ class Field:
     values is an array of A_j, or a list of one per source set, None where a set has none. Its shape is
     seen from the array: (n,) scalar, (n, d) vector, (n, d (d + 1) / 2) symmetric tensor, (n, d, d)
     tensor; `shape` names it where one item stands for all. at_targets: A_i, where the targets are not
-    part of a source set. value, gradient, divergence, curl, square, hessian, laplacian: True, or the
-    array to write to; a Hessian is (n, d (d + 1) / 2), of a vector (n, d, d (d + 1) / 2).
+    part of a source set. value, gradient, divergence, curl, square, hessian, laplacian, contraction:
+    True, or the array to write to; a Hessian is (n, d (d + 1) / 2), of a vector (n, d, d (d + 1) / 2).
     form: "difference", "direct", "symmetric" or "adjoint".
     curvature: what targets lend, (n, 1 + d (d + 1) / 2), of a vector 1 + d times as many; lenders: such an
-    array, or a list of one per source set, from an earlier call; None: nobody lends."""
+    array, or a list of one per source set, from an earlier call; None: nobody lends.
+    coefficient: k_j of the Laplacian of the adjoint form, (n,) or one number, or a list of one per source
+    set; coefficient_at_targets: k_i, where the targets are not part of a source set. shepard: the value is
+    divided by the sum of its weights; value_volume: V_j of the value alone, as coefficient is given.
+    contraction of a vector field with tensor, (n, d, d): sum of J[a, b] T[a, b]."""
     values: object
     form: _c.Form = _c.Form.DIFFERENCE
     value: object = None
@@ -49,6 +53,12 @@ class Field:
     laplacian: object = None
     curvature: object = None
     lenders: object = None
+    coefficient: object = None
+    coefficient_at_targets: object = None
+    shepard: bool = False
+    value_volume: object = None
+    tensor: object = None
+    contraction: object = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,6 +82,7 @@ class FieldResult:
     hessian: object = None
     laplacian: object = None
     curvature: object = None
+    contraction: object = None
 
 
 @dataclasses.dataclass
@@ -113,6 +124,7 @@ _OUTPUT_SHAPES = {
     ("square", _c.Shape.SCALAR): _c.Shape.SCALAR,
     ("hessian", _c.Shape.SCALAR): _c.Shape.SYM_TENSOR,
     ("hessian", _c.Shape.VECTOR): _c.Shape.SYM_TENSOR,
+    ("contraction", _c.Shape.VECTOR): _c.Shape.SCALAR,
 }
 
 
@@ -230,16 +242,17 @@ def _field_shape(call, field, values):
     raise ValueError("a field without values needs its shape")
 
 
-def _lenders(call, field, numbers):
-    """The views that lend, one per source set; None: nobody does."""
-    if field.lenders is None:
+def _of_sets(call, field, name, items):
+    """The views of a member that has one per source set; None: it is not given."""
+    given = getattr(field, name)
+    if given is None:
         return None
-    lent = list(field.lenders) if isinstance(field.lenders, (list, tuple)) else [field.lenders]
-    if len(lent) != len(call.sets):
-        raise ValueError(f"a field has lenders for {len(lent)} source sets of {len(call.sets)}")
-    views = (_c.View * len(lent))(*(
-        call.borrowed.input(one, of.neighbors.source_count, (numbers,), call.dtype, "lenders")
-        for one, of in zip(lent, call.sets)))
+    each = list(given) if isinstance(given, (list, tuple)) else [given]
+    if len(each) != len(call.sets):
+        raise ValueError(f"a field has {name} for {len(each)} source sets of {len(call.sets)}")
+    views = (_c.View * len(each))(*(
+        call.borrowed.input(one, of.neighbors.source_count, items, call.dtype, name)
+        for one, of in zip(each, call.sets)))
     call.borrowed.keep(views)
     return c.cast(views, c.POINTER(_c.View))
 
@@ -262,7 +275,8 @@ def _field(call, field):
     result.at_targets = call.borrowed.input(field.at_targets, call.count, items, call.dtype,
                                             "at_targets", shape)
     found = FieldResult()
-    for name in ("value", "gradient", "divergence", "curl", "square", "hessian", "laplacian"):
+    for name in ("value", "gradient", "divergence", "curl", "square", "hessian", "laplacian",
+                 "contraction"):
         wanted = getattr(field, name)
         if wanted is None or wanted is False:
             setattr(result, name, absent())
@@ -284,9 +298,14 @@ def _field(call, field):
     numbers = 1 + int(np.prod(item_shape(shape, call.dimension), dtype=int)) * \
         item_shape(_c.Shape.SYM_TENSOR, call.dimension)[0]
     found.curvature, result.curvature = call.output(field.curvature, (numbers,), "curvature")
-    lenders = _lenders(call, field, numbers)
-    if lenders is not None:
-        result.lenders = lenders
+    for name, of_each in (("lenders", (numbers,)), ("coefficient", ()), ("value_volume", ())):
+        views = _of_sets(call, field, name, of_each)
+        if views is not None:
+            setattr(result, name, views)
+    result.coefficient_at_targets = call.target(field.coefficient_at_targets, (),
+                                                "coefficient_at_targets")
+    result.shepard = bool(field.shepard)
+    result.tensor = call.target(field.tensor, (call.dimension, call.dimension), "tensor")
     return result, found
 
 

@@ -1,0 +1,83 @@
+/* Diffusion, the Laplacian of the adjoint form: what is refused, and the coefficients of both
+ * sides. */
+#include "making.h"
+#include "core/view.h"
+
+sphg_result sphgi_check_diffusion(struct sphgi_making *making, int32_t k)
+{
+    const char *f = making->checker.function;
+    const struct sphgi_plan *plan = making->plan;
+    const sphg_field *field = &making->request->fields[k];
+    const bool diffuses = field->form == SPHG_ADJOINT && !sphgi_is_absent(&field->laplacian);
+    const bool at_targets = !sphgi_is_absent(&field->coefficient_at_targets);
+    if (diffuses && plan->quadratic)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].laplacian of the adjoint form has order 1: with order 2 heat "
+                     "could flow from cold to warm",
+                     f, (int)k);
+    if (diffuses && plan->classic)
+        SPHGI_REFUSE(
+            SPHG_ERROR_UNSUPPORTED,
+            "%s: fields[%d].laplacian of the adjoint form is not for classic methods, with "
+            "which heat could flow from cold to warm",
+            f, (int)k);
+    if ((field->coefficient || at_targets) && !diffuses)
+        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
+                     "%s: fields[%d].%s is for the laplacian of the adjoint form", f, (int)k,
+                     field->coefficient ? "coefficient" : "coefficient_at_targets");
+    if (at_targets && !field->coefficient)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: fields[%d].coefficient is NULL, but coefficient_at_targets is there", f,
+                     (int)k);
+    return SPHG_OK;
+}
+
+sphg_result sphgi_take_coefficient_at_target(struct sphgi_making *making, int32_t k)
+{
+    struct sphgi_plan *plan = making->plan;
+    const sphg_field *given = &making->request->fields[k];
+    struct sphgi_field_plan *field = &plan->fields[k];
+    const sphg_view *own = &given->coefficient_at_targets;
+    const sphg_view *of_set =
+        plan->own_set < 0 || !given->coefficient ? NULL : &given->coefficient[plan->own_set];
+    field->coefficient_stream = -1;
+    if (!given->coefficient)
+        return SPHG_OK;
+    field->coefficient_stream = plan->stream_count++;
+    field->coefficient_at_target = plan->target_lanes++;
+    if (sphgi_is_absent(own) && !of_set && plan->target_count > 0)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: fields[%d].coefficient_at_targets is absent, and the targets are part of "
+                     "no source set",
+                     making->checker.function, (int)k);
+    const bool from_set = sphgi_is_absent(own) && of_set;
+    const char *name = sphgi_name_view(
+        making, from_set ? "fields[%d].coefficient[%d]" : "fields[%d].coefficient_at_targets", k,
+        plan->own_set);
+    return sphgi_take_target_side(making, own, of_set, name, name, SPHG_SCALAR, 1,
+                                  &field->coefficient);
+}
+
+/* A set that is mirrored exchanges nothing: its coefficients are not read. */
+sphg_result sphgi_take_coefficient_at_sources(struct sphgi_making *making, int32_t s, int32_t k)
+{
+    const struct sphgi_plan *plan = making->plan;
+    const struct sphgi_field_plan *field = &plan->fields[k];
+    if (field->coefficient_stream < 0)
+        return SPHG_OK;
+    const sphg_view *view = &making->request->fields[k].coefficient[s];
+    const int32_t count = plan->sets[s].neighbors->source_count;
+    const struct sphgi_stream *values =
+        making->streams + (ptrdiff_t)s * plan->stream_count + field->stream;
+    struct sphgi_columns columns = {.count = 0};
+    if (sphgi_is_absent(view) && count > 0 && !values->mirrored)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
+                     "%s: fields[%d].coefficient[%d] is absent; give one value for all, or leave "
+                     "coefficient NULL for 1 everywhere",
+                     making->checker.function, (int)k, (int)s);
+    const sphg_result result =
+        sphgi_take_input(making, view, sphgi_name_view(making, "fields[%d].coefficient[%d]", k, s),
+                         SPHG_SCALAR, 1, count, &columns);
+    sphgi_add_streams(making, s, field->coefficient_stream, &columns, 1, 1);
+    return result;
+}
