@@ -53,7 +53,7 @@ static double *coefficients(const comparison *on, uint64_t seed)
     return k;
 }
 
-static comparison block_of(const test_case *test, double jitter)
+static comparison blocat(const test_case *test, double jitter)
 {
     random_state random = random_seeded(41);
     const int d = test->dimension;
@@ -136,7 +136,7 @@ static void kernels_and_policies_match_the_oracle(const test_case *test)
 /* Brookshaw's sum as a host writes it: 2 V_i V_j k_ij (A_j - A_i) (-W'/r). */
 static void plain_is_brookshaw(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const int d = test->dimension, n = on.points.count;
     const flow of = {SPHG_SCALAR, comparison_random_field(&on, SPHG_SCALAR, 8),
                      coefficients(&on, 9)};
@@ -170,7 +170,7 @@ static void pairs_are_symmetric_and_never_uphill(const test_case *test)
 {
     for (int s = 0; s < 3; s++) {
         const comparison on = s == 0   ? comparison_of_scene(test, &scenes_hard[5])
-                              : s == 1 ? block_of(test, .4)
+                              : s == 1 ? blocat(test, .4)
                                        : graded_stage(test, 8, 1);
         const setup_array table = comparison_table(&on);
         const int n = on.points.count < 60 ? on.points.count : 60;
@@ -186,11 +186,11 @@ static void pairs_are_symmetric_and_never_uphill(const test_case *test)
                 matrix[i * n + j] = setup_get(&found, i, 0);
         }
         int pairs = 0;
-        for (int i = 0; i < n; i++) {
-            double largest = 0; /* of the row */
-            for (int j = 0; j < n; j++)
-                if (j != i)
-                    largest = test_larger(largest, matrix[i * n + j]);
+        double largest = 0;
+        for (int at = 0; at < n * n; at++)
+            if (at % n != at / n)
+                largest = test_larger(largest, matrix[at]);
+        for (int i = 0; i < n; i++)
             for (int j = 0; j < i; j++) {
                 const double a = matrix[i * n + j], b = matrix[j * n + i];
                 TEST_REQUIRE(a >= 0 && b >= 0, "from %d to %d flows %g, back %g, %s", j, i, a, b,
@@ -203,7 +203,6 @@ static void pairs_are_symmetric_and_never_uphill(const test_case *test)
                                     test_unit_roundoff(test),
                                 test_text("pair %d, %d, %s", i, j, on.name));
             }
-        }
         TEST_REQUIRE(pairs > n, "only %d pairs, %s", pairs, on.name);
     }
 }
@@ -211,7 +210,7 @@ static void pairs_are_symmetric_and_never_uphill(const test_case *test)
 static void nothing_is_lost_and_constants_stay(const test_case *test)
 {
     for (int s = 0; s < 3; s++) {
-        const comparison on = s == 2 ? graded_stage(test, 8, 1) : block_of(test, s ? .4 : 0);
+        const comparison on = s == 2 ? graded_stage(test, 8, 1) : blocat(test, s ? .4 : 0);
         const setup_array table = comparison_table(&on);
         const int n = on.points.count;
         const double *k = coefficients(&on, 14), *a = comparison_random_field(&on, SPHG_SCALAR, 15),
@@ -278,7 +277,7 @@ static void same_bits(const comparison *one, const comparison *other, const char
 
 static void every_path_gives_the_same_bits(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const setup_array x = setup_positions(test, (cloud *)&on.points);
     for (int way = 0; way < 2; way++) {
         comparison other = on;
@@ -309,7 +308,7 @@ static void every_path_gives_the_same_bits(const test_case *test)
 
 static void lists_of_the_host_give_the_same(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const int n = on.points.count;
     const setup_array x = setup_positions(test, (cloud *)&on.points);
     const sphg_geometry geometry = setup_geometry(test, &on.points, &x);
@@ -336,7 +335,7 @@ static void lists_of_the_host_give_the_same(const test_case *test)
 
 static void every_instruction_set_gives_the_same(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const flow of = {SPHG_TENSOR, comparison_random_field(&on, SPHG_TENSOR, 26),
                      coefficients(&on, 27)};
     const setup_array table = comparison_table(&on), found = diffuse(&on, &of, &table);
@@ -354,7 +353,7 @@ static void every_instruction_set_gives_the_same(const test_case *test)
 /* Two sets and targets apart, whose C_i are computed in the same call, or in one before. */
 static void sets_add_up(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const sphg_type type = test_field_type(test);
     const int n = on.points.count, half = n / 3, d = test->dimension;
     const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 28),
@@ -429,7 +428,7 @@ static void sets_add_up(const test_case *test)
 /* Beside a force, and added to what is there. */
 static void it_stands_beside_other_results(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const sphg_type type = test_field_type(test);
     const int n = on.points.count, d = test->dimension;
     const setup_array table = comparison_table(&on);
@@ -481,7 +480,7 @@ static void coincident_particles_exchange(const test_case *test)
 
 static void what_is_no_number_spoils_its_neighbours_alone(const test_case *test)
 {
-    const comparison on = block_of(test, .2);
+    const comparison on = blocat(test, .2);
     const int n = on.points.count, d = test->dimension, bad = cloud_middle(&on.points);
     double *numbers = comparison_random_field(&on, SPHG_SCALAR, 33), *k = coefficients(&on, 34);
     const setup_array table = comparison_table(&on);
@@ -506,7 +505,7 @@ static void what_is_no_number_spoils_its_neighbours_alone(const test_case *test)
 /* Lengths times 2^5, with volumes to match: flows times 2^(5 (d - 2)), to the bit. */
 static void scaling_by_a_power_of_two_changes_no_digit(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     cloud points = cloud_copy(&on.points);
     const int d = test->dimension, n = points.count;
     double *volume = test_memory((size_t)n * sizeof *volume);
@@ -528,7 +527,7 @@ static void scaling_by_a_power_of_two_changes_no_digit(const test_case *test)
 /* Of walls that carry the values of whoever looks at them nothing flows, whatever they conduct. */
 static void mirrored_sets_exchange_nothing(const test_case *test)
 {
-    const comparison on = block_of(test, .3);
+    const comparison on = blocat(test, .3);
     const sphg_type type = test_field_type(test);
     const int n = on.points.count;
     const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 37),
@@ -573,7 +572,7 @@ static void requires_words(const comparison *on, const sphg_field *field, sphg_r
 
 static void what_has_no_meaning_is_refused(const test_case *test)
 {
-    comparison on = block_of(test, 0);
+    comparison on = blocat(test, 0);
     const sphg_type type = test_field_type(test);
     const setup_array values =
         setup_numbers(type, on.points.count, 1, comparison_random_field(&on, SPHG_SCALAR, 39));

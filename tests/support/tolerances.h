@@ -34,7 +34,7 @@
     X(diffusion_ratio_touched, 8, .77, "the same where the threshold acts on either end")           \
     X(value_ratio, 10, 1.4, "sum V W dA, also over sum V W: a value of one term is W")              \
     X(contraction_sum, 8, 3.3, "nine products and their sum, over the sum of their sizes")          \
-    X(diffusion_symmetry, 256, 47, "L_ij from both ends; with radii W near two rims")               \
+    X(diffusion_symmetry, 64, 11, "L_ij from both ends; with radii over the largest of all")        \
     X(diffusion_sum, 8, .75, "sum f and <w, f(A)> - <A, f(w)>, relative to sum |f|")                \
     X(brookshaw, 64, 14, "a loop over W'/r in doubles, relative to the sum of sizes")               \
     /* Properties without the oracle, in units of u */                                             \
