@@ -51,7 +51,8 @@ static void containers_of_all_kinds()
     std::vector<mat> j(n);
     context.jacobian(scheme, set, v, j);
     for (const mat &one : j)
-        CHECK(near(one[0][1], -1) && near(one[1][0], 1) && near(one[0][0], 0) && near(one[2][2], 0));
+        CHECK(near(one[0][1], -1) && near(one[1][0], 1) && near(one[0][0], 0) &&
+              near(one[2][2], 0));
 
     double plain[216][3][3], volumes[216];
     std::vector<double> vx, vy, vz, jx(3 * n), jy(3 * n), jz(3 * n);
@@ -79,8 +80,8 @@ static void containers_of_all_kinds()
 
     std::vector<mine> small;
     for (const vec &one : x)
-        small.push_back({static_cast<float>(one[0]), static_cast<float>(one[1]),
-                         static_cast<float>(one[2])});
+        small.push_back(
+            {static_cast<float>(one[0]), static_cast<float>(one[1]), static_cast<float>(one[2])});
     sphgrad::neighbors single(context);
     single.search(scheme, sphgrad::all(small));
     std::vector<std::array<float, 9>> unit(n);
@@ -130,6 +131,27 @@ static void all_operators()
     request.rank = rank, request.lambda_min = lambda, request.stats = &stats;
     context.evaluate(scheme, request);
     CHECK(stats.rank[3] == 216 && lambda[0] > 0 && value[100] > 0 && square[100] > 0);
+    sphgrad::field heat;
+    std::vector<double> flow(n), conductivity(n, 2.0);
+    heat.form = SPHG_ADJOINT, heat.at_sources = {pressure}, heat.laplacian = flow;
+    heat.coefficient = {conductivity}, heat.coefficient_at_targets = conductivity;
+    sphgrad::request of_heat{{set}, {heat}};
+    context.evaluate(scheme, of_heat);
+    double lost = 0, most = 0;
+    for (double one : flow)
+        lost += one, most += std::fabs(one);
+    CHECK(most > 1 && std::fabs(lost) < 1e-10 * most);
+    of_heat.fields[0].coefficient.push_back(conductivity);
+    check_throws(SPHG_ERROR_SIZE, "coefficient", [&] { context.evaluate(scheme, of_heat); });
+    sphgrad::field mean;
+    std::vector<std::array<double, 9>> turn(n, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+    std::vector<double> trace(n), divergence(n);
+    std::vector<vec> means(n);
+    mean.shape = SPHG_VECTOR, mean.form = SPHG_DIRECT, mean.at_sources = {x};
+    mean.value = means, mean.shepard = true, mean.value_volume = {conductivity};
+    mean.tensor = turn, mean.contraction = trace, mean.divergence = divergence;
+    context.evaluate(scheme, {{set}, {mean}});
+    CHECK(near(trace[100], divergence[100]) && std::fabs(means[100][0] - x[100][0]) < 1);
     sphgrad::field curved;
     std::vector<std::array<double, 6>> hessian(n);
     std::vector<double> laplacian(n);
@@ -171,9 +193,8 @@ static void all_operators()
         scheme, {x[0][0] - x[j][0], x[0][1] - x[j][1], x[0][2] - x[j][2]}, 1, table[0].data());
     CHECK(near(one[0], g[0][0]) && near(one[1], g[0][1]) && near(one[2], g[0][2]));
     g.resize(10);
-    check_throws(SPHG_ERROR_CAPACITY, "capacity", [&] {
-        context.pair_gradients(scheme, set, offsets, &indices, g, count);
-    });
+    check_throws(SPHG_ERROR_CAPACITY, "capacity",
+                 [&] { context.pair_gradients(scheme, set, offsets, &indices, g, count); });
     context.pair_gradients(scheme, set, offsets, nullptr, {}, count, sphgrad::masked(mask));
     CHECK(offsets.size() == 109 && offsets.back() == count);
 
@@ -291,9 +312,8 @@ static void lengths_are_checked()
     std::vector<mat> u(2), a(3);
     std::vector<vec> sigma(3);
     refused([&] { context.svd(a, u, sigma, a); });
-    check_throws(SPHG_ERROR_SIZE, "positions", [&] {
-        neighbors.search(scheme, sphgrad::all(sphgrad::xyz(few, few, nothing)));
-    });
+    check_throws(SPHG_ERROR_SIZE, "positions",
+                 [&] { neighbors.search(scheme, sphgrad::all(sphgrad::xyz(few, few, nothing))); });
     std::vector<std::array<float, 9>> single(x.size());
     check_throws(SPHG_ERROR_TYPE, "type", [&] { context.jacobian(scheme, set, v, single); });
     check_throws(SPHG_ERROR_ARGUMENT, "support_radius",

@@ -143,6 +143,38 @@ class Results(Case):
                             waves(x)[:, 0], form="symmetric")
         self.close(found.sum(0), np.zeros(3), 1e5)
 
+    def test_heat_flows_from_warm_to_cold_and_none_is_lost(self):
+        x = cloud()
+        n = sg.Neighbors(x, H)
+        sources = sg.Sources(n, 1, correction=sg.correction_table(n, 1))
+        warm, k = waves(x)[:, 0].copy(), np.linspace(.5, 2, len(x)).astype(x.dtype)
+        find = lambda field: sg.evaluate(sources, field).fields[0].laplacian
+        flow = find(sg.Field(warm, "adjoint", laplacian=True, coefficient=k))
+        self.assertLess(abs(flow.sum()), 1e-4 * abs(flow).sum())
+        self.assertLess((warm * flow).sum(), 0)
+        self.close(find(sg.Field(warm, "adjoint", laplacian=True, coefficient=[np.asarray(2, x.dtype)])),
+                   2 * find(sg.Field(warm, "adjoint", laplacian=True)), 10)
+        with self.assertRaises(ValueError):
+            find(sg.Field(warm, "adjoint", laplacian=True, coefficient=[k, k]))
+        apart = sg.Sources(sg.Neighbors(x, H, targets=x), 1, correction=sources.correction)
+        found = sg.evaluate(apart, sg.Field(warm, "adjoint", laplacian=True, coefficient=k, at_targets=warm,
+                                            coefficient_at_targets=k), target_volume=1)
+        self.close(found.fields[0].laplacian, flow, 1000)
+
+    def test_values_of_differences_and_means(self):
+        x = cloud()
+        n = sg.Neighbors(x, H)
+        v, one, mass = waves(x), np.ones(len(x), x.dtype), np.linspace(.5, 2, len(x)).astype(x.dtype)
+        find = lambda field: sg.evaluate(n, field, volume=1).fields[0]
+        direct = find(sg.Field(v, "direct", value=True, value_volume=mass)).value
+        weights = find(sg.Field(one, "direct", value=True, value_volume=mass)).value
+        self.close(find(sg.Field(v, value=True, value_volume=[mass])).value, direct - v * weights[:, None], 1000)
+        self.close(find(sg.Field(v, "direct", value=True, shepard=True, value_volume=mass)).value,
+                   direct / weights[:, None], 100)
+        turn = np.random.default_rng(3).normal(size=(len(x), 3, 3)).astype(x.dtype)
+        found = find(sg.Field(v, gradient=True, tensor=turn, contraction=True))
+        self.close(found.contraction, (found.gradient * turn).sum((1, 2)), 1000)
+
     def test_results_may_be_added(self):
         x = cloud()
         n = sg.Neighbors(x, H)
