@@ -9,6 +9,9 @@ typedef struct cloud {
     int dimension, sources, targets, own_targets; /* own: they are no sources */
     float single[2][MOST * 3];
     double full[2][MOST * 3];
+    float single_radii[2][MOST];
+    double full_radii[2][MOST];
+    double largest; /* radius of those of their own; 0: one for all */
     sphg_scheme scheme;
     sphg_geometry geometry;
 } cloud;
@@ -16,6 +19,45 @@ typedef struct cloud {
 static void *memory_of(cloud *made, int side)
 {
     return made->type == SPHG_F64 ? (void *)made->full[side] : (void *)made->single[side];
+}
+
+static void *radii_of(cloud *made, int side)
+{
+    return made->type == SPHG_F64 ? (void *)made->full_radii[side]
+                                  : (void *)made->single_radii[side];
+}
+
+static double radius_of(cloud *on, int side, int item)
+{
+    return on->largest > 0 ? fuzz_get(on->type, radii_of(on, side), item)
+                           : on->scheme.support_radius;
+}
+
+/* Octaves apart, now and then anything at all. */
+static void take_radii(fuzz_bytes *from, cloud *made, int side, int count)
+{
+    for (int k = 0; k < count; k++) {
+        const int kind = fuzz_byte(from);
+        fuzz_put(made->type, radii_of(made, side), k,
+                 kind == 255 ? fuzz_real(from) : ldexp(1 + kind % 16 / 16., -(kind / 16)));
+        made->largest = fmax(made->largest, fuzz_get(made->type, radii_of(made, side), k));
+    }
+}
+
+static void take_radii_of_cloud(fuzz_bytes *from, cloud *made)
+{
+    const int flags = fuzz_byte(from);
+    if (!(flags & 1))
+        return;
+    take_radii(from, made, 0, made->sources);
+    if (made->own_targets)
+        take_radii(from, made, 1, made->targets);
+    made->geometry.source_support = fuzz_view(made->type, radii_of(made, 0), 1);
+    if (made->own_targets)
+        made->geometry.target_support = fuzz_view(made->type, radii_of(made, 1), 1);
+    made->geometry.mutual = flags >> 1 & 1;
+    if (made->geometry.mutual) /* pairs beyond a skin are not told one by one */
+        made->geometry.skin = 0;
 }
 
 static void take_positions(fuzz_bytes *from, cloud *made, int side, int count, int tame)
@@ -47,6 +89,7 @@ static void take_cloud(fuzz_bytes *from, cloud *made)
         made->geometry.targets = fuzz_view(made->type, memory_of(made, 1), made->dimension);
     made->geometry.source_count = made->sources;
     made->geometry.target_count = made->targets;
+    take_radii_of_cloud(from, made);
 }
 
 /* ---- Brute force, in the arithmetic that docs/theory.md prescribes ------------------------- */
@@ -60,7 +103,8 @@ static double rounded(const cloud *on, double x)
 static double boxed(const cloud *on, double x, int axis)
 {
     const double period = on->geometry.period[axis];
-    const double coarse = on->scheme.support_radius * (on->type == SPHG_F64 ? 0x1p45 : 0x1p16);
+    const double reach = on->largest > 0 ? on->largest : on->scheme.support_radius;
+    const double coarse = reach * (on->type == SPHG_F64 ? 0x1p45 : 0x1p16);
     return period > 0 && fabs(x) > fmax(coarse, period) ? fmod(x, period) : x;
 }
 
@@ -93,7 +137,9 @@ static int is_near(cloud *on, int i, int j)
         const double x = separation(on, target, fuzz_get(on->type, memory_of(on, 0), j * d + a), a);
         sum = rounded(on, sum + rounded(on, x * x));
     }
-    const double reach = rounded(on, on->scheme.support_radius);
+    double reach = rounded(on, radius_of(on, on->own_targets, i));
+    if (on->geometry.mutual)
+        reach = fmax(reach, rounded(on, radius_of(on, 0, j)));
     return sum < rounded(on, reach * reach);
 }
 
@@ -109,6 +155,16 @@ static void compare(cloud *on, const int64_t *offsets, const int32_t *indices)
         }
         FUZZ_REQUIRE(at == offsets[i + 1], "row %d is too long", i);
     }
+}
+
+/* Radii that were accepted: positive and finite. */
+static int are_radii(cloud *on)
+{
+    for (int side = 0; side <= on->own_targets && on->largest > 0; side++)
+        for (int k = 0; k < (side ? on->targets : on->sources); k++)
+            if (!(radius_of(on, side, k) > 0) || !isfinite(radius_of(on, side, k)))
+                return 0;
+    return 1;
 }
 
 static int is_finite(cloud *on)
@@ -142,6 +198,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (result)
             return 0;
         FUZZ_REQUIRE(is_finite(&on), "accepted what is not finite");
+        FUZZ_REQUIRE(are_radii(&on), "accepted what is no radius");
         const sphg_sources sources = {.neighbors = instance->neighbors};
         sphg_pairs pairs = {.offsets = offsets, .indices = indices, .capacity = MOST * MOST};
         FUZZ_REQUIRE(sphg_pair_gradients(context, &on.scheme, &sources, NULL, sphg_absent(),
