@@ -357,6 +357,26 @@ static void one_sided_lists_conserve_nothing(const test_case *test)
     }
 }
 
+/* Particles with radii of their own, twice as large at the far end: each half of a pair has its
+ * own. */
+static void radii_keep_what_one_radius_keeps(const test_case *test)
+{
+    random_state random = random_seeded(34);
+    const int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 8 : 5, .25, .15, &random);
+    double *radii = test_memory((size_t)points.count * sizeof *radii);
+    for (int i = 0; i < points.count; i++)
+        radii[i] = .75 * (1 + points.x[i * d] / (.25 * (d == 2 ? 8 : 5)));
+    const stage on = stage_of_radii(test, "radii", points, radii, 1);
+    TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_SCALAR) / on.scene.unit, "scalar, radii");
+    TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_TENSOR) / on.scene.unit, "tensor, radii");
+    require_linear(&on, SPHG_TENSOR, SPHG_ADJOINT, "radii");
+    require_angular(&on, SPHG_SCALAR, SPHG_ADJOINT, "radii");
+    if (test->method != SPHG_PLAIN)
+        require_angular(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, "radii, symmetric tensor");
+    require_angular_lost(&on, SPHG_TENSOR, SPHG_ADJOINT);
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(adjoint_conserves_linear_momentum, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
@@ -384,6 +404,8 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(order_2_conserves_what_order_1_does, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
+    TEST_ENTRY(radii_keep_what_one_radius_keeps, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(lists_cut_at_both_ends_conserve, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(one_sided_lists_conserve_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
