@@ -367,7 +367,7 @@ static void radii_keep_what_one_radius_keeps(const test_case *test)
     double *radii = test_memory((size_t)points.count * sizeof *radii);
     for (int i = 0; i < points.count; i++)
         radii[i] = .75 * (1 + points.x[i * d] / (.25 * (d == 2 ? 8 : 5)));
-    const stage on = stage_of_radii(test, "radii", points, radii, 1);
+    const comparison on = comparison_of_radii(test, "radii", points, radii, 1);
     TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_SCALAR) / on.scene.unit, "scalar, radii");
     TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_TENSOR) / on.scene.unit, "tensor, radii");
     require_linear(&on, SPHG_TENSOR, SPHG_ADJOINT, "radii");

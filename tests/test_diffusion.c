@@ -593,6 +593,11 @@ static void what_has_no_meaning_is_refused(const test_case *test)
     field.at_sources = &at_sources;
     field.coefficient = &absent;
     requires_words(&on, &field, SPHG_ERROR_ARGUMENT, "fields[0].coefficient[0] is absent");
+    field.mirror = 1; /* of the targets' own set, which then still has their coefficients */
+    field.at_sources = &absent;
+    requires_words(&on, &field, SPHG_ERROR_ARGUMENT, "fields[0].coefficient[0] is absent");
+    field.mirror = 0;
+    field.at_sources = &at_sources;
     field.coefficient = NULL;
     field.coefficient_at_targets = at_sources;
     requires_words(&on, &field, SPHG_ERROR_ARGUMENT, "coefficient is NULL");

@@ -45,13 +45,13 @@ struct sphgi_field_plan {
     int32_t lent_sum;              /* first of 1 + components times pairs of axes */
     bool normalises;               /* the value is divided by the sum of its weights ... */
     int32_t filling_sum;           /* ... which is this one */
-    int32_t volume_stream, volume_row; /* V_j of the value, as the host has them and in rows; -1: the
-                                          sets' */
+    int32_t volume_stream, volume_row; /* V_j of the value, as the host has them and in rows; -1:
+                                          the sets' */
     int32_t coefficient_stream, coefficient_row; /* k_j, as the host has them and in rows; -1: 1 */
-    int32_t diffusion_sum;         /* first of components sums of k_ij L_ij (A_j - A_i) */
-    int32_t at_target;             /* first of the lanes that hold A_i */
-    int32_t coefficient_at_target; /* the lane that holds k_i */
-    struct sphgi_columns target;   /* A_i */
+    int32_t diffusion_sum;            /* first of components sums of k_ij L_ij (A_j - A_i) */
+    int32_t at_target;                /* first of the lanes that hold A_i */
+    int32_t coefficient_at_target;    /* the lane that holds k_i */
+    struct sphgi_columns target;      /* A_i */
     struct sphgi_columns coefficient; /* k_i */
     struct sphgi_columns own_volume;  /* V_i of the value, of targets as sources */
     struct sphgi_columns tensor, contraction; /* T_i, and J : T_i */
@@ -86,9 +86,9 @@ struct sphgi_plan {
     bool differentiates, adjoint; /* any field */
     bool transposes[2];           /* any field is summed over G_ji; [0] adjoint, [1] symmetric */
     bool wants_value;
-    bool values_by_volume; /* any value with the volumes of the sets ... */
-    bool values_by_own;    /* ... and with those of its field */
-    bool diffuses; /* any field */
+    bool values_by_volume;                     /* any value with the volumes of the sets ... */
+    bool values_by_own;                        /* ... and with those of its field */
+    bool diffuses;                             /* any field */
     bool mirrors;                              /* any field, at any set */
     bool mean_volume;                          /* MLS without volumes at the targets */
     int32_t correction_stream, density_stream; /* -1: not needed */

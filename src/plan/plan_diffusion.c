@@ -58,7 +58,8 @@ sphg_result sphgi_take_coefficient_at_target(struct sphgi_making *making, int32_
                                   &field->coefficient);
 }
 
-/* A set that is mirrored exchanges nothing: its coefficients are not read. */
+/* A set that is mirrored exchanges nothing: its coefficients are not read, unless the targets have
+ * theirs there. */
 sphg_result sphgi_take_coefficient_at_sources(struct sphgi_making *making, int32_t s, int32_t k)
 {
     const struct sphgi_plan *plan = making->plan;
@@ -70,7 +71,8 @@ sphg_result sphgi_take_coefficient_at_sources(struct sphgi_making *making, int32
     const struct sphgi_stream *values =
         making->streams + (ptrdiff_t)s * plan->stream_count + field->stream;
     struct sphgi_columns columns = {.count = 0};
-    if (sphgi_is_absent(view) && count > 0 && !values->mirrored)
+    const bool of_targets = s == plan->own_set && !field->coefficient.count;
+    if (sphgi_is_absent(view) && count > 0 && (!values->mirrored || of_targets))
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: fields[%d].coefficient[%d] is absent; give one value for all, or leave "
                      "coefficient NULL for 1 everywhere",

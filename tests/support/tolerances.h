@@ -30,13 +30,13 @@
     X(quadratic_two_sided, 4, .75, "order 2: G of both sides over their bounds")                   \
     X(borrowed_ratio, 4, .78, "borrowed curvature: over bounds of its own, lenders as given")      \
     X(borrowed_confidence, 2, .26, "c over what rounding of S and M2 makes of it")                 \
-    X(diffusion_ratio_full, 4, .93, "sum k L dA over the bounds of G of both ends")                 \
-    X(diffusion_ratio_touched, 8, .77, "the same where the threshold acts on either end")           \
-    X(value_ratio, 10, 1.4, "sum V W dA, also over sum V W: a value of one term is W")              \
-    X(contraction_sum, 8, 3.3, "nine products and their sum, over the sum of their sizes")          \
-    X(diffusion_symmetry, 64, 11, "L_ij from both ends; with radii over the largest of all")        \
-    X(diffusion_sum, 8, .75, "sum f and <w, f(A)> - <A, f(w)>, relative to sum |f|")                \
-    X(brookshaw, 64, 14, "a loop over W'/r in doubles, relative to the sum of sizes")               \
+    X(diffusion_ratio_full, 4, .93, "sum k L dA over the bounds of G of both ends")                \
+    X(diffusion_ratio_touched, 8, .77, "the same where the threshold acts on either end")          \
+    X(value_ratio, 10, 1.4, "sum V W dA, also over sum V W: a value of one term is W")             \
+    X(contraction_sum, 8, 3.3, "nine products and their sum, over the sum of their sizes")         \
+    X(diffusion_symmetry, 64, 11, "L_ij from both ends; with radii over the largest of all")       \
+    X(diffusion_sum, 8, .75, "sum f and <w, f(A)> - <A, f(w)>, relative to sum |f|")               \
+    X(brookshaw, 64, 14, "a loop over W'/r in doubles, relative to the sum of sizes")              \
     /* Properties without the oracle, in units of u */                                             \
     X(linear_exactness, 32, 6.7, "times |J| / lambda_min: the condition of the moments")           \
     X(quadratic_exactness, 32, 5.1, "times the size of curvature / lambda_q, or |F|")              \
