@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Heat in a plate with free edges: an implicit step (1 - k Laplace) u = f by conjugate gradients,
  * for which u = cos(pi x) cos(pi y) is known. The Laplacian of the adjoint form makes the system
  * symmetric and positive; nothing flows through the edges, and no boundary condition is set. Prints

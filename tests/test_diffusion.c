@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The Laplacian of the adjoint form: against the oracle, symmetric, never uphill, conservative, the
  * same by every path; PLAIN is Brookshaw's; solutions of heat problems have the errors they should.
  */

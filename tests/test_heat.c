@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Heat problems whose solutions are known, solved with the Laplacian of the adjoint form: their
  * errors are those that an independent program found; and what happens in time to each Laplacian.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums of values: of differences, over the sum of their weights, with volumes of their own; and
  * gradients contracted with a tensor of each target. */
 #include "support/oracle_diffusion.h"

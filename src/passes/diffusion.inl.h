@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diffusion between the particles of a pair (theory.md, section 11): L_ij, then the sums of
  * k_ij L_ij (A_j - A_i). */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums of values with weights V_j W: volumes of a field's own, and the sum of the weights. */
 
 /* W, which s_ij would take the place of, goes where it stays. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diffusion, the Laplacian of the adjoint form: what is refused, and the coefficients of both
  * sides. */
 #include "making.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* What fields have beside their derivatives: sums of values, with volumes of their own and divided
  * by those of the weights, and gradients contracted with a tensor of each target. */
 #include "making.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 #include "diffusion.h"
 #include "core/kernel.h"
 #include "fold.h"

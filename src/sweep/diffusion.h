@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Diffusion: the Laplacian of the adjoint form, pair by pair (theory.md, section 11). */
 #ifndef SPHGI_DIFFUSION_H
 #define SPHGI_DIFFUSION_H

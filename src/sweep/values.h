@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Sums of A_j, or of A_j - A_i, over the weights of values. */
 #ifndef SPHGI_VALUES_H
 #define SPHGI_VALUES_H

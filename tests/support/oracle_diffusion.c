@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* L_ij as its definition has it: gradients of both ends along the pair. Values: weights times what
  * stands at the sources. */
 #include "oracle_diffusion.h"

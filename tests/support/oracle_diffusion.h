@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* The reference of diffusion and of sums of values, pair by pair from docs/theory.md, section 11.
  */
 #ifndef TESTS_SUPPORT_ORACLE_DIFFUSION_H
