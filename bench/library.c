@@ -29,7 +29,7 @@ const char *library_isa(void)
                                           SPHG_ISA_BASE};
     int k = 0;
     while (chosen == SPHG_ISA_BEST && !runs_here(best_first[k]))
-        k++;
+        ++k;
     return isa_names[chosen == SPHG_ISA_BEST ? best_first[k] : chosen];
 }
 
@@ -132,7 +132,7 @@ void library_volumes(sphg_context *context, const sphg_scheme *scheme,
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
     library_check(context, sphg_evaluate(context, &plain, &request));
-    for (int32_t i = 0; i < volumes->count; i++)
+    for (int32_t i = 0; i < volumes->count; ++i)
         numbers_set(volumes, i, 0, 1 / numbers_get(volumes, i, 0));
     numbers_destroy(&one);
 }

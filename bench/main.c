@@ -58,7 +58,7 @@ static const int command_count = (int)(sizeof commands / sizeof commands[0]);
 static int print_overview(void)
 {
     printf("Usage: sphgrad-bench [COMMAND] [OPTIONS]\n\n");
-    for (int k = 0; k < command_count; k++)
+    for (int k = 0; k < command_count; ++k)
         printf("  %-10s %s\n", commands[k].name, commands[k].summary);
     printf("\nsphgrad-bench COMMAND --help lists the options of a command.\n");
     return EXIT_SUCCESS;
@@ -92,7 +92,7 @@ int main(int argc, char **argv)
         return print_version();
     if (argc < 2 || first[0] == '-')
         return run(&commands[0], argc, argv);
-    for (int k = 0; k < command_count; k++)
+    for (int k = 0; k < command_count; ++k)
         if (strcmp(first, commands[k].name) == 0)
             return run(&commands[k], argc - 1, argv + 1);
     command_line_refuse("there is no command '%s' (sphgrad-bench --help lists them)", first);

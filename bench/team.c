@@ -12,7 +12,7 @@ static int32_t boundary(int32_t share, int32_t threads, int32_t count, int32_t g
 void team_run(int32_t threads, team_task *task, void *data, int32_t count, int32_t grain)
 {
 #pragma omp parallel for num_threads(threads) schedule(static, 1)
-    for (int32_t share = 0; share < threads; share++)
+    for (int32_t share = 0; share < threads; ++share)
         task(data, boundary(share, threads, count, grain),
              boundary(share + 1, threads, count, grain));
 }

@@ -84,7 +84,7 @@ INLINE vec choose_below(vec x, vec limit, vec below, vec other)
 #else
 INLINE vec square_root(vec v)
 {
-    for (int k = 0; k < LANES; k++)
+    for (int k = 0; k < LANES; ++k)
         v[k] = __builtin_sqrtf(v[k]);
     return v;
 }
@@ -132,7 +132,7 @@ INLINE void invert_symmetric(const vec a[6], vec c[6])
     c[4] = a[1] * a[2] - a[0] * a[4];
     c[5] = a[0] * a[3] - a[1] * a[1];
     const vec reciprocal = 1 / (a[0] * c[0] + a[1] * c[1] + a[2] * c[2]);
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         c[k] *= reciprocal;
 }
 
@@ -152,19 +152,19 @@ INLINE vec sum_lanes(const vec v[LANES])
 {
 #if VECTOR_BYTES == 64
     vec e[8];
-    for (int k = 0; k < 8; k++)
+    for (int k = 0; k < 8; ++k)
         e[k] = __builtin_shufflevector(v[k], v[k + 8], 0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28,
                                        29, 30, 31) +
                __builtin_shufflevector(v[k], v[k + 8], 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19,
                                        20, 21, 22, 23);
     vec f[4];
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; ++k)
         f[k] = __builtin_shufflevector(e[k], e[k + 4], 0, 1, 2, 3, 20, 21, 22, 23, 8, 9, 10, 11, 28,
                                        29, 30, 31) +
                __builtin_shufflevector(e[k], e[k + 4], 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15,
                                        24, 25, 26, 27);
     vec g[2];
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         g[k] = __builtin_shufflevector(f[k], f[k + 2], 0, 1, 18, 19, 4, 5, 22, 23, 8, 9, 26, 27, 12,
                                        13, 30, 31) +
                __builtin_shufflevector(f[k], f[k + 2], 2, 3, 16, 17, 6, 7, 20, 21, 10, 11, 24, 25,
@@ -175,18 +175,18 @@ INLINE vec sum_lanes(const vec v[LANES])
                                    15, 30);
 #elif VECTOR_BYTES == 32
     vec f[4];
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; ++k)
         f[k] = __builtin_shufflevector(v[k], v[k + 4], 0, 1, 2, 3, 12, 13, 14, 15) +
                __builtin_shufflevector(v[k], v[k + 4], 4, 5, 6, 7, 8, 9, 10, 11);
     vec g[2];
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         g[k] = __builtin_shufflevector(f[k], f[k + 2], 0, 1, 10, 11, 4, 5, 14, 15) +
                __builtin_shufflevector(f[k], f[k + 2], 2, 3, 8, 9, 6, 7, 12, 13);
     return __builtin_shufflevector(g[0], g[1], 0, 9, 2, 11, 4, 13, 6, 15) +
            __builtin_shufflevector(g[0], g[1], 1, 8, 3, 10, 5, 12, 7, 14);
 #else
     vec g[2];
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         g[k] = __builtin_shufflevector(v[k], v[k + 2], 0, 1, 6, 7) +
                __builtin_shufflevector(v[k], v[k + 2], 2, 3, 4, 5);
     return __builtin_shufflevector(g[0], g[1], 0, 5, 2, 7) +

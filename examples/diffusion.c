@@ -16,7 +16,7 @@ static double u[MOST], f[MOST], r[MOST], p[MOST];
 static double dot(const double *a, const double *b, int n)
 {
     double sum = 0;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         sum += a[i] * b[i];
     return sum;
 }
@@ -26,19 +26,19 @@ static int solve(sphg_context *context, const sphg_scheme *scheme, const sphg_re
                  int n)
 {
     int failed = 0;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         u[i] = 0, p[i] = r[i] = volume[i] * f[i];
     double square = dot(r, r, n);
     const double end = 1e-24 * square;
-    for (int steps = 0; square > end && steps < 500 && !failed; steps++) {
+    for (int steps = 0; square > end && steps < 500 && !failed; ++steps) {
         failed = sphg_evaluate(context, scheme, request);
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             flow[i] = volume[i] * p[i] - flow[i];
         const double step = square / dot(p, flow, n), before = square;
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             u[i] += step * p[i], r[i] -= step * flow[i];
         square = dot(r, r, n);
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             p[i] = r[i] + square / before * p[i];
     }
     return failed;
@@ -51,7 +51,7 @@ static double error_of(sphg_context *context, sphg_neighbors *neighbors, sphg_me
     const int n = side * side;
     const double pi = acos(-1), spacing = 2. / side, one = 1;
     const sphg_scheme scheme = {.dimension = 2, .method = method, .support_radius = 2 * spacing};
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         x[i][0] = (i % side + .5) * spacing - 1, x[i][1] = (i / side + .5) * spacing - 1;
     sphg_geometry plate = sphg_all(sphg_view_f64(x[0], sizeof x[0]), n);
     plate.keep_weights = 1; /* read by the products instead of formed again */
@@ -63,7 +63,7 @@ static double error_of(sphg_context *context, sphg_neighbors *neighbors, sphg_me
     sum.value = sphg_view_f64(volume, sizeof *volume); /* particles in a unit of area */
     int failed = sphg_neighbors_search(context, neighbors, &scheme, &plate) ||
                  sphg_evaluate(context, &scheme, &request);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         volume[i] = 1 / volume[i];
         f[i] = (1 + 2 * pi * pi * conductivity) * cos(pi * x[i][0]) * cos(pi * x[i][1]);
     }
@@ -82,7 +82,7 @@ static double error_of(sphg_context *context, sphg_neighbors *neighbors, sphg_me
     request.fields = &laplacian;
     failed = failed || solve(context, &scheme, &request, n);
     double square = 0;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         square += pow(u[i] - cos(pi * x[i][0]) * cos(pi * x[i][1]), 2) / n;
     return failed ? NAN : sqrt(square);
 }

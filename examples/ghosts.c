@@ -40,10 +40,10 @@ int main(void)
     double all = 0, difference = 0;
     struct domain *const domains[3] = {&lower, &upper, &whole};
     check(sphg_context_create(SPHG_VERSION, NULL, &context));
-    for (int n = 0; n < 3; n++) {
+    for (int n = 0; n < 3; ++n) {
         struct domain *d = domains[n];
         const int own = d == &whole ? COUNT : OWN, ghosts = d == &whole ? 0 : GHOSTS;
-        for (int k = 0; k < own + ghosts; k++) { /* ghosts are there by the first exchange */
+        for (int k = 0; k < own + ghosts; ++k) { /* ghosts are there by the first exchange */
             const int place = d == &upper ? mirrored(k) : k;
             for (int a = 0, rest = place; a < 3; a++, rest /= SIDE)
                 d->x[k][a] = rest % SIDE;
@@ -57,18 +57,18 @@ int main(void)
         d->sources = (sphg_sources){d->neighbors, sphg_same_f64(&volume), .correction = table};
         check(sphg_correction(context, &scheme, &d->sources, NULL, table, sphg_absent()));
     }
-    for (int k = OWN; k < OWN + GHOSTS; k++) { /* the second exchange: rows of the tables */
+    for (int k = OWN; k < OWN + GHOSTS; ++k) { /* the second exchange: rows of the tables */
         memcpy(lower.correction[k], upper.correction[mirrored(k)], sizeof lower.correction[k]);
         memcpy(upper.correction[k], lower.correction[mirrored(k)], sizeof upper.correction[k]);
     }
-    for (int n = 0; n < 3; n++) {
+    for (int n = 0; n < 3; ++n) {
         const sphg_view pressure = sphg_view_f64(domains[n]->pressure, sizeof(double));
         const sphg_view force = sphg_view_f64(domains[n]->force[0], 3 * sizeof(double));
         check(
             sphg_force(context, &scheme, &domains[n]->sources, NULL, SPHG_SCALAR, pressure, force));
         sphg_neighbors_destroy(domains[n]->neighbors);
     }
-    for (int k = 0; k < 3 * COUNT; k++) {
+    for (int k = 0; k < 3 * COUNT; ++k) {
         const int i = k / 3, a = k % 3;
         const double force = i < OWN ? lower.force[i][a] : upper.force[mirrored(i)][a];
         all += fabs(whole.force[i][a]);

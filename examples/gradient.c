@@ -12,7 +12,7 @@ static double corrected[COUNT][3][3], plain[COUNT][3][3]; /* [i][a][b] = d v_a /
 
 int main(void)
 {
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, and v = (-y, x, 0) */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1, and v = (-y, x, 0) */
         x[i][0] = i % SIDE;
         x[i][1] = i / SIDE % SIDE;
         x[i][2] = i / SIDE / SIDE;

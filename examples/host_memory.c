@@ -36,7 +36,7 @@ static void hear(sphg_result result, const char *message, void *user)
 int main(void)
 {
     const double volume = 1;
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
         for (int k = 0, rest = i; k < 3; k++, rest /= SIDE)
             x[i][k] = rest % SIDE;
         a[i] = 2 * x[i][0] + 3 * x[i][1] - x[i][2];
@@ -54,7 +54,7 @@ int main(void)
         failed || sphg_gradient(context, &scheme, &sources, NULL, sphg_view_f64(a, sizeof a[0]),
                                 sphg_view_f64(gradient[0], sizeof gradient[0]));
     double error = 0;
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         error += fabs(gradient[i][1] - 3) / COUNT;
     const int refused = sphg_neighbors_search(context, neighbors, &wrong, &block) != SPHG_OK;
     sphg_neighbors_destroy(neighbors);

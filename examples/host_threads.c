@@ -43,7 +43,7 @@ static void parallel_for(sphg_task *task, void *data, int32_t count, int32_t gra
 int main(void)
 {
     const double volume = 1;
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
         for (int k = 0, rest = i; k < 3; k++, rest /= SIDE)
             x[i][k] = rest % SIDE;
         a[i] = 2 * x[i][0] + 3 * x[i][1] - x[i][2];
@@ -53,7 +53,7 @@ int main(void)
     const sphg_scheme scheme = {.support_radius = 2};
     const sphg_geometry block = sphg_all(sphg_view_f64(x[0], sizeof x[0]), COUNT);
     int failed = 0;
-    for (int k = 0; k < 2 && !failed; k++) {
+    for (int k = 0; k < 2 && !failed; ++k) {
         sphg_context *context = NULL;
         sphg_neighbors *neighbors = NULL;
         failed = sphg_context_create(SPHG_VERSION, &configs[k], &context) ||
@@ -66,7 +66,7 @@ int main(void)
         sphg_context_destroy(context);
     }
     double error = 0;
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         error += fabs(gradient[1][i][1] - 3) / COUNT;
     const int same = memcmp(gradient[0], gradient[1], sizeof gradient[0]) == 0;
     printf("error %.1e, %s bits as on one thread\n", error, same ? "the same" : "other");

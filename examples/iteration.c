@@ -36,14 +36,14 @@ static void multiply(const sphg_sources *sources, const double *in, double *out)
         .sources = sources, .set_count = 1, .fields = &divergence, .field_count = 1};
     check(sphg_gradient(context, &scheme, sources, NULL, sphg_view_f64(in, sizeof in[0]), slopes));
     check(sphg_evaluate(context, &scheme, &request));
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         out[i] = volume * in[i] - k * flux[i];
 }
 
 static double dot(const double *a, const double *b)
 {
     double sum = 0;
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         sum += a[i] * b[i];
     return sum;
 }
@@ -52,7 +52,7 @@ int main(void)
 {
     const double wave = acos(-1) / SIDE; /* half a wave: its slope is 0 at both ends */
     double total = 0, kept = 0, height = 0;
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, shifted here and there */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1, shifted here and there */
         x[i][0] = i % SIDE + 0.2 * sin(3.0 * i);
         x[i][1] = i / SIDE + 0.2 * cos(5.0 * i);
         p[i] = r[i] = volume * (1 + cos(wave * (x[i][0] + 0.5))); /* b; u begins as 0 */
@@ -70,18 +70,18 @@ int main(void)
     sources.correction = table;
 
     int products = 0;
-    for (double rr = dot(r, r), end = 1e-20 * rr; rr > end && products < 200; products++) {
+    for (double rr = dot(r, r), end = 1e-20 * rr; rr > end && products < 200; ++products) {
         multiply(&sources, p, q);
         const double step = rr / dot(p, q), before = rr;
-        for (int i = 0; i < COUNT; i++) {
+        for (int i = 0; i < COUNT; ++i) {
             u[i] += step * p[i];
             r[i] -= step * q[i];
         }
         rr = dot(r, r);
-        for (int i = 0; i < COUNT; i++)
+        for (int i = 0; i < COUNT; ++i)
             p[i] = r[i] + rr / before * p[i];
     }
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         kept += volume * u[i];
         height += 2.0 / COUNT * u[i] * cos(wave * (x[i][0] + 0.5));
     }

@@ -36,14 +36,14 @@ int main(void)
 {
     const double h = 2, volume = 1;
     const sphg_view field = sphg_view_f64(a, sizeof a[0]);
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
         for (int k = 0, rest = i; k < 3; k++, rest /= SIDE)
             x[i][k] = rest % SIDE;
         a[i] = 2 * x[i][0] + 3 * x[i][1] - x[i][2];
     }
-    for (int i = 0; i < COUNT; i++) { /* the host's own search; i itself may be listed or not */
+    for (int i = 0; i < COUNT; ++i) { /* the host's own search; i itself may be listed or not */
         rows[i] = indices + offsets[i];
-        for (int j = 0; j < COUNT; j++)
+        for (int j = 0; j < COUNT; ++j)
             if (hypot(hypot(x[i][0] - x[j][0], x[i][1] - x[j][1]), x[i][2] - x[j][2]) < h)
                 indices[offsets[i] + lengths[i]++] = j;
         offsets[i + 1] = offsets[i] + lengths[i];
@@ -58,12 +58,12 @@ int main(void)
     check(sphg_context_create(SPHG_VERSION, NULL, &context));
     check(sphg_neighbors_create(context, &neighbors));
     const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f64(&volume)};
-    for (int form = 0; form < 3; form++) {
+    for (int form = 0; form < 3; ++form) {
         double error = 0;
         const sphg_view found = sphg_view_f64(gradient[form][0], sizeof gradient[form][0]);
         check(sphg_neighbors_use_lists(context, neighbors, &scheme, &block, &forms[form]));
         check(sphg_gradient(context, &scheme, &sources, NULL, field, found));
-        for (int i = 0; i < COUNT; i++)
+        for (int i = 0; i < COUNT; ++i)
             error += fabs(gradient[form][i][1] - 3) / COUNT;
         const int same = memcmp(gradient[form], gradient[0], sizeof gradient[0]) == 0;
         printf("%-8s  error %.1e, %s bits\n", names[form], error, same ? "same" : "other");

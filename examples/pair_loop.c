@@ -24,7 +24,7 @@ int main(void)
 {
     const double volume = 1;
     const sphg_scheme scheme = {.support_radius = 2};
-    for (int i = 0; i < COUNT; i++) /* a lattice with spacing 1 */
+    for (int i = 0; i < COUNT; ++i) /* a lattice with spacing 1 */
         for (int k = 0, rest = i; k < 3; k++, rest /= SIDE)
             x[i][k] = rest % SIDE;
     const sphg_geometry block = sphg_all(sphg_view_f64(x[0], sizeof x[0]), COUNT);
@@ -50,11 +50,11 @@ int main(void)
         pairs = (sphg_pairs){offsets, indices, sphg_view_f64(gradients[0], sizeof *gradients),
                              .capacity = capacity, .any_order = 1};
         check(sphg_pair_gradients(context, &scheme, &sources, &some, sphg_absent(), &pairs));
-        for (int32_t i = begin; i < some.end; i++) {
+        for (int32_t i = begin; i < some.end; ++i) {
             double divergence = 0;
-            for (int64_t n = offsets[i - begin]; n < offsets[i - begin + 1]; n++) {
+            for (int64_t n = offsets[i - begin]; n < offsets[i - begin + 1]; ++n) {
                 double squared = 0;
-                for (int k = 0; k < 3; k++) {
+                for (int k = 0; k < 3; ++k) {
                     const double apart = x[indices[n]][k] - x[i][k]; /* x_j - x_i, and v_j - v_i */
                     squared += apart * apart;
                     divergence += apart * gradients[n][k];

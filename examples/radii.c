@@ -24,7 +24,7 @@ static void check(sphg_result result)
 
 int main(void)
 {
-    for (int i = 0; i < COUNT; i++) { /* columns .5 apart on the left, 1.5 on the right */
+    for (int i = 0; i < COUNT; ++i) { /* columns .5 apart on the left, 1.5 on the right */
         const double u = (i % SIDE + 0.5) / SIDE, y = i / SIDE + 0.5;
         x[i][0] = (float)(SIDE * (0.5 * u + 0.5 * u * u) + 0.1 * sin(3.0 * i));
         x[i][1] = (float)(y + 0.1 * cos(5.0 * i));
@@ -56,7 +56,7 @@ int main(void)
     check(sphg_evaluate(context, &sph, &rho));
     check(sphg_divergence(context, &sph, &gas, NULL, positions, spreads));
     double least = 1, most = 1, work = 0, size = 0, total = 0, off = 0;
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         const double omega = spread[i] / (2 * density[i]);
         stress[i] = (float)(pow(density[i], 1.4) / (omega * density[i] * density[i]));
         least = fmin(least, omega), most = fmax(most, omega);
@@ -64,13 +64,13 @@ int main(void)
     check(sphg_force(context, &sph, &gas, NULL, SPHG_SCALAR, sphg_view_f32(stress, 4),
                      sphg_view_f32(force[0], 8)));
     check(sphg_divergence(context, &sph, &gas, NULL, sphg_view_f32(v[0], 8), spreads));
-    for (int i = 0; i < COUNT; i++) { /* m dv/dt = -force, du/dt = -stress div v */
+    for (int i = 0; i < COUNT; ++i) { /* m dv/dt = -force, du/dt = -stress div v */
         total += force[i][0] + force[i][1];
         size += fabs(force[i][0]) + fabs(force[i][1]);
         work += v[i][0] * force[i][0] + v[i][1] * force[i][1] + mass[i] * stress[i] * spread[i];
     }
     check(sphg_divergence(context, &kgc, &gas, NULL, positions, spreads));
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         off += fabs(spread[i] / 2 - 1) / COUNT;
     printf("momentum off by %.0e, energy by %.0e, div x by %.0e; Omega from %.2f to %.2f\n",
            fabs(total) / size, fabs(work) / size, off, least, most);

@@ -23,10 +23,10 @@ static double larger(double p, double q)
 static double gradient_error(void)
 {
     double most = 0;
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         const double *p = x[i];
         const double expected[3] = {2 * p[0] + p[1], 4 * p[1] + p[0], 6 * p[2]};
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; ++k)
             most = larger(most, fabs(gradient[i][k] - expected[k]));
     }
     return most;
@@ -34,9 +34,9 @@ static double gradient_error(void)
 
 int main(void)
 {
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1 */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1 */
         const double p[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; ++k)
             x[i][k] = p[k];
         a[i] = p[0] * p[0] + 2 * p[1] * p[1] + 3 * p[2] * p[2] + p[0] * p[1];
     }
@@ -61,18 +61,18 @@ int main(void)
     scheme.order = 2;
     field.laplacian = sphg_view_f64(laplacian, sizeof *laplacian);
     request.borrows = sphg_view_u8(borrows, 1);
-    for (int call = 1; call < 4; call++) { /* all targets each time; a mask would save time */
+    for (int call = 1; call < 4; ++call) { /* all targets each time; a mask would save time */
         const sphg_view lenders = sphg_view_f64(lent[call % 2][0], sizeof lent[0][0]);
         field.curvature = sphg_view_f64(lent[(call + 1) % 2][0], sizeof lent[0][0]);
         field.lenders = call > 1 ? &lenders : NULL;
         failed = failed || sphg_evaluate(context, &scheme, &request);
         error[call] = gradient_error();
-        for (int i = 0; i < COUNT; i++)
+        for (int i = 0; i < COUNT; ++i)
             curvature[call] = larger(curvature[call], fabs(laplacian[i] - 12));
     }
     if (failed)
         fprintf(stderr, "%s\n", sphg_last_message(context));
-    for (int call = 0; call < 4 && !failed; call++)
+    for (int call = 0; call < 4 && !failed; ++call)
         printf("%-10s largest errors: gradient %.1e, Laplacian %.1e\n", names[call], error[call],
                curvature[call]);
     sphg_neighbors_destroy(neighbors);

@@ -39,7 +39,7 @@ static double slope(const sphg_sources sets[2], sphg_view pressure_of_floor, int
 
 int main(void)
 {
-    for (int i = 0; i < FLUID + FLOOR; i++) { /* a lattice with spacing 1; the floor is below 0 */
+    for (int i = 0; i < FLUID + FLOOR; ++i) { /* a lattice with spacing 1; the floor is below 0 */
         double *position = i < FLUID ? x[i] : y[i - FLUID];
         position[0] = i % SIDE;
         position[1] = i / SIDE % SIDE;

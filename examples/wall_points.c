@@ -25,7 +25,7 @@ static void check(sphg_result result)
 
 int main(void)
 {
-    for (int i = 0; i < COUNT; i++) { /* a lattice with spacing 1; the floor begins at z = -0.5 */
+    for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1; the floor begins at z = -0.5 */
         point[i][0] = x[i][0] = i % SIDE;
         point[i][1] = x[i][1] = i / SIDE % SIDE;
         x[i][2] = i / SIDE / SIDE;

@@ -68,7 +68,7 @@ static int read_choice(const struct command_option *option, const char *text)
 {
     char list[256] = "";
     size_t length = 0;
-    for (int k = 0; option->words[k]; k++) {
+    for (int k = 0; option->words[k]; ++k) {
         if (strcmp(text, option->words[k]) == 0)
             return k;
         if (length < sizeof list)
@@ -128,7 +128,7 @@ static void open_file(const struct command_option *option, const char *path)
 /* Once all options are known to be good. */
 static void prepare_files(const struct command_option *options)
 {
-    for (; options->name; options++) {
+    for (; options->name; ++options) {
         if (options->kind != OPTION_FILE && options->kind != OPTION_FOLDER)
             continue;
         const char *path = *(const char **)options->value;
@@ -154,7 +154,7 @@ static error_t take(int key, char *text, struct argp_state *state)
         state->err_stream = NULL;
     if (key == ARGP_KEY_ARG)
         command_line_refuse("unexpected argument '%s'", text);
-    for (int k = 0; options[k].name; k++)
+    for (int k = 0; options[k].name; ++k)
         if (key == key_of(options, k)) {
             read_value(&options[k], text);
             return 0;
@@ -168,11 +168,11 @@ void command_line_read(const struct command_option *options, const char *about, 
     static char help[] = "--help";
     struct argp_option described[OPTIONS_MOST + 1] = {{0}};
     char doc[1024];
-    for (int k = 0; options[k].name && k < OPTIONS_MOST; k++)
+    for (int k = 0; options[k].name && k < OPTIONS_MOST; ++k)
         described[k] = (struct argp_option){
             options[k].name, key_of(options, k), options[k].argument, 0, options[k].help, 0};
     snprintf(doc, sizeof doc, "%s\v%s", about, end_of_help);
-    for (int k = 1; k < argc; k++)
+    for (int k = 1; k < argc; ++k)
         if (strcmp(argv[k], "-h") == 0)
             argv[k] = help;
     const struct argp argp = {.options = described, .parser = take, .doc = doc};

@@ -28,7 +28,7 @@ void lattice_fill(const struct lattice *lattice, struct numbers *positions)
     const int32_t count = lattice_count(lattice);
     const double step = floor(lattice->jitter * 4096) / 4096; /* exact steps of the spacing */
     uint64_t state = 1;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         int32_t rest = i;
         for (int32_t axis = 0; axis < lattice->dimension; axis++, rest /= lattice->side) {
             const double place = rest % lattice->side;
@@ -43,7 +43,7 @@ void lattice_fill(const struct lattice *lattice, struct numbers *positions)
 
 static void swap_rows(struct numbers *table, int32_t a, int32_t b)
 {
-    for (int32_t c = 0; c < table->width; c++) {
+    for (int32_t c = 0; c < table->width; ++c) {
         const double held = numbers_get(table, a, c);
         numbers_set(table, a, c, numbers_get(table, b, c));
         numbers_set(table, b, c, held);
@@ -53,6 +53,6 @@ static void swap_rows(struct numbers *table, int32_t a, int32_t b)
 void shuffle_rows(struct numbers *table)
 {
     uint64_t state = 2;
-    for (int32_t i = table->count - 1; i > 0; i--)
+    for (int32_t i = table->count - 1; i > 0; --i)
         swap_rows(table, i, (int32_t)(splitmix64(&state) % (uint64_t)(i + 1)));
 }

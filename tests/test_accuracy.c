@@ -43,14 +43,14 @@ static void every_shape_in_every_form_matches_the_oracle(const test_case *test)
     cloud points = cloud_jittered(d, d == 2 ? 6 : 3, .125, .3, &random);
     comparison on = comparison_of(test, "small block", points, 2.25 * points.spacing);
     setup_array table = comparison_table(&on);
-    for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
-        for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
+    for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape)
+        for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form)
             compare_field(&on, (sphg_shape)shape, (sphg_form)form, &table, 4);
 }
 
 static void hard_scenes_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         comparison on = comparison_of_scene(test, &scenes_hard[s]);
         setup_array table = comparison_table(&on);
         compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, NULL, 4);
@@ -64,13 +64,13 @@ static void every_instruction_set_matches_the_oracle(const test_case *test)
 {
     static const int chosen[] = {0, 7, 12};
     int used = 0;
-    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++)
-        for (int s = 0; s < 3; s++) {
+    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa)
+        for (int s = 0; s < 3; ++s) {
             comparison on = comparison_of_scene(test, &scenes_hard[chosen[s]]);
             on.context = setup_context_on((sphg_isa)isa);
             if (!on.context)
                 continue;
-            used++;
+            ++used;
             on.neighbors = setup_neighbors(on.context, test, &on.scheme, &on.points);
             setup_array table = comparison_table(&on);
             compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, NULL, 3);
@@ -82,9 +82,9 @@ static void every_instruction_set_matches_the_oracle(const test_case *test)
 
 static void every_policy_matches_the_oracle(const test_case *test)
 {
-    for (int s = 5; s < scenes_hard_count; s++) {
+    for (int s = 5; s < scenes_hard_count; ++s) {
         comparison made = comparison_of_scene(test, &scenes_hard[s]);
-        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
             comparison on = comparison_under(&made, (sphg_policy)policy, .0625);
             compare_field(&on, SPHG_VECTOR, SPHG_DIFFERENCE, NULL, 3);
         }
@@ -104,7 +104,7 @@ static comparison periodic_stage(const test_case *test)
     comparison on = comparison_of(test, "periodic block", points, .3125);
     setup_array positions = setup_positions(test, &on.points);
     sphg_geometry geometry = setup_geometry(test, &on.points, &positions);
-    for (int k = 0; k < d - 1; k++)
+    for (int k = 0; k < d - 1; ++k)
         geometry.period[k] = on.scene.period[k] = 1;
     on.neighbors = setup_search(on.context, &on.scheme, &geometry);
     on.reference = oracle_of(&on.scene);
@@ -128,8 +128,8 @@ static void compare_correction(const comparison *on, const setup_array *table, i
     quad square = 0;
     if (point->undecided)
         return;
-    for (int a = 0; a < d; a++)
-        for (int b = a; b < d; b++, k++) {
+    for (int a = 0; a < d; ++a)
+        for (int b = a; b < d; b++, ++k) {
             quad error = (quad)setup_get(table, i, k) - point->correction[a][b];
             square += error * error * (a == b ? 1 : 2);
         }
@@ -145,7 +145,7 @@ static void compare_correction(const comparison *on, const setup_array *table, i
 
 static void corrections_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         comparison on = comparison_of_scene(test, &scenes_hard[s]);
         setup_array table = comparison_table(&on);
         for (int k = 0; k < sample_count(&on, 6); k += test_reference_stride())
@@ -169,7 +169,7 @@ static void require_rank_and_moment(const comparison *on, int i, double rank, do
 
 static void ranks_and_smallest_moments_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         comparison on = comparison_of_scene(test, &scenes_hard[s]);
         setup_array rank = setup_output(SPHG_U8, on.points.count, 1);
         setup_array lambda = setup_output(test_field_type(test), on.points.count, 1);
@@ -182,7 +182,7 @@ static void ranks_and_smallest_moments_match_the_oracle(const test_case *test)
         SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
         double smallest = INFINITY;
         int64_t ranks[4] = {0};
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             ranks[(int)setup_get(&rank, i, 0) & 3]++;
             smallest = fmin(smallest, setup_get(&lambda, i, 0));
         }
@@ -231,7 +231,7 @@ static oracle_pair expected_pair(const oracle_point *point, int i, int j)
         memcpy(self.gradient, point->self_gradient, sizeof self.gradient);
         return self;
     }
-    for (int k = 0; k < point->pair_count; k++)
+    for (int k = 0; k < point->pair_count; ++k)
         if (point->pairs[k].j == j)
             return point->pairs[k];
     fail_msg("%d is no neighbour of %d", j, i);
@@ -243,7 +243,7 @@ static void compare_row(const comparison *on, const pair_list *list, int i)
     const oracle_point *point = oracle_at(on->reference, i);
     int64_t length = list->offsets[i + 1] - list->offsets[i];
     assert_int_equal(length, point->pair_count + (test_is_classic(on->test) ? 1 : 0));
-    for (int64_t p = list->offsets[i]; p < list->offsets[i + 1]; p++) {
+    for (int64_t p = list->offsets[i]; p < list->offsets[i + 1]; ++p) {
         int j = list->indices[p];
         TEST_REQUIRE(p == list->offsets[i] || list->indices[p - 1] < j, "row %d not ascending", i);
         oracle_pair exact = expected_pair(point, i, j);
@@ -286,12 +286,12 @@ static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
         int i = sampled(&on, k, 4);
         const oracle_point *point = oracle_at(on.reference, i);
         double correction[16];
-        for (int c = 0; c < width; c++)
+        for (int c = 0; c < width; ++c)
             correction[c] = setup_get(&table, i, c);
-        for (int p = 0; p < point->pair_count; p++) {
+        for (int p = 0; p < point->pair_count; ++p) {
             const oracle_pair *pair = &point->pairs[p];
             double x_ij[3], gradient[3];
-            for (int a = 0; a < d; a++)
+            for (int a = 0; a < d; ++a)
                 x_ij[a] = (double)pair->x[a];
             sphg_pair_gradient(&on.scheme, x_ij, on.scene.volume[pair->j],
                                width ? correction : NULL, gradient);
@@ -308,10 +308,10 @@ static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
 static void fused_sweep_equals_table_to_the_bit(const test_case *test)
 {
     static const int chosen[] = {0, 5, 7, 10};
-    for (int s = 0; s < 4; s++) {
+    for (int s = 0; s < 4; ++s) {
         comparison on = comparison_of_scene(test, &scenes_hard[chosen[s]]);
         setup_array table = comparison_table(&on);
-        for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; form++) {
+        for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; ++form) {
             comparison_field field = {SPHG_VECTOR, (sphg_form)form,
                                       comparison_random_field(&on, SPHG_VECTOR, 4)};
             comparison_result fused = comparison_apply(&on, &field, NULL);

@@ -32,7 +32,7 @@ static struct particles compressed_block(struct random *random)
     static const int32_t sides[3] = {7, 6, 5};
     struct particles block = particles_block(sides, 0.9, 0.05, 1000, random);
     block.rest_volume = 1;
-    for (int32_t i = 0; i < block.count; i++)
+    for (int32_t i = 0; i < block.count; ++i)
         particles_set_rest_density(&block, i, random_between(random, 0, 1) < 0.5 ? 1000 : 300);
     return block;
 }
@@ -49,7 +49,7 @@ static void pressure_between_phases_keeps_momentum(const test_case *test)
     pressure_prepare(&pressure, &block);
     pressure_keep_density(&pressure, &block, 1e-3);
     particles_momentum(&block, momentum);
-    for (int32_t i = 0; i < block.count; i++)
+    for (int32_t i = 0; i < block.count; ++i)
         sum += block.mass[i] * sqrt(dot(block.v[i], block.v[i]));
     assert_true(sum > 0);
     TEST_WITHIN(linear_momentum, sqrt(dot(momentum, momentum)) / sum / unit_roundoff,
@@ -66,14 +66,14 @@ static void pressure_takes_compression_away(const test_case *test)
     struct particles block = compressed_block(&random);
     struct pressure pressure = pressure_new(sph, NULL, block.count);
     double before = 0, after = 0;
-    for (int step = 0; step < 20; step++) {
+    for (int step = 0; step < 20; ++step) {
         pressure_prepare(&pressure, &block);
         after = 0;
-        for (int32_t i = 0; i < block.count; i++)
+        for (int32_t i = 0; i < block.count; ++i)
             after += fmax(0, pressure.compression[i] - 1) / block.count;
         before = step == 0 ? after : before;
         pressure_keep_density(&pressure, &block, 1e-3);
-        for (int32_t i = 0; i < block.count; i++)
+        for (int32_t i = 0; i < block.count; ++i)
             add_scaled(block.x[i], 1e-3, block.v[i]);
     }
     TEST_REQUIRE(before > 0.1 && after < 0.01 * before, "mean compression %g became %g", before,
@@ -97,11 +97,11 @@ static void wall_is_felt_within_its_support_only(const test_case *test)
     struct contact contact = contact_new(sph, &wall, fluid.count);
     fluid.x[0][2] = 1.01;
     fluid.x[1][2] = 0.5;
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         wall.v[k][0] = 7;
-    for (int32_t i = 0; i < fluid.count; i++)
+    for (int32_t i = 0; i < fluid.count; ++i)
         particles_set_rest_density(&fluid, i, 1000);
-    for (int repetition = 0; repetition < 2; repetition++) { /* zeroes what an earlier call left */
+    for (int repetition = 0; repetition < 2; ++repetition) { /* zeroes what an earlier call left */
         contact_update(sph, &contact, &fluid);
         const int far = repetition, near = 1 - repetition;
         assert_int_equal(contact.touching[far], 0);
@@ -127,13 +127,13 @@ static void samples_keep_their_distance(const test_case *test)
     vector *samples[2];
     const int32_t counts[2] = {sample_rectangle(&random, low, high, distance, &samples[0]),
                                sample_sphere(&random, 0.5, distance, &samples[1])};
-    for (int kind = 0; kind < 2; kind++) {
+    for (int kind = 0; kind < 2; ++kind) {
         const double area = kind ? 3.14159 : 2;
         /* discs of a Poisson-disk sample cover about 0.55 of the area */
         TEST_REQUIRE(counts[kind] > 0.6 * area / (distance * distance), "only %d samples",
                      (int)counts[kind]);
-        for (int32_t i = 0; i < counts[kind]; i++)
-            for (int32_t j = 0; j < i; j++) {
+        for (int32_t i = 0; i < counts[kind]; ++i)
+            for (int32_t j = 0; j < i; ++j) {
                 vector apart = {0};
                 add_scaled(apart, 1, samples[kind][i]);
                 add_scaled(apart, -1, samples[kind][j]);
@@ -153,20 +153,20 @@ static void nearest_rotation_is_proper_even_of_reflections(const test_case *test
     struct random random = {7};
     struct sph *sph = open_context(1, SPHG_PLAIN);
     struct rotations rotations = rotations_new(COUNT);
-    for (int i = 0; i < COUNT; i++)
-        for (int k = 0; k < 9; k++)
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < 9; ++k)
             matrices[i][k] = random_between(&random, -1, 1);
     rotations_find(sph, &rotations, COUNT, matrices, found);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         const double *r = found[i];
         vector normal, product = {0};
         double worst = 0;
         cross(r + 3, r + 6, normal);
         worst = test_larger(worst, fabs(dot(r, normal) - 1)); /* det R = 1 */
-        for (int a = 0; a < 3; a++)
-            for (int b = 0; b < 3; b++)
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b)
                 worst = test_larger(worst, fabs(dot(r + 3 * a, r + 3 * b) - (a == b)));
-        for (int a = 0; a < 3; a++) /* F R^T is symmetric */
+        for (int a = 0; a < 3; ++a) /* F R^T is symmetric */
             product[a] = dot(matrices[i] + 3 * a, r + 3 * ((a + 1) % 3)) -
                          dot(matrices[i] + 3 * ((a + 1) % 3), r + 3 * a);
         worst = test_larger(worst, sqrt(dot(product, product)));
@@ -178,7 +178,7 @@ static void nearest_rotation_is_proper_even_of_reflections(const test_case *test
 static void stretch(void *data, double *x, double *result)
 {
     const int32_t count = *(const int32_t *)data;
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         result[k] = (1 + k % 3) * x[k];
 }
 
@@ -188,11 +188,11 @@ static void conjugate_gradients_take_a_step_per_eigenvalue(const test_case *test
     int32_t count = 30;
     double b[30], x[30] = {0}, work[90];
     struct random random = {8};
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         b[k] = random_between(&random, -1, 1);
     const struct conjugate_gradient system = {stretch, &count, count, 1e-13, 50, work};
     assert_int_equal(conjugate_gradient(&system, b, x), 3);
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         TEST_WITHIN(exact_iterations, fabs((1 + k % 3) * x[k] - b[k]) / unit_roundoff, "A x - b");
     assert_int_equal(conjugate_gradient(&system, b, x), 0); /* from the solution */
 }

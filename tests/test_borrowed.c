@@ -50,7 +50,7 @@ static void compare_offer(const comparison *on, const second_order *found, const
 static void compare_lent(const comparison *on, const second_order *found, int i)
 {
     const double c = setup_get(&found->curvature, i, 0);
-    for (int k = 0; k < found->hessian.width; k++) {
+    for (int k = 0; k < found->hessian.width; ++k) {
         double product = c * setup_get(&found->hessian, i, k);
         if (test_field_type(on->test) == SPHG_F32)
             product = (double)(float)product;
@@ -62,9 +62,9 @@ static void compare_lent(const comparison *on, const second_order *found, int i)
 static void results_match_the_oracle(const test_case *test)
 {
     int borrowers = 0, lenders = 0;
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
-        for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
+        for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); ++shape) {
             const double *numbers = comparison_random_field(&on, (sphg_shape)shape, 3);
             const second_order first =
                 apply(&on, (sphg_shape)shape, numbers, (second_order_how){0});
@@ -90,9 +90,9 @@ static void results_match_the_oracle(const test_case *test)
 static void every_policy_and_instruction_set_matches_the_oracle(const test_case *test)
 {
     static const int chosen[] = {0, 5, 10};
-    for (int s = 0; s < 3; s++)
-        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
-            for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (int s = 0; s < 3; ++s)
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy)
+            for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
                 const comparison made = comparison_of_scene(test, &scenes_hard[chosen[s]]);
                 comparison on =
                     second_order_comparison(comparison_under(&made, (sphg_policy)policy, .0625));
@@ -104,7 +104,7 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
                           width = 1 + test->dimension * second_order_pairs(test->dimension);
                 double *lent = test_memory((size_t)(n * width) * sizeof *lent);
                 random_state random = random_seeded(8);
-                for (int k = 0; k < n * width; k++)
+                for (int k = 0; k < n * width; ++k)
                     lent[k] = (double)(float)random_between(&random, k % width ? -9 : 0,
                                                             k % width ? 9 : 1);
                 const setup_array given = setup_numbers(test_field_type(test), n, width, lent);
@@ -127,7 +127,7 @@ static comparison block_of(const test_case *test, int per_axis, double support, 
     const double spacing = 2. / per_axis;
     random_state random = random_seeded(5);
     cloud points = cloud_lattice(d, per_axis, spacing);
-    for (int k = 0; k < points.count * d; k++)
+    for (int k = 0; k < points.count * d; ++k)
         points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing +
                       (jitter > 0 ? jitter * spacing * random_between(&random, -1, 1) : 0);
     const comparison on = comparison_of(test, "block", points, support * spacing * (1 + 1e-6));
@@ -142,7 +142,7 @@ static comparison block_of(const test_case *test, int per_axis, double support, 
     const sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     SETUP_OK(on.context, sphg_evaluate(on.context, &plain, &request));
-    for (int i = 0; i < points.count; i++)
+    for (int i = 0; i < points.count; ++i)
         volumes[i] = 1 / volumes[i];
     return second_order_comparison(comparison_with_volumes(&on, volumes));
 }
@@ -150,7 +150,7 @@ static comparison block_of(const test_case *test, int per_axis, double support, 
 static int is_boundary(const comparison *on, int i)
 {
     const int d = on->points.dimension;
-    for (int a = 0; a < d; a++)
+    for (int a = 0; a < d; ++a)
         if (1 - fabs(on->points.x[i * d + a]) < 2 * on->points.spacing)
             return 1;
     return 0;
@@ -179,15 +179,15 @@ static errors errors_of(const comparison *on, const second_order *found)
 {
     const int d = on->points.dimension, n = on->points.count;
     errors worst = {0};
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         double value[2], slope[4], laplacian[2], square = 0;
         wave(d, on->points.x + i * d, value, slope, laplacian);
-        for (int k = 0; k < found->gradient.width; k++)
+        for (int k = 0; k < found->gradient.width; ++k)
             square += pow(setup_get(&found->gradient, i, k) - slope[k], 2);
         double *most = is_boundary(on, i) ? &worst.boundary : &worst.inside;
         *most = test_larger(*most, sqrt(square));
         worst.mean += sqrt(square) / n;
-        for (int c = 0; c < found->laplacian.width && is_boundary(on, i); c++)
+        for (int c = 0; c < found->laplacian.width && is_boundary(on, i); ++c)
             worst.laplacian = test_larger(worst.laplacian,
                                           fabs(setup_get(&found->laplacian, i, c) - laplacian[c]));
     }
@@ -198,7 +198,7 @@ static double *waves_on(const comparison *on)
 {
     const int d = on->points.dimension, width = d == 2 ? 2 : 1;
     double *numbers = test_memory((size_t)(on->points.count * width) * sizeof *numbers);
-    for (int i = 0; i < on->points.count; i++) {
+    for (int i = 0; i < on->points.count; ++i) {
         double slope[4], laplacian[2];
         wave(d, on->points.x + i * d, numbers + i * width, slope, laplacian);
     }
@@ -213,14 +213,14 @@ static errors errors_after(const comparison *on, int passes, sphg_stats *stats)
     second_order found = apply(on, shape, numbers, (second_order_how){0});
     const sphg_subset open = sphg_masked(found.borrows.data, on->points.count);
     *stats = found.stats;
-    for (int pass = 0; pass < passes; pass++) {
+    for (int pass = 0; pass < passes; ++pass) {
         second_order next = apply(on, shape, numbers,
                                   (second_order_how){.lent = &found.curvature, .subset = &open});
         const setup_array *from[] = {&found.gradient, &found.laplacian, &found.curvature};
         setup_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
-        for (int k = 0; k < 3; k++)
-            for (int i = 0; i < on->points.count; i++)
-                for (int c = 0; c < to[k]->width && setup_get(&found.borrows, i, 0) == 0; c++)
+        for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < on->points.count; ++i)
+                for (int c = 0; c < to[k]->width && setup_get(&found.borrows, i, 0) == 0; ++c)
                     setup_put(to[k], i * to[k]->width + c, setup_get(from[k], i, c));
         next.borrows = found.borrows;
         found = next;
@@ -268,7 +268,7 @@ static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
         {SPHG_RKPM, 40, 2, .09077, .02224, .02234, .011212, 1.3263, 1444},
         {SPHG_RKPM, 80, 2, .04526, .00570, .00572, .002811, .6787, 6084},
     };
-    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++)
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; ++g)
         check_gate(test, &gates[g]);
 }
 
@@ -279,7 +279,7 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
         {SPHG_KGC, 24, 2, .20425, .05889, .06030, .032273, 2.7002, 10648},
         {SPHG_RKPM, 12, 2, .53055, .19199, .19567, .124337, 4.7444, 1000},
     };
-    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++)
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; ++g)
         check_gate(test, &gates[g]);
 }
 
@@ -290,7 +290,7 @@ static void jitter_keeps_the_second_order(const test_case *test)
         int per_axis;
         double alone, borrowed, mean;
     } known[] = {{24, .178, .078, .0209}, {36, .125, .0335, .0093}, {48, .090, .0185, .0052}};
-    for (int k = 0; k < (test_is_shared() ? 2 : 3); k++) {
+    for (int k = 0; k < (test_is_shared() ? 2 : 3); ++k) {
         const comparison on = block_of(test, known[k].per_axis, 2, .2);
         sphg_stats stats;
         const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
@@ -310,9 +310,9 @@ static double distance_from_exact(const comparison *on, const second_order *foun
     const int d = on->points.dimension;
     double slope[3], square = 0;
     second_order_slope_at(&on->points, i, slope);
-    for (int a = 0; a < d; a++)
+    for (int a = 0; a < d; ++a)
         square += pow(setup_get(&found->gradient, i, a) - slope[a], 2);
-    for (int k = 0; k < second_order_pairs(d); k++)
+    for (int k = 0; k < second_order_pairs(d); ++k)
         square += pow(on->scheme.support_radius *
                           (setup_get(&found->hessian, i, k) - second_order_second[k]),
                       2);
@@ -322,7 +322,7 @@ static double distance_from_exact(const comparison *on, const second_order *foun
 static int exact_ones(const comparison *on, const second_order *found)
 {
     int count = 0;
-    for (int i = 0; i < on->points.count; i++)
+    for (int i = 0; i < on->points.count; ++i)
         count += distance_from_exact(on, found, i) < 1e-10;
     return count;
 }
@@ -357,7 +357,7 @@ static void each_pass_makes_more_exact(const test_case *test)
     second_order found = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
     int before = exact_ones(&on, &found);
     const int first = before;
-    for (int pass = 0; pass < 3; pass++) {
+    for (int pass = 0; pass < 3; ++pass) {
         const second_order next =
             apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &found.curvature});
         const int now = exact_ones(&on, &next);
@@ -379,8 +379,8 @@ static void linear_fields_are_left_alone(const test_case *test)
     const second_order first = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
     const second_order found =
         apply(&on, SPHG_SCALAR, numbers, (second_order_how){.lent = &first.curvature});
-    for (int i = 0; i < on.points.count; i++)
-        for (int a = 0; a < d && setup_get(&found.rank, i, 0) >= d; a++)
+    for (int i = 0; i < on.points.count; ++i)
+        for (int a = 0; a < d && setup_get(&found.rank, i, 0) >= d; ++a)
             TEST_WITHIN(linear_with_lenders,
                         fabs(setup_get(&found.gradient, i, a) - second_order_slopes[a]) /
                             on.scene.unit,
@@ -400,21 +400,21 @@ static void who_is_lent_nothing_keeps_every_bit(const test_case *test)
                             cloud_single(d),
                             cloud_pair(d, .3),
                             cloud_coincident(d, 3, 1, .25)};
-    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
+    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; ++c) {
         const comparison on = second_order_comparison(
             comparison_of(test, test_text("cloud %d", (int)c), clouds[c], .5));
         const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 11);
         const second_order first = apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
         const int width = first.curvature.width;
         double *lent = test_memory((size_t)(on.points.count * width) * sizeof *lent);
-        for (int k = 0; k < on.points.count * width && c > 0; k++)
+        for (int k = 0; k < on.points.count * width && c > 0; ++k)
             lent[k] = setup_get(&first.curvature, k / width, k % width);
         const setup_array given =
             setup_numbers(test_field_type(test), on.points.count, width, lent);
         const second_order found =
             apply(&on, SPHG_VECTOR, numbers, (second_order_how){.lent = &given});
         second_order_require_same_bits(&first, &found, on.name);
-        for (int i = 0; i < on.points.count && c > 0; i++)
+        for (int i = 0; i < on.points.count && c > 0; ++i)
             TEST_REQUIRE(setup_get(&found.curvature, i, 0) == 0 &&
                              setup_get(&found.borrows, i, 0) == 1,
                          "particle %d, %s", i, on.name);
@@ -446,21 +446,21 @@ static void a_mask_of_borrowers_leaves_nothing_out(const test_case *test)
     const sphg_subset few = sphg_listed(chosen, 3);
     const second_order apart = apply(&on, SPHG_VECTOR, numbers,
                                      (second_order_how){.lent = &first.curvature, .subset = &few});
-    for (int k = 0; k < 3; k++)
-        for (int c = 0; c < all.hessian.width; c++)
+    for (int k = 0; k < 3; ++k)
+        for (int c = 0; c < all.hessian.width; ++c)
             TEST_REQUIRE(setup_get(&apart.hessian, chosen[k], c) ==
                              setup_get(&all.hessian, chosen[k], c),
                          "target %d", chosen[k]);
     int borrowers = 0;
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         const int borrows = (int)setup_get(&first.borrows, i, 0);
         borrowers += borrows;
         TEST_REQUIRE(borrows || setup_is_canary(&masked.gradient, i), "target %d is written", i);
         const second_order *expected = borrows ? &masked : &first;
-        for (int k = 0; k < all.hessian.width; k++)
+        for (int k = 0; k < all.hessian.width; ++k)
             TEST_REQUIRE(setup_get(&all.hessian, i, k) == setup_get(&expected->hessian, i, k),
                          "Hessian of %d", i);
-        for (int k = 0; k < all.gradient.width; k++)
+        for (int k = 0; k < all.gradient.width; ++k)
             TEST_REQUIRE(setup_get(&all.gradient, i, k) == setup_get(&expected->gradient, i, k),
                          "gradient of %d", i);
     }
@@ -489,7 +489,7 @@ static void fields_borrow_each_for_itself(const test_case *test)
     sphg_field fields[3];
     sphg_view lenders[3];
     second_order found[3];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         found[k] = second_order_outputs(&on, SPHG_SCALAR, 1);
         fields[k] = (sphg_field){.shape = SPHG_SCALAR, .at_sources = &at_sources};
         second_order_ask(&found[k], &fields[k]);
@@ -500,7 +500,7 @@ static void fields_borrow_each_for_itself(const test_case *test)
     const sphg_request request = {
         .sources = &sources, .fields = fields, .set_count = 1, .field_count = 3};
     SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         second_order_require_same_bits(expected[k], &found[k], test_text("field %d", k));
 }
 
@@ -535,7 +535,7 @@ static second_order apply_parts(const comparison *on, const sphg_view *values, c
     const second_order found = second_order_outputs(on, SPHG_SCALAR, 1);
     sphg_sources sets[2];
     sphg_view at_sources[2], lenders[2];
-    for (int s = 0; s < count; s++)
+    for (int s = 0; s < count; ++s)
         sets[s] = parts[s].set, at_sources[s] = parts[s].at_sources, lenders[s] = parts[s].lenders;
     sphg_field field = {.shape = SPHG_SCALAR, .at_sources = at_sources, .lenders = lenders};
     second_order_ask(&found, &field);
@@ -551,9 +551,9 @@ static second_order apply_parts(const comparison *on, const sphg_view *values, c
 static void require_alike(const setup_array *a, const setup_array *b, const char *where)
 {
     double largest = 0;
-    for (int k = 0; k < a->count * a->width; k++)
+    for (int k = 0; k < a->count * a->width; ++k)
         largest = fmax(largest, fabs(setup_get(a, k / a->width, k % a->width)));
-    for (int k = 0; k < a->count * a->width; k++)
+    for (int k = 0; k < a->count * a->width; ++k)
         TEST_WITHIN(lent_by_two_sets,
                     fabs(setup_get(a, k / a->width, k % a->width) -
                          setup_get(b, k / a->width, k % a->width)) /
@@ -575,10 +575,10 @@ static void source_sets_lend_each_for_itself(const test_case *test)
     const setup_array held = setup_numbers(test_field_type(test), n, 1, numbers);
     const sphg_view positions = setup_view(&places), values = setup_view(&held);
     second_order all[2];
-    for (int lend = 0; lend < 2; lend++) {
+    for (int lend = 0; lend < 2; ++lend) {
         double *lent = setup_doubles(&first.curvature);
         const int width = first.curvature.width;
-        for (int k = half * width; k < n * width && !lend; k++)
+        for (int k = half * width; k < n * width && !lend; ++k)
             lent[k] = 0;
         const setup_array given = setup_numbers(test_field_type(test), n, width, lent);
         const part whole = part_of(&on, &positions, &values, &given, 0, n);
@@ -632,11 +632,11 @@ static void evaluate_slide(slide *on, int passes)
     const double one = 1;
     const sphg_sources sources = {.neighbors = on->neighbors, .volume = sphg_same_f64(&one)};
     const sphg_view at_sources = sphg_view_f64(on->value, 8);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         const double *x = on->points.x + i * d, y = x[1], z = d == 3 ? x[2] : 0;
         on->value[i] = sin(1.3 * x[0]) + .5 * y * y + .3 * x[0] * y + .4 * z * z - .2 * y * z;
     }
-    for (int pass = 0; pass <= passes; pass++) {
+    for (int pass = 0; pass <= passes; ++pass) {
         const sphg_view lenders = sphg_view_f64(on->lent[pass % 2][0], sizeof on->lent[0][0]);
         sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &at_sources};
         field.gradient = sphg_view_f64(on->gradient[0], sizeof on->gradient[0]);
@@ -657,7 +657,7 @@ static double largest_step(const test_case *test, int per_axis, int along, int p
     const int d = test->dimension, n = on.points.count, width = d + second_order_pairs(d);
     double(*before)[9] = test_memory((size_t)n * sizeof *before), worst = 0;
     const double h2 = on.scheme.support_radius * on.scheme.support_radius;
-    for (int step = 0; step <= steps; step++) {
+    for (int step = 0; step <= steps; ++step) {
         const double at = (double)step / steps;
         const double x[] = {along ? -1.9 : -3 + 3.4 * at, along ? -2.5 + (per_axis + 4) * at : 1.37,
                             .61};
@@ -667,8 +667,8 @@ static double largest_step(const test_case *test, int per_axis, int along, int p
         SETUP_OK(on.context,
                  sphg_neighbors_search(on.context, on.neighbors, &on.scheme, &geometry));
         evaluate_slide(&on, passes);
-        for (int i = 0; i < n; i++)
-            for (int k = 0; k < width; k++) {
+        for (int i = 0; i < n; ++i)
+            for (int k = 0; k < width; ++k) {
                 const double now = k < d ? on.gradient[i][k] : h2 * on.hessian[i][k - d] / 5;
                 if (step)
                     worst = test_larger(worst, fabs(now - before[i][k]));
@@ -686,7 +686,7 @@ static void a_sliding_neighbour_makes_no_jump(const test_case *test)
     } ways[] = {{0, 0}, {0, 1}, {1, 1}, {0, 2}};
     const int steps = test_reference_stride() > 1 ? 2000 : 20000;
     const double most = random_chosen() ? .02 : .01; /* another block: .014 */
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const int per_axis = test->dimension == 2 ? 5 : 3;
         const double once = largest_step(test, per_axis, ways[k].along, ways[k].passes, steps / 2);
         const double twice = largest_step(test, per_axis, ways[k].along, ways[k].passes, steps);
@@ -741,7 +741,7 @@ static void what_cannot_be_borrowed_is_refused_by_name(const test_case *test)
     request.correction = setup_view(&wanted_table);
     require_refused(&on, &borrows, &request, &on.scheme, "lenders beside a wanted correction");
     request.correction = sphg_absent();
-    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
         lends.form = borrows.form = (sphg_form)form;
         require_refused(&on, &lends, &request, &on.scheme, "difference form");
         require_refused(&on, &borrows, &request, &on.scheme, "difference form");

@@ -45,7 +45,7 @@ static comparison_result direct_of(const comparison *on, const double *numbers)
 static double *ones(const comparison *on)
 {
     double *numbers = test_memory((size_t)on->points.count * sizeof *numbers);
-    for (int i = 0; i < on->points.count; i++)
+    for (int i = 0; i < on->points.count; ++i)
         numbers[i] = 1;
     return numbers;
 }
@@ -55,15 +55,15 @@ static double *ones(const comparison *on)
 
 static void shape_functions_sum_to_one_and_their_gradients_to_zero(const test_case *test)
 {
-    for (int s = 0; s < classic_scene_count; s++) {
+    for (int s = 0; s < classic_scene_count; ++s) {
         comparison made = stage_at(test, s);
-        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
             comparison on = comparison_under(&made, (sphg_policy)policy, 0);
             comparison_result found = direct_of(&on, ones(&on));
-            for (int i = 0; i < on.points.count; i++) {
+            for (int i = 0; i < on.points.count; ++i) {
                 double error = fabs(setup_get(&found.value, i, 0) - 1) / on.scene.unit;
                 TEST_WITHIN(partition_of_unity, error, test_text("sum Phi, %s", on.name));
-                for (int k = 0; k < test->dimension; k++) {
+                for (int k = 0; k < test->dimension; ++k) {
                     error = fabs(setup_get(&found.gradient, i, k)) * on.scheme.support_radius;
                     TEST_WITHIN(gradients_of_unity, error / on.scene.unit,
                                 test_text("sum grad Phi, %s", on.name));
@@ -89,7 +89,7 @@ static double shepard_of_pair(const comparison *on, int i, const double *field)
     const double *x = on->points.x, *v = on->scene.volume;
     int d = on->points.dimension, j = 1 - i;
     double square = 0;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         square += (x[k] - x[d + k]) * (x[k] - x[d + k]);
     double own = kernel_at(on, 0), other = kernel_at(on, sqrt(square));
     if (on->scheme.method == SPHG_CRKPM)
@@ -104,7 +104,7 @@ static void nothing_kept_leaves_the_shepard_average(const test_case *test)
         comparison_under(&made, SPHG_IDENTITY, 0); /* a pair has no full rank: all is dropped */
     double field[] = {3, -1};
     comparison_result found = direct_of(&on, field);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; ++i) {
         double error = fabs(setup_get(&found.value, i, 0) - shepard_of_pair(&on, i, field));
         TEST_WITHIN(shepard_value, error / on.scene.unit / 3, "pair");
     }
@@ -117,7 +117,7 @@ static void lonely_particles_keep_their_value_and_have_no_gradient(const test_ca
     comparison_result found = direct_of(&on, field);
     double error = fabs(setup_get(&found.value, 0, 0) - 2.5);
     TEST_WITHIN(shepard_value, error / on.scene.unit / 2.5, "single");
-    for (int k = 0; k < test->dimension; k++)
+    for (int k = 0; k < test->dimension; ++k)
         assert_true(setup_get(&found.gradient, 0, k) == 0);
 }
 
@@ -125,12 +125,12 @@ static void coincident_particles_share_their_mean(const test_case *test)
 {
     comparison on = stage_at(test, 6);
     double *volume = test_memory((size_t)on.points.count * sizeof *volume);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         volume[i] = .0625;
     on = comparison_with_volumes(&on, volume);
     double field[] = {1, 2, 3, 6};
     comparison_result found = direct_of(&on, field);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         TEST_WITHIN(shepard_value, fabs(setup_get(&found.value, i, 0) - 3) / on.scene.unit / 6,
                     "coincident");
 }
@@ -141,21 +141,21 @@ static void kept_directions_stay_exact(const test_case *test)
     int d = test->dimension;
     static const int flat[] = {1, 3};
     static const double slope[] = {2, -3, .5};
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         comparison on = stage_at(test, flat[s]);
         const double *x = on.points.x;
         double *field = test_memory((size_t)on.points.count * sizeof *field);
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             field[i] = 1;
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 field[i] += slope[k] * x[i * d + k];
         }
         comparison_result found = direct_of(&on, field);
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             double error = fabs(setup_get(&found.value, i, 0) - field[i]);
             TEST_WITHIN(linear_value, error / (8 * on.scene.unit), test_text("on a %s", on.name));
             double along = field[0] - field[1]; /* from the first point to the second */
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 along += setup_get(&found.gradient, i, k) * (x[d + k] - x[k]);
             TEST_WITHIN(linear_value, fabs(along) / (8 * on.scene.unit),
                         test_text("along a %s", on.name));
@@ -171,13 +171,13 @@ static void values_of_linear_fields_are_exact_at_full_rank(const test_case *test
     cloud_snap(&points, 0x1p-10);
     comparison on = comparison_of(test, "block", points, .75);
     double *field = test_memory((size_t)points.count * sizeof *field), largest = 0;
-    for (int i = 0; i < points.count; i++) {
-        for (int k = 0; k < d; k++)
+    for (int i = 0; i < points.count; ++i) {
+        for (int k = 0; k < d; ++k)
             field[i] += (k + 1) * points.x[i * d + k];
         largest = fmax(largest, fabs(field[i]));
     }
     comparison_result found = direct_of(&on, field);
-    for (int i = 0; i < points.count; i++) {
+    for (int i = 0; i < points.count; ++i) {
         double error = fabs(setup_get(&found.value, i, 0) - field[i]);
         TEST_WITHIN(linear_value, error / on.scene.unit / largest, "value in a block");
     }
@@ -196,7 +196,7 @@ static void own_shape_function_has_a_gradient(const test_case *test)
         comparison_field asked = {SPHG_SCALAR, SPHG_DIRECT, field};
         comparison_result found = comparison_apply(&on, &asked, NULL);
         comparison_compare(&on, &asked, &found, i);
-        for (int k = 0; k < test->dimension; k++)
+        for (int k = 0; k < test->dimension; ++k)
             visible = fmax(visible, fabs(setup_get(&found.gradient, i, k)));
         field[i] = 0;
     }
@@ -239,7 +239,7 @@ static void without_weights_everything_is_zero_and_reported(const test_case *tes
     assert_int_equal(setup_get(&rank, 1, 0), 0);
     assert_true(setup_get(&value, 0, 0) > 0);
     assert_true(setup_get(&value, 1, 0) == 0);
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         assert_true(setup_get(&gradient, 1, k) == 0);
 }
 

@@ -32,7 +32,7 @@ static comparison thin_stage(const test_case *test)
     random_state random = random_seeded(32);
     int d = test->dimension;
     cloud points = cloud_sheets(d, d == 2 ? 16 : 6, .25, .05);
-    for (int k = 0; k < points.count * d; k++)
+    for (int k = 0; k < points.count * d; ++k)
         if (k % d < d - 1)
             points.x[k] += random_between(&random, -.05, .05);
     return comparison_of(test, "thin sheets", points, .625);
@@ -41,7 +41,7 @@ static comparison thin_stage(const test_case *test)
 static comparison at_equal_density(comparison on)
 {
     double *density = test_memory((size_t)on.points.count * sizeof *density);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         density[i] = 1.25;
     on.density = setup_numbers(test_field_type(on.test), on.points.count, 1, density);
     on.scene.density = density;
@@ -55,7 +55,7 @@ static int has_full_rank(const comparison *on)
     sphg_sources sources = comparison_sources(on);
     SETUP_OK(on->context, sphg_correction(on->context, &on->scheme, &sources, NULL,
                                           setup_view(&table), setup_view(&rank)));
-    for (int i = 0; i < on->points.count; i++)
+    for (int i = 0; i < on->points.count; ++i)
         if (setup_get(&rank, i, 0) != on->points.dimension)
             return 0;
     return 1;
@@ -78,7 +78,7 @@ static double *forces_of(const comparison *on, sphg_shape shape, sphg_form form)
     comparison_field field = {shape, form, comparison_random_field(on, shape, 17)};
     comparison_result found = comparison_apply(on, &field, form == SPHG_DIFFERENCE ? NULL : &table);
     double *force = setup_doubles(shape == SPHG_SCALAR ? &found.gradient : &found.divergence);
-    for (int k = 0; k < on->points.count * d && form != SPHG_ADJOINT; k++)
+    for (int k = 0; k < on->points.count * d && form != SPHG_ADJOINT; ++k)
         force[k] *= on->scene.volume[k / d];
     return force;
 }
@@ -87,9 +87,9 @@ static double linear_imbalance(const comparison *on, const double *force)
 {
     int d = on->points.dimension;
     balance sums = {{0}, 0};
-    for (int i = 0; i < on->points.count; i++) {
+    for (int i = 0; i < on->points.count; ++i) {
         double square = 0;
-        for (int k = 0; k < d; k++) {
+        for (int k = 0; k < d; ++k) {
             sums.sum[k] += force[i * d + k];
             square += force[i * d + k] * force[i * d + k];
         }
@@ -102,7 +102,7 @@ static double angular_imbalance(const comparison *on, const double *force)
 {
     int d = on->points.dimension;
     balance sums = {{0}, 0};
-    for (int i = 0; i < on->points.count; i++) {
+    for (int i = 0; i < on->points.count; ++i) {
         const double *x = on->points.x + i * d, *f = force + i * d;
         double torque[3] = {x[0] * f[1] - x[1] * f[0], 0, 0}, lever = x[0] * x[0] + x[1] * x[1];
         double size = f[0] * f[0] + f[1] * f[1];
@@ -112,7 +112,7 @@ static double angular_imbalance(const comparison *on, const double *force)
             lever += x[2] * x[2];
             size += f[2] * f[2];
         }
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; ++k)
             sums.sum[k] += torque[k];
         sums.size += sqrt(lever * size);
     }
@@ -143,7 +143,7 @@ static void require_angular_lost(const comparison *on, sphg_shape shape, sphg_fo
 static void adjoint_conserves_linear_momentum(const test_case *test)
 {
     comparison stages[] = {full_rank_stage(test), thin_stage(test)};
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         require_linear(&stages[s], SPHG_SCALAR, SPHG_ADJOINT, "scalar");
         require_linear(&stages[s], SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric");
         require_linear(&stages[s], SPHG_TENSOR, SPHG_ADJOINT, "tensor");
@@ -153,7 +153,7 @@ static void adjoint_conserves_linear_momentum(const test_case *test)
 static void symmetric_conserves_linear_momentum(const test_case *test)
 {
     comparison stages[] = {full_rank_stage(test), thin_stage(test)};
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         require_linear(&stages[s], SPHG_SCALAR, SPHG_SYMMETRIC, "scalar");
         require_linear(&stages[s], SPHG_TENSOR, SPHG_SYMMETRIC, "tensor");
     }
@@ -222,7 +222,7 @@ static void symmetric_is_adjoint_at_equal_density(const test_case *test)
     double *adjoint = forces_of(&on, SPHG_SCALAR, SPHG_ADJOINT);
     require_angular(&on, SPHG_SCALAR, SPHG_SYMMETRIC, "scalar, equal density");
     double largest = 0, error = 0;
-    for (int k = 0; k < on.points.count * test->dimension; k++) {
+    for (int k = 0; k < on.points.count * test->dimension; ++k) {
         largest = fmax(largest, fabs(adjoint[k]));
         error = fmax(error, fabs(symmetric[k] - adjoint[k]));
     }
@@ -244,15 +244,15 @@ static double work_imbalance(const comparison *on, sphg_shape shape)
                       push = comparison_apply(on, &stress, &table);
     const setup_array *force = shape == SPHG_SCALAR ? &push.gradient : &push.divergence;
     double work = 0, size = 0;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         const double *s = stress.numbers + i * setup_width(shape, d);
-        for (int k = 0; k < d * d; k++) {
+        for (int k = 0; k < d * d; ++k) {
             double share = shape == SPHG_TENSOR ? s[k] : k % (d + 1) == 0 ? s[0] : 0;
             double term = on->scene.volume[i] * share * setup_get(&rate.gradient, i, k);
             work += term;
             size += fabs(term);
         }
-        for (int k = 0; k < d; k++)
+        for (int k = 0; k < d; ++k)
             work += motion.numbers[i * d + k] * setup_get(force, i, k);
     }
     return fabs(work) / size;
@@ -261,7 +261,7 @@ static double work_imbalance(const comparison *on, sphg_shape shape)
 static void adjoint_is_the_negative_adjoint_of_difference(const test_case *test)
 {
     comparison stages[] = {full_rank_stage(test), thin_stage(test)};
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         double u = stages[s].scene.unit;
         TEST_WITHIN(adjointness, work_imbalance(&stages[s], SPHG_SCALAR) / u, stages[s].name);
         TEST_WITHIN(adjointness, work_imbalance(&stages[s], SPHG_TENSOR) / u, stages[s].name);
@@ -281,8 +281,8 @@ static void adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient(const t
     comparison_result slope = comparison_apply(&on, &phi, &table),
                       outflow = comparison_apply(&on, &flux, &table);
     double work = 0, size = 0;
-    for (int i = 0; i < on.points.count; i++) {
-        for (int k = 0; k < d; k++) {
+    for (int i = 0; i < on.points.count; ++i) {
+        for (int k = 0; k < d; ++k) {
             double term =
                 on.scene.volume[i] * flux.numbers[i * d + k] * setup_get(&slope.gradient, i, k);
             work += term;
@@ -302,10 +302,10 @@ static void order_2_conserves_what_order_1_does(const test_case *test)
     const comparison whole = full_rank_stage(test);
     comparison stages[] = {whole, thin_stage(test),
                            comparison_lacking(&whole, COMPARISON_CUT_AT_BOTH_ENDS)};
-    for (int s = 0; s < 3; s++) {
+    for (int s = 0; s < 3; ++s) {
         comparison *on = &stages[s];
         on->scheme.order = 2;
-        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
             require_linear(on, SPHG_SCALAR, (sphg_form)form, "scalar");
             require_linear(on, SPHG_TENSOR, (sphg_form)form, "tensor");
         }
@@ -325,7 +325,7 @@ static void lists_cut_at_both_ends_conserve(const test_case *test)
 {
     const comparison whole = full_rank_stage(test);
     const comparison on = comparison_lacking(&whole, COMPARISON_CUT_AT_BOTH_ENDS);
-    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
         require_linear(&on, SPHG_SCALAR, (sphg_form)form, "scalar");
         require_linear(&on, SPHG_TENSOR, (sphg_form)form, "tensor");
     }
@@ -343,9 +343,9 @@ static void lists_cut_at_both_ends_conserve(const test_case *test)
 static void one_sided_lists_conserve_nothing(const test_case *test)
 {
     const comparison whole = full_rank_stage(test);
-    for (int lack = COMPARISON_HALF; lack <= COMPARISON_CUT; lack++) {
+    for (int lack = COMPARISON_HALF; lack <= COMPARISON_CUT; ++lack) {
         const comparison on = comparison_lacking(&whole, (comparison_lack)lack);
-        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
             const double *force = forces_of(&on, SPHG_SCALAR, (sphg_form)form);
             const double linear = linear_imbalance(&on, force);
             const double angular = angular_imbalance(&on, force);
@@ -365,7 +365,7 @@ static void radii_keep_what_one_radius_keeps(const test_case *test)
     const int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 8 : 5, .25, .15, &random);
     double *radii = test_memory((size_t)points.count * sizeof *radii);
-    for (int i = 0; i < points.count; i++)
+    for (int i = 0; i < points.count; ++i)
         radii[i] = .75 * (1 + points.x[i * d] / (.25 * (d == 2 ? 8 : 5)));
     const comparison on = comparison_of_radii(test, "radii", points, radii, 1);
     TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_SCALAR) / on.scene.unit, "scalar, radii");

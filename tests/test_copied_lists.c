@@ -37,10 +37,10 @@ static cloud crowds(int dimension, random_state *random)
     for (int i = 0, left = 0; i < COUNT; i++, left--) {
         if (!left) {
             left = i ? 1 + random_index(random, 90) : BIG;
-            for (int c = 0; c < dimension; c++)
+            for (int c = 0; c < dimension; ++c)
                 centre[c] = random_between(random, 0, 9);
         }
-        for (int c = 0; c < dimension; c++)
+        for (int c = 0; c < dimension; ++c)
             made.x[i * dimension + c] =
                 centre[c] + random_between(random, -.7, .7) * (left > 20 ? .6 : 1);
     }
@@ -57,21 +57,21 @@ static void list_pairs(world *own, random_state *random)
         test_memory(((size_t)near.offsets[count] + (size_t)count) * sizeof *own->indices);
     own->rows = test_memory((size_t)count * sizeof *own->rows);
     own->lengths = test_memory((size_t)count * sizeof *own->lengths);
-    for (int worker = 0; worker < 2; worker++)
+    for (int worker = 0; worker < 2; ++worker)
         own->reused[worker] = test_memory(COUNT * sizeof **own->reused);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         int32_t *row = own->indices + next;
-        for (int64_t k = near.offsets[i]; k < near.offsets[i + 1]; k++)
+        for (int64_t k = near.offsets[i]; k < near.offsets[i + 1]; ++k)
             own->indices[next++] = near.indices[k];
         if (!own->particles.targets && i % 3)
             own->indices[next++] = i;
-        for (int32_t k = (int32_t)(own->indices + next - row) - 1; k > 0; k--) {
+        for (int32_t k = (int32_t)(own->indices + next - row) - 1; k > 0; --k) {
             const int other = random_index(random, k + 1);
             const int32_t held = row[k];
             row[k] = row[other];
             row[other] = held;
         }
-        for (int32_t *item = row; item < own->indices + next; item++)
+        for (int32_t *item = row; item < own->indices + next; ++item)
             *item |= random_index(random, 4) << 29;
         own->rows[i] = row;
         own->lengths[i] = (int32_t)(own->indices + next - row);
@@ -84,7 +84,7 @@ static int32_t row_of(int32_t target, int32_t worker, const int32_t **indices, v
     world *own = user;
     int32_t *to = own->reused[worker];
     memset(to, 0x7f, COUNT * sizeof *to); /* nobody may still look at the last one */
-    for (int32_t k = 0; k < own->lengths[target]; k++)
+    for (int32_t k = 0; k < own->lengths[target]; ++k)
         to[k] = own->rows[target][k];
     *indices = to;
     return own->lengths[target];
@@ -118,22 +118,22 @@ static world world_of(const test_case *test, sphg_isa isa, int kind)
         own.particles.target_count = OWN;
     if (kind == APART) {
         cloud others = cloud_copy(&points);
-        for (int k = 0; k < COUNT * d; k++)
+        for (int k = 0; k < COUNT * d; ++k)
             others.x[k] += random_between(&random, -.3, .3);
         own.particles.targets = scene_of_cloud(test, &others).sources;
     }
-    for (int axis = 0; axis < d && kind == PERIODIC; axis++)
+    for (int axis = 0; axis < d && kind == PERIODIC; ++axis)
         own.particles.period[axis] = 9;
     own.geometry = scene_geometry(&own.particles);
     if (test->precision == TEST_MIXED)
         own.geometry.precision = SPHG_F32;
     const sphg_type type = test_field_type(test);
     double numbers[3 * COUNT];
-    for (int k = 0; k < 3 * COUNT; k++)
+    for (int k = 0; k < 3 * COUNT; ++k)
         numbers[k] = random_between(&random, .5, 1.5);
     own.volume = setup_numbers(type, COUNT, 1, numbers);
     own.density = setup_numbers(type, COUNT, 1, numbers + COUNT);
-    for (int k = 0; k < 3 * COUNT; k++)
+    for (int k = 0; k < 3 * COUNT; ++k)
         numbers[k] = random_between(&random, -1, 1);
     own.scalar = setup_numbers(type, COUNT, 1, numbers + COUNT);
     own.vector = setup_numbers(type, COUNT, d, numbers);
@@ -154,7 +154,7 @@ static results outputs_for(const world *own)
     const int d = own->test->dimension, table = sphg_correction_width(&own->scheme);
     const int width[OUTPUTS] = {table ? table : 1, 1, d, 1, 1, 1, d == 2 ? 1 : 3, d, 1};
     results made;
-    for (int k = 0; k < OUTPUTS; k++)
+    for (int k = 0; k < OUTPUTS; ++k)
         made.of[k] = setup_output(k == RANK ? SPHG_U8 : own->volume.type, COUNT, width[k]);
     return made;
 }
@@ -195,7 +195,7 @@ static results evaluate(const world *own, const sphg_neighbors *const *neighbors
         request.correction = setup_view(&of[CORRECTION]);
         request.rank = setup_view(&of[RANK]);
     }
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         sources[k].volume = setup_view(&own->volume);
         sources[k].density = setup_view(&own->density);
     }
@@ -211,12 +211,12 @@ static results evaluate(const world *own, const sphg_neighbors *const *neighbors
                                   .at_targets = vector,
                                   .divergence = setup_view(&of[SYMMETRIC])}};
     const setup_array table = setup_output(own->volume.type, COUNT, of[CORRECTION].width);
-    for (int k = 0; k < COUNT * table.width; k++) /* any: only bits are compared */
+    for (int k = 0; k < COUNT * table.width; ++k) /* any: only bits are compared */
         setup_put(&table, k, .5 + .01 * (k % 17));
     request.fields = forces;
     request.field_count = 2;
     request.correction = request.rank = sphg_absent();
-    for (int k = 0; k < 2 && corrects; k++)
+    for (int k = 0; k < 2 && corrects; ++k)
         sources[k].correction = setup_view(&table);
     request.target_correction = corrects ? setup_view(&table) : sphg_absent();
     SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
@@ -225,7 +225,7 @@ static results evaluate(const world *own, const sphg_neighbors *const *neighbors
 
 static void require_same(const results *a, const results *b, const char *how)
 {
-    for (int k = 0; k < OUTPUTS; k++)
+    for (int k = 0; k < OUTPUTS; ++k)
         TEST_REQUIRE(setup_same_bits(&a->of[k], &b->of[k]), "%s: result %d", how, k);
 }
 
@@ -259,9 +259,9 @@ static void require_same_pairs(const exported *a, const exported *b, int targets
 {
     TEST_REQUIRE(a->count == b->count, "%s: %lld pairs, not %lld", how, (long long)b->count,
                  (long long)a->count);
-    for (int i = 0; i <= targets; i++)
+    for (int i = 0; i <= targets; ++i)
         TEST_REQUIRE(a->offsets[i] == b->offsets[i], "%s: list of target %d", how, i);
-    for (int64_t k = 0; k < a->count; k++)
+    for (int64_t k = 0; k < a->count; ++k)
         TEST_REQUIRE(a->indices[k] == b->indices[k], "%s: pair %lld", how, (long long)k);
     TEST_REQUIRE(setup_same_bits(&a->gradients, &b->gradients), "%s: gradients", how);
 }
@@ -281,10 +281,10 @@ static answers ask(const world *own, const sphg_neighbors *neighbors)
     answers found = {.all = evaluate(own, twice, 1, NULL),
                      .both = evaluate(own, twice, 2, NULL),
                      .pairs = pairs_of(own, neighbors)};
-    for (int k = 0; k < CHANCES; k++) {
+    for (int k = 0; k < CHANCES; ++k) {
         random_state random = random_seeded(7 + (uint64_t)k);
         const sphg_subset subset = sphg_masked(mask, own->particles.target_count);
-        for (int i = 0; i < COUNT; i++)
+        for (int i = 0; i < COUNT; ++i)
             mask[i] = random_index(&random, 2 + 28 * k) == 0;
         found.some[k] = evaluate(own, twice, 1, &subset);
     }
@@ -308,14 +308,14 @@ static void try_scene(const test_case *test, sphg_isa isa, int kind, int supply)
     const answers found = ask(&own, copied);
     require_same(&found.all, &expected.all, how);
     require_same(&found.both, &expected.both, test_text("%s, two sets", how));
-    for (int k = 0; k < CHANCES; k++)
+    for (int k = 0; k < CHANCES; ++k)
         require_same(&found.some[k], &expected.some[k], test_text("%s, mask %d", how, k));
     require_same_pairs(&expected.pairs, &found.pairs, targets, how);
 }
 
 static void copies_give_the_bits_of_borrowed_lists(const test_case *test)
 {
-    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         const int turn = (int)isa + (int)test->method; /* every second scene */
         for (int kind = turn % 2; kind < SCENES && setup_context_on(isa); kind += 2)
             try_scene(test, isa, kind, (kind + turn) % SUPPLIES);
@@ -329,13 +329,13 @@ static void copies_take_their_turn(const test_case *test)
     sphg_neighbors *turns = brute_force_neighbors(own.context);
     sphg_lists given = lists_of(&own, CSR);
     own.scheme.support_radius = .8;
-    for (int k = 0; k < 9; k++) {
+    for (int k = 0; k < 9; ++k) {
         sphg_neighbors *alone = brute_force_neighbors(own.context);
         sphg_scheme wide = own.scheme;
         const sphg_neighbors *one[1] = {turns}, *other[1] = {alone};
         wide.support_radius = k % 2 ? 1 : .9;
         given.copy = k % 3 != 1;
-        for (int n = 0; n < 2; n++) {
+        for (int n = 0; n < 2; ++n) {
             sphg_neighbors *built = n ? alone : turns;
             SETUP_OK(
                 own.context,
@@ -365,8 +365,8 @@ static void copies_are_counted_and_grow_with_counts_alone(const test_case *test)
     given.offsets = offsets;
     int64_t before = 0;
     assert_true(own.offsets[COUNT] > EACH * COUNT);
-    for (int k = 0; k < 9; k++) { /* the same on all, then piled up on ever fewer */
-        for (int i = 0; i < COUNT; i++)
+    for (int k = 0; k < 9; ++k) { /* the same on all, then piled up on ever fewer */
+        for (int i = 0; i < COUNT; ++i)
             offsets[i] = EACH * (i >> k << k);
         offsets[COUNT] = EACH * COUNT;
         given.copy = 1;
@@ -390,7 +390,7 @@ static void copies_are_counted_and_grow_with_counts_alone(const test_case *test)
  */
 static void wrong_lists_are_refused_when_they_are_copied(const test_case *test)
 {
-    for (int supply = 0; supply < SUPPLIES; supply++) {
+    for (int supply = 0; supply < SUPPLIES; ++supply) {
         world own = world_of(test, test_isa(), WHOLE);
         sphg_neighbors *neighbors = brute_force_neighbors(own.context);
         sphg_lists given = lists_of(&own, supply);
@@ -398,11 +398,11 @@ static void wrong_lists_are_refused_when_they_are_copied(const test_case *test)
         own.indices[own.offsets[401]] = COUNT;
         own.indices[own.offsets[90] + 80] = -1;
         given.index_mask = 0;
-        for (int64_t k = 0; k < own.offsets[COUNT]; k++)
+        for (int64_t k = 0; k < own.offsets[COUNT]; ++k)
             own.indices[k] = own.indices[k] < 0 ? -1 : own.indices[k] & 0x1fffffff;
         own.indices[own.offsets[90] + 80] = INT32_MIN;
         const int64_t first = own.offsets[90] + 80;
-        for (int64_t k = 0; k < first; k++)
+        for (int64_t k = 0; k < first; ++k)
             own.indices[k] = own.indices[k] < 0 ? 0 : own.indices[k];
         assert_int_equal(
             sphg_neighbors_use_lists(own.context, neighbors, &own.scheme, &own.geometry, &given),
@@ -436,7 +436,7 @@ static void copies_can_be_checked(const test_case *test)
     sphg_neighbors *neighbors = setup_lists(own.context, &own.scheme, &own.geometry, &given);
     SETUP_OK(own.context, sphg_neighbors_check(own.context, &own.scheme, neighbors, NULL));
     const int64_t end = own.offsets[350];
-    for (int i = 350; i < 360; i++) /* lists of nobody */
+    for (int i = 350; i < 360; ++i) /* lists of nobody */
         own.offsets[i] = end;
     SETUP_OK(own.context,
              sphg_neighbors_use_lists(own.context, neighbors, &own.scheme, &own.geometry, &given));

@@ -19,7 +19,7 @@ static setup_array places(const test_case *test, int count, random_state *random
 {
     const int d = test->dimension;
     double *x = test_memory((size_t)(count * d) * sizeof *x);
-    for (int k = 0; k < count * d; k++)
+    for (int k = 0; k < count * d; ++k)
         x[k] = random_index(random, STEPS) / (4. * STEPS);
     return setup_numbers(test_position_type(test), count, d, x);
 }
@@ -27,8 +27,8 @@ static setup_array places(const test_case *test, int count, random_state *random
 static setup_array linear_field(const crowd *on, const setup_array *at)
 {
     double *values = test_memory((size_t)at->count * sizeof *values);
-    for (int i = 0; i < at->count; i++)
-        for (int c = 0; c < at->width; c++)
+    for (int i = 0; i < at->count; ++i)
+        for (int c = 0; c < at->width; ++c)
             values[i] += on->slope[c] * setup_get(at, i, c);
     return setup_numbers(test_field_type(on->test), at->count, 1, values);
 }
@@ -38,7 +38,7 @@ static crowd crowd_of(const test_case *test)
     crowd made = {.test = test, .context = setup_context(), .slope = {.5, -1.25, 2}};
     random_state random = random_seeded(977);
     double *volume = test_memory(SOURCES * sizeof *volume);
-    for (int k = 0; k < SOURCES; k++)
+    for (int k = 0; k < SOURCES; ++k)
         volume[k] = random_between(&random, .5, 1.5) / SOURCES;
     made.scheme = setup_scheme(test, 1);
     made.sources = places(test, SOURCES, &random);
@@ -103,10 +103,10 @@ static void require_linear(const crowd *on, const sums *found, int count, const 
 {
     const double *slope = on->slope;
     const int d = on->test->dimension;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         double error = 0, scale = 0;
         assert_int_equal((int)setup_get(&found->rank, i, 0), d);
-        for (int c = 0; c < d; c++) {
+        for (int c = 0; c < d; ++c) {
             error += pow(setup_get(&found->gradient, i, c) - slope[c], 2);
             scale += slope[c] * slope[c];
         }
@@ -125,7 +125,7 @@ static sums require_exact(const crowd *on, const sphg_neighbors *neighbors, int 
     const sums given = sum_up(on, neighbors, own_targets, &fused.correction);
     TEST_REQUIRE(setup_same_bits(&fused.gradient, &given.gradient), "%s: table", where);
     require_linear(on, &fused, TARGETS - own_targets, where);
-    for (int c = 0; c < on->test->dimension && own_targets; c++)
+    for (int c = 0; c < on->test->dimension && own_targets; ++c)
         assert_true(setup_get(&fused.gradient, TARGETS - 1, c) == 0);
     return fused;
 }

@@ -40,7 +40,7 @@ static const struct csv *read_table(void)
     }
     fclose(file);
     TEST_REQUIRE(csv_open(&table, path) && csv_read(&table), "%s", table.message);
-    for (int quantity = QUANTITY_X; quantity <= QUANTITY_DENSITY; quantity++)
+    for (int quantity = QUANTITY_X; quantity <= QUANTITY_DENSITY; ++quantity)
         TEST_REQUIRE(table.columns[quantity] >= 0, "%s lacks a column", path);
     return &table;
 }
@@ -50,8 +50,8 @@ static setup_array columns(const struct csv *table, sphg_type type, int width, e
                            int invert)
 {
     double *numbers = test_memory((size_t)(table->row_count * width) * sizeof *numbers);
-    for (int k = 0; k < width; k++) {
-        for (int i = 0; i < table->row_count; i++) {
+    for (int k = 0; k < width; ++k) {
+        for (int i = 0; i < table->row_count; ++i) {
             const double value = table->values[i][(int)first + k];
             numbers[i * width + k] = invert ? particle_mass / value : value;
         }
@@ -113,9 +113,9 @@ static void ranks_are(const test_case *test, sphg_policy policy, const int64_t e
     uint8_t *ranks = test_memory((size_t)data.count);
     const setup_array jacobians = setup_output(test_field_type(test), data.count, 9);
     evaluate(&data, &scheme, &data.velocities, &jacobians, (wanted){ranks, NULL, &stats});
-    for (int i = 0; i < data.count; i++)
+    for (int i = 0; i < data.count; ++i)
         counted[ranks[i] < 4 ? ranks[i] : 0]++;
-    for (int rank = 0; rank < 4; rank++) {
+    for (int rank = 0; rank < 4; ++rank) {
         TEST_REQUIRE(llabs(counted[rank] - expected[rank]) <= allowed, "%lld of rank %d, not %lld",
                      (long long)counted[rank], rank, (long long)expected[rank]);
         assert_int_equal(counted[rank], stats.rank[rank]);
@@ -137,13 +137,13 @@ static void ranks_under_replace_are_known(const test_case *test)
 static void nothing_is_nan_or_infinite(const test_case *test)
 {
     const splash data = open_splash(test);
-    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
         sphg_scheme scheme = setup_scheme(test, support_radius);
         scheme.policy = (sphg_policy)policy;
         const setup_array jacobians = setup_output(test_field_type(test), data.count, 9);
         evaluate(&data, &scheme, &data.velocities, &jacobians, (wanted){NULL, NULL, NULL});
-        for (int i = 0; i < data.count; i++)
-            for (int k = 0; k < 9; k++)
+        for (int i = 0; i < data.count; ++i)
+            for (int k = 0; k < 9; ++k)
                 TEST_REQUIRE(isfinite(setup_get(&jacobians, i, k)),
                              "policy %d, particle %d, component %d", policy, i, k);
     }
@@ -154,7 +154,7 @@ static void nothing_is_nan_or_infinite(const test_case *test)
 static setup_array linear_field(const test_case *test, const splash *data)
 {
     double *numbers = test_memory((size_t)(data->count * 3) * sizeof *numbers);
-    for (int i = 0; i < data->count; i++) {
+    for (int i = 0; i < data->count; ++i) {
         numbers[3 * i] = -setup_get(&data->positions, i, 1);
         numbers[3 * i + 1] = setup_get(&data->positions, i, 0);
         numbers[3 * i + 2] = 2 * setup_get(&data->positions, i, 2);
@@ -167,7 +167,7 @@ static double relative_error(const setup_array *jacobians, int i)
 {
     static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
     double sum = 0;
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         sum += pow(setup_get(jacobians, i, k) - expected[k], 2);
     return sqrt(sum / 6);
 }
@@ -183,7 +183,7 @@ static void linear_fields_are_exact_where_rank_is_full(const test_case *test)
     evaluate(&data, &scheme, &field, &jacobians, (wanted){ranks, &lambdas, NULL});
     double worst = 0;
     int where = 0, full = 0;
-    for (int i = 0; i < data.count; i++) {
+    for (int i = 0; i < data.count; ++i) {
         const double scaled = relative_error(&jacobians, i) * setup_get(&lambdas, i, 0);
         full += ranks[i] == 3;
         if (ranks[i] == 3 && !(scaled <= worst)) {

@@ -47,7 +47,7 @@ static setup_array table_and_ranks(const comparison *on, setup_array *rank)
 
 static void require_finite(const setup_array *found, const char *what, const char *scene)
 {
-    for (int k = 0; k < found->count * found->width; k++)
+    for (int k = 0; k < found->count * found->width; ++k)
         TEST_REQUIRE(isfinite(setup_get(found, k / found->width, k % found->width)),
                      "%s of particle %d, %s", what, k / found->width, scene);
 }
@@ -56,13 +56,13 @@ static void nothing_is_ever_infinite(const test_case *test)
 {
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
-    for (int s = 0; s < flat_scene_count; s++) {
+    for (int s = 0; s < flat_scene_count; ++s) {
         comparison made = stage_at(test, &scenes[s]);
-        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
             comparison on = comparison_under(&made, (sphg_policy)policy, 0);
             setup_array table = comparison_table(&on);
             require_finite(&table, "C", on.name);
-            for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
+            for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form) {
                 comparison_field field = {SPHG_VECTOR, (sphg_form)form,
                                           comparison_random_field(&on, SPHG_VECTOR, 11)};
                 comparison_result found = comparison_apply(&on, &field, &table);
@@ -83,13 +83,13 @@ static void rank_is_the_dimension_spanned(const test_case *test)
 {
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
-    for (int s = 0; s < flat_scene_count; s++)
-        for (int policy = SPHG_BLEND; policy <= SPHG_TRUNCATE; policy++) {
+    for (int s = 0; s < flat_scene_count; ++s)
+        for (int policy = SPHG_BLEND; policy <= SPHG_TRUNCATE; ++policy) {
             comparison made = stage_at(test, &scenes[s]);
             comparison on = comparison_under(&made, (sphg_policy)policy, 0);
             setup_array rank;
             table_and_ranks(&on, &rank);
-            for (int i = 0; i < on.points.count; i++)
+            for (int i = 0; i < on.points.count; ++i)
                 TEST_REQUIRE((int)setup_get(&rank, i, 0) == scenes[s].extent,
                              "rank %g of particle %d, %s, policy %d", setup_get(&rank, i, 0), i,
                              on.name, policy);
@@ -101,12 +101,12 @@ static void identity_leaves_flat_particles_alone(const test_case *test)
 {
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
-    for (int s = 0; s < flat_scene_count; s++) {
+    for (int s = 0; s < flat_scene_count; ++s) {
         comparison made = stage_at(test, &scenes[s]);
         comparison on = comparison_under(&made, SPHG_IDENTITY, 0);
         setup_array rank;
         table_and_ranks(&on, &rank);
-        for (int i = 0; i < on.points.count; i++)
+        for (int i = 0; i < on.points.count; ++i)
             assert_int_equal(setup_get(&rank, i, 0), 0);
     }
 }
@@ -119,12 +119,12 @@ static void noise_is_never_inverted(const test_case *test)
     cloud points = cloud_tilted_plane(d, d == 2 ? 24 : 6, .01, &random);
     comparison made = comparison_of(test, "plane of large volumes", points, .03);
     double *volume = test_memory((size_t)points.count * sizeof *volume);
-    for (int i = 0; i < points.count; i++) /* so that u tr Mhat is far above the threshold */
+    for (int i = 0; i < points.count; ++i) /* so that u tr Mhat is far above the threshold */
         volume[i] = cloud_rounded(64 * pow(points.spacing, d) / test_unit_roundoff(test));
     comparison on = comparison_with_volumes(&made, volume);
     setup_array rank;
     table_and_ranks(&on, &rank);
-    for (int i = 0; i < points.count; i++)
+    for (int i = 0; i < points.count; ++i)
         TEST_REQUIRE(setup_get(&rank, i, 0) < d, "particle %d has full rank", i);
 }
 
@@ -144,10 +144,10 @@ static void policies_are_what_they_say_on_a_plane(const test_case *test)
     flat_scene scenes[flat_scene_count];
     make_scenes(test->dimension, scenes);
     comparison made = stage_at(test, &scenes[0]);
-    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
         comparison on = comparison_under(&made, (sphg_policy)policy, 0);
         setup_array table = comparison_table(&on);
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             double c = normal_correction(&on, &table, i);
             double error = fabs(c - normal[policy]) / on.scene.unit;
             TEST_WITHIN(policy_value, error, test_text("policy %d, particle %d", policy, i));
@@ -162,15 +162,15 @@ static void gradients_within_a_plane_are_exact(const test_case *test)
     make_scenes(d, scenes);
     comparison made = stage_at(test, &scenes[0]);
     double *numbers = test_memory((size_t)made.points.count * sizeof *numbers);
-    for (int i = 0; i < made.points.count; i++)
+    for (int i = 0; i < made.points.count; ++i)
         numbers[i] = 3 * made.points.x[i * d] - (d == 3 ? made.points.x[i * d + 1] : 0);
     double slope[3] = {3, d == 3 ? -1 : 0, 0};
-    for (int policy = SPHG_BLEND; policy <= SPHG_TRUNCATE; policy++) {
+    for (int policy = SPHG_BLEND; policy <= SPHG_TRUNCATE; ++policy) {
         comparison on = comparison_under(&made, (sphg_policy)policy, 0);
         comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
         comparison_result found = comparison_apply(&on, &field, NULL);
-        for (int i = 0; i < on.points.count; i++)
-            for (int k = 0; k < d; k++) {
+        for (int i = 0; i < on.points.count; ++i)
+            for (int k = 0; k < d; ++k) {
                 double error = fabs(setup_get(&found.gradient, i, k) - slope[k]);
                 TEST_WITHIN(flat_exactness, error / (3 * on.scene.unit), on.name);
             }
@@ -194,8 +194,8 @@ static closing_step step_at(const test_case *test, sphg_policy policy, double ga
     setup_array table = comparison_table(&on);
     const oracle_point *point = oracle_at(on.reference, i);
     closing_step step = {{0}, {0}};
-    for (int a = 0; a < d; a++)
-        for (int b = a; b < d; b++, k++) {
+    for (int a = 0; a < d; ++a)
+        for (int b = a; b < d; b++, ++k) {
             double scale = (double)point->scale;
             step.c[a * 3 + b] = step.c[b * 3 + a] = setup_get(&table, i, k) * scale;
             step.m[a * 3 + b] = step.m[b * 3 + a] = (double)(point->moment[a][b] / point->scale);
@@ -206,7 +206,7 @@ static closing_step step_at(const test_case *test, sphg_policy policy, double ga
 static double distance(const double *a, const double *b)
 {
     double square = 0;
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         square += pow(a[k] - b[k], 2);
     return sqrt(square);
 }
@@ -218,7 +218,7 @@ static double steepest(const test_case *test, sphg_policy policy)
     enum { steps = 60 };
     double worst = 0, blur = 64 * test_unit_roundoff(test) / .01;
     closing_step last = step_at(test, policy, .25);
-    for (int n = 1; n <= steps; n++) {
+    for (int n = 1; n <= steps; ++n) {
         closing_step now = step_at(test, policy, .25 * (1 - (double)n / (steps + 1)));
         double moved = distance(now.m, last.m), changed = distance(now.c, last.c);
         worst = test_larger(worst, fmax(changed - blur, 0) / moved);
@@ -250,7 +250,7 @@ static void fields_beyond_the_support_do_not_leak(const test_case *test)
 {
     int d = test->dimension, n = 4;
     cloud points = cloud_line(d, n, .25);
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         points.x[3 * d + k] = 50;
     comparison on = comparison_of(test, "line and a far one", points, .625);
     static const int64_t offsets[] = {0, 3, 6, 9, 12};
@@ -262,7 +262,7 @@ static void fields_beyond_the_support_do_not_leak(const test_case *test)
     double numbers[] = {1, 2, 3, NAN};
     comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
     comparison_result found = comparison_apply(&on, &field, NULL);
-    for (int k = 0; k < 3 * d; k++)
+    for (int k = 0; k < 3 * d; ++k)
         assert_true(isfinite(setup_get(&found.gradient, k / d, k % d)));
 }
 

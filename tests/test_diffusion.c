@@ -84,7 +84,7 @@ static void compare(const comparison *on, const flow *of, int targets)
 
 static void results_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         const comparison on = comparison_of_scene(test, &scenes_hard[s]);
         const sphg_shape shape = s % 4 == 3 ? SPHG_TENSOR : (sphg_shape)(1 + s % 3);
         flow of = {shape, comparison_random_field(&on, shape, 3), NULL};
@@ -100,11 +100,11 @@ static comparison graded_stage(const test_case *test, double ratio, int mutual)
     const int d = test->dimension, per_axis = d == 2 ? 9 : 5;
     cloud points = cloud_jittered(d, per_axis, .125, .2, &random);
     double *radii = test_memory((size_t)points.count * sizeof *radii);
-    for (int i = 0; i < points.count; i++) {
+    for (int i = 0; i < points.count; ++i) {
         double *x = points.x + i * d;
         const double wide = exp(log(ratio) * x[0] / (.125 * (per_axis - 1)));
         radii[i] = 2.5 * points.spacing * wide;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             x[a] = (x[a] + .5) * wide;
     }
     return comparison_of_radii(test, "graded block", points, radii, mutual);
@@ -113,7 +113,7 @@ static comparison graded_stage(const test_case *test, double ratio, int mutual)
 static void radii_match_the_oracle(const test_case *test)
 {
     static const double ratios[] = {1.5, 8, 64};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const comparison on = graded_stage(test, ratios[k], 1);
         flow of = {SPHG_VECTOR, comparison_random_field(&on, SPHG_VECTOR, 3), NULL};
         compare(&on, &of, 5);
@@ -124,7 +124,7 @@ static void radii_match_the_oracle(const test_case *test)
 
 static void kernels_and_policies_match_the_oracle(const test_case *test)
 {
-    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
         const comparison made = comparison_of_scene(test, &scenes_hard[5]);
         const comparison on = comparison_under(&made, (sphg_policy)policy, .0625);
         const flow of = {SPHG_SCALAR, comparison_random_field(&on, SPHG_SCALAR, 3), NULL};
@@ -142,11 +142,11 @@ static void plain_is_brookshaw(const test_case *test)
     const flow of = {SPHG_SCALAR, comparison_random_field(&on, SPHG_SCALAR, 8),
                      coefficients(&on, 9)};
     const setup_array found = diffuse(&on, &of, NULL);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         double sum = 0, size = 0;
-        for (int j = 0; j < n; j++) {
+        for (int j = 0; j < n; ++j) {
             double square = 0, slope;
-            for (int a = 0; a < d; a++)
+            for (int a = 0; a < d; ++a)
                 square += pow(on.points.x[i * d + a] - on.points.x[j * d + a], 2);
             sphg_kernel_value(&on.scheme, sqrt(square), NULL, &slope);
             const double a = of.coefficient[i], b = of.coefficient[j];
@@ -169,7 +169,7 @@ static void plain_is_brookshaw(const test_case *test)
 /* Row i of L by the answer to a field that is 1 at one particle. */
 static void pairs_are_symmetric_and_never_uphill(const test_case *test)
 {
-    for (int s = 0; s < 3; s++) {
+    for (int s = 0; s < 3; ++s) {
         const comparison on = s == 0   ? comparison_of_scene(test, &scenes_hard[5])
                               : s == 1 ? blocat(test, .4)
                                        : graded_stage(test, 8, 1);
@@ -178,21 +178,21 @@ static void pairs_are_symmetric_and_never_uphill(const test_case *test)
         double *unit = test_memory((size_t)on.points.count * sizeof *unit);
         double *matrix = test_memory((size_t)n * (size_t)n * sizeof *matrix);
         const double *k = coefficients(&on, 12);
-        for (int j = 0; j < n; j++) {
+        for (int j = 0; j < n; ++j) {
             unit[j] = 1;
             const flow of = {SPHG_SCALAR, unit, k};
             const setup_array found = diffuse(&on, &of, &table);
             unit[j] = 0;
-            for (int i = 0; i < n; i++)
+            for (int i = 0; i < n; ++i)
                 matrix[i * n + j] = setup_get(&found, i, 0);
         }
         int pairs = 0;
         double largest = 0;
-        for (int at = 0; at < n * n; at++)
+        for (int at = 0; at < n * n; ++at)
             if (at % n != at / n)
                 largest = test_larger(largest, matrix[at]);
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < i; j++) {
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < i; ++j) {
                 const double a = matrix[i * n + j], b = matrix[j * n + i];
                 TEST_REQUIRE(a >= 0 && b >= 0, "from %d to %d flows %g, back %g, %s", j, i, a, b,
                              on.name);
@@ -210,7 +210,7 @@ static void pairs_are_symmetric_and_never_uphill(const test_case *test)
 
 static void nothing_is_lost_and_constants_stay(const test_case *test)
 {
-    for (int s = 0; s < 3; s++) {
+    for (int s = 0; s < 3; ++s) {
         const comparison on = s == 2 ? graded_stage(test, 8, 1) : blocat(test, s ? .4 : 0);
         const setup_array table = comparison_table(&on);
         const int n = on.points.count;
@@ -219,7 +219,7 @@ static void nothing_is_lost_and_constants_stay(const test_case *test)
         const flow of_a = {SPHG_SCALAR, a, k}, of_b = {SPHG_SCALAR, b, k};
         const setup_array fa = diffuse(&on, &of_a, &table), fb = diffuse(&on, &of_b, &table);
         double sum = 0, size = 0, both = 0, loss = 0;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; ++i) {
             const double one = setup_get(&fa, i, 0), other = setup_get(&fb, i, 0);
             sum += one;
             size += fabs(one);
@@ -230,11 +230,11 @@ static void nothing_is_lost_and_constants_stay(const test_case *test)
         TEST_WITHIN(diffusion_sum, fabs(both) / size / test_unit_roundoff(test), on.name);
         TEST_REQUIRE(loss < 0, "differences grow, %s", on.name);
         double *same = test_memory((size_t)n * sizeof *same);
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             same[i] = (double)(float).3;
         const flow of_same = {SPHG_SCALAR, same, k};
         const setup_array still = diffuse(&on, &of_same, &table);
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             assert_true(setup_get(&still, i, 0) == 0);
     }
 }
@@ -246,9 +246,9 @@ static void it_is_a_laplacian_inside(const test_case *test)
     comparison on = comparison_of(test, "lattice", cloud_lattice(d, 9, .125), .25 * 1.0001);
     double *volume = test_memory((size_t)on.points.count * sizeof *volume);
     double *numbers = test_memory((size_t)on.points.count * sizeof *numbers);
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         volume[i] = pow(.125, d);
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             numbers[i] += pow(on.points.x[i * d + a] - .5, 2) / 2;
         numbers[i] = cloud_rounded(numbers[i]);
     }
@@ -256,7 +256,7 @@ static void it_is_a_laplacian_inside(const test_case *test)
     const setup_array table = comparison_table(&on);
     const double k = 3;
     double *same = test_memory((size_t)on.points.count * sizeof *same);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         same[i] = k;
     const flow of = {SPHG_SCALAR, numbers, same};
     const setup_array found = diffuse(&on, &of, &table);
@@ -280,13 +280,13 @@ static void every_path_gives_the_same_bits(const test_case *test)
 {
     const comparison on = blocat(test, .3);
     const setup_array x = setup_positions(test, (cloud *)&on.points);
-    for (int way = 0; way < 2; way++) {
+    for (int way = 0; way < 2; ++way) {
         comparison other = on;
         sphg_geometry geometry = setup_geometry(test, &on.points, &x);
         geometry.list_free = way == 0;
         geometry.keep_weights = way == 1;
         other.neighbors = setup_search(on.context, &on.scheme, &geometry);
-        for (int again = 0; again < 2; again++)
+        for (int again = 0; again < 2; ++again)
             same_bits(&on, &other, way ? "kept weights" : "list-free");
     }
     comparison alone = on;
@@ -296,12 +296,12 @@ static void every_path_gives_the_same_bits(const test_case *test)
     const flow of = {SPHG_SCALAR, comparison_random_field(&on, SPHG_SCALAR, 23), NULL};
     const setup_array table = comparison_table(&on), whole = diffuse(&on, &of, &table);
     uint8_t *mask = test_memory((size_t)on.points.count);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         mask[i] = i % 5 == 1 || i % 31 > 20;
     const sphg_subset subset = sphg_masked(mask, on.points.count);
     setup_array some;
     SETUP_OK(on.context, ask(&on, &of, &table, &subset, &some));
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         TEST_REQUIRE(mask[i] ? setup_get(&some, i, 0) == setup_get(&whole, i, 0)
                              : setup_is_canary(&some, i),
                      "target %d of a mask", i);
@@ -315,16 +315,16 @@ static void lists_of_the_host_give_the_same(const test_case *test)
     const sphg_geometry geometry = setup_geometry(test, &on.points, &x);
     int64_t *offsets = test_memory(((size_t)n + 1) * sizeof *offsets);
     int32_t *indices = test_memory((size_t)n * (size_t)n * sizeof *indices);
-    for (int i = 0; i < n; i++) { /* every particle, so most are too far */
+    for (int i = 0; i < n; ++i) { /* every particle, so most are too far */
         offsets[i + 1] = offsets[i] + n;
-        for (int j = 0; j < n; j++)
+        for (int j = 0; j < n; ++j)
             indices[offsets[i] + j] = j;
     }
     const flow of = {SPHG_SYM_TENSOR, comparison_random_field(&on, SPHG_SYM_TENSOR, 24),
                      coefficients(&on, 25)};
     const setup_array table = comparison_table(&on), found = diffuse(&on, &of, &table);
     setup_array listed[2];
-    for (int copy = 0; copy < 2; copy++) {
+    for (int copy = 0; copy < 2; ++copy) {
         comparison other = on;
         const sphg_lists lists = {.offsets = offsets, .indices = indices, .copy = copy};
         other.neighbors = setup_lists(on.context, &on.scheme, &geometry, &lists);
@@ -340,7 +340,7 @@ static void every_instruction_set_gives_the_same(const test_case *test)
     const flow of = {SPHG_TENSOR, comparison_random_field(&on, SPHG_TENSOR, 26),
                      coefficients(&on, 27)};
     const setup_array table = comparison_table(&on), found = diffuse(&on, &of, &table);
-    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         comparison other = on;
         other.context = setup_context_on((sphg_isa)isa);
         if (!other.context)
@@ -366,7 +366,7 @@ static void sets_add_up(const test_case *test)
                       ks = setup_numbers(type, n, 1, k);
     sphg_sources sources[2] = {{0}};
     sphg_view at_sources[2], coefficient[2];
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         const ptrdiff_t first = s ? half : 0;
         sphg_view place = setup_view(&x), all = setup_view(&x);
         sphg_view *const moved[] = {&place, &sources[s].volume, &sources[s].correction,
@@ -375,14 +375,14 @@ static void sets_add_up(const test_case *test)
         sources[s].correction = comparison_table_view(&on, &table);
         at_sources[s] = setup_view(&values);
         coefficient[s] = setup_view(&ks);
-        for (int v = 0; v < 5; v++)
+        for (int v = 0; v < 5; ++v)
             if (moved[v]->x)
                 moved[v]->x = (const char *)moved[v]->x + first * moved[v]->stride;
         sphg_geometry geometry = sphg_targets_apart(all, n, place, s ? n - half : half);
         geometry.precision = type;
         sources[s].neighbors = setup_search(on.context, &on.scheme, &geometry);
     }
-    for (int given = 0; given < 2; given++) {
+    for (int given = 0; given < 2; ++given) {
         const setup_array found = setup_output(type, n, d);
         sphg_field field = {.shape = SPHG_VECTOR,
                             .form = SPHG_ADJOINT,
@@ -454,7 +454,7 @@ static void it_stands_beside_other_results(const test_case *test)
     field.accumulate = 1;
     field.divergence = sphg_absent();
     SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    for (int i = 0; i < n * d; i++)
+    for (int i = 0; i < n * d; ++i)
         assert_true(setup_get(&both, i / d, i % d) == 2 * setup_get(&flows, i / d, i % d));
 }
 
@@ -469,7 +469,7 @@ static void coincident_particles_exchange(const test_case *test)
     const setup_array table = comparison_table(&on), found = diffuse(&on, &of, &table);
     TEST_REQUIRE(on.points.count == 3, "%d particles", on.points.count);
     double sum = 0;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; ++i)
         sum += setup_get(&found, i, 0);
     TEST_REQUIRE(setup_get(&found, 1, 0) > 0 && fabs(sum) < 1e-5 * fabs(setup_get(&found, 0, 0)),
                  "flows %g %g %g", setup_get(&found, 0, 0), setup_get(&found, 1, 0),
@@ -485,16 +485,16 @@ static void what_is_no_number_spoils_its_neighbours_alone(const test_case *test)
     const int n = on.points.count, d = test->dimension, bad = cloud_middle(&on.points);
     double *numbers = comparison_random_field(&on, SPHG_SCALAR, 33), *k = coefficients(&on, 34);
     const setup_array table = comparison_table(&on);
-    for (int which = 0; which < 2; which++) {
+    for (int which = 0; which < 2; ++which) {
         double *spoiled = which ? k : numbers;
         const double before = spoiled[bad];
         spoiled[bad] = NAN;
         const flow of = {SPHG_SCALAR, numbers, k};
         const setup_array found = diffuse(&on, &of, &table);
         spoiled[bad] = before;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; ++i) {
             double square = 0;
-            for (int a = 0; a < d; a++)
+            for (int a = 0; a < d; ++a)
                 square += pow(on.points.x[i * d + a] - on.points.x[bad * d + a], 2);
             const int near = sqrt(square) < on.scheme.support_radius * (1 - 1e-6);
             const double value = setup_get(&found, i, 0);
@@ -510,9 +510,9 @@ static void scaling_by_a_power_of_two_changes_no_digit(const test_case *test)
     cloud points = cloud_copy(&on.points);
     const int d = test->dimension, n = points.count;
     double *volume = test_memory((size_t)n * sizeof *volume);
-    for (int k = 0; k < n * d; k++)
+    for (int k = 0; k < n * d; ++k)
         points.x[k] *= 32;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         volume[i] = on.scene.volume[i] * pow(32, d);
     comparison made = comparison_of(test, "larger", points, on.scheme.support_radius * 32);
     made = comparison_with_volumes(&made, volume);
@@ -520,7 +520,7 @@ static void scaling_by_a_power_of_two_changes_no_digit(const test_case *test)
                      coefficients(&on, 36)};
     const setup_array table = comparison_table(&on), larger = comparison_table(&made);
     const setup_array a = diffuse(&on, &of, &table), b = diffuse(&made, &of, &larger);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         TEST_REQUIRE(setup_get(&b, i, 0) == setup_get(&a, i, 0) * pow(32, d - 2),
                      "particle %d: %g and %g", i, setup_get(&a, i, 0), setup_get(&b, i, 0));
 }
@@ -604,7 +604,7 @@ static void what_has_no_meaning_is_refused(const test_case *test)
     requires_words(&on, &field, SPHG_ERROR_ARGUMENT, "coefficient is NULL");
     field.coefficient = &at_sources;
     field.coefficient_at_targets = absent;
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_SYMMETRIC; form++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_SYMMETRIC; ++form) {
         field.form = (sphg_form)form;
         field.laplacian = absent;
         requires_words(&on, &field, SPHG_ERROR_UNSUPPORTED, "is for the laplacian of the adjoint");

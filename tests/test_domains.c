@@ -18,7 +18,7 @@ static void scatter_in_box(const scene *particles, double H, double periods_out,
                            random_state *random)
 {
     const int d = particles->dimension;
-    for (int k = 0; k < particles->source_count * d; k++) {
+    for (int k = 0; k < particles->source_count * d; ++k) {
         const double length = particles->period[k % d] > 0 ? particles->period[k % d] : 4 * H;
         const double away = nearbyint(random_between(random, -periods_out, periods_out));
         const double x = random_between(random, 0, length) + away * length;
@@ -35,12 +35,12 @@ static void check_periods(const test_case *test, double periods_out, int list_fr
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(61);
     int64_t pairs = 0;
-    for (int axes = 1; axes < 1 << test->dimension; axes++)
-        for (int k = 0; k < 8; k++) {
+    for (int axes = 1; axes < 1 << test->dimension; ++axes)
+        for (int k = 0; k < 8; ++k) {
             const double H = k % 2 ? 1 : 0.6875;
             scene particles = scene_empty(test, 110);
             particles.list_free = list_free;
-            for (int axis = 0; axis < test->dimension; axis++)
+            for (int axis = 0; axis < test->dimension; ++axis)
                 particles.period[axis] = axes >> axis & 1 ? LENGTHS[(k + 3 * axis) % 8] * H : 0;
             scatter_in_box(&particles, H, periods_out, &random);
             const char *where =
@@ -71,9 +71,9 @@ static void lengths_of_any_bits_have_the_pairs_of_brute_force(const test_case *t
     sphg_context *context = setup_context_of(1);
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(67);
-    for (int k = 0; k < 40; k++) {
+    for (int k = 0; k < 40; ++k) {
         scene particles = scene_empty(test, 110);
-        for (int axis = 0; axis < test->dimension; axis++)
+        for (int axis = 0; axis < test->dimension; ++axis)
             particles.period[axis] = scene_rounded(&particles, random_between(&random, 2, 5));
         scatter_in_box(&particles, 1, 0, &random);
         rows_require_search_exact(context, neighbors, &particles, 1, test_text("box %d", k));
@@ -87,7 +87,7 @@ static void halves_of_the_smallest_box_meet_through_its_side(const test_case *te
 {
     sphg_context *context = setup_context();
     sphg_neighbors *neighbors = brute_force_neighbors(context);
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < 200; ++k) {
         scene particles = scene_empty(test, 2);
         const double given = 1.5 + 0.5 * k / 200 + 0x1p-30;
         const double reach = particles.is_double ? given : (double)(float)given;
@@ -106,10 +106,10 @@ static void positions_just_outside_the_box_have_a_cell(const test_case *test)
     sphg_context *context = setup_context();
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(71);
-    for (int k = 0; k < 8; k++) {
+    for (int k = 0; k < 8; ++k) {
         scene particles = scene_empty(test, 110);
         particles.list_free = k % 2;
-        for (int axis = 0; axis < test->dimension; axis++)
+        for (int axis = 0; axis < test->dimension; ++axis)
             particles.period[axis] = LENGTHS[(k + axis) % 8];
         scatter_in_box(&particles, 1, 0, &random);
         for (int i = 0; i < 110 * test->dimension; i += 7)
@@ -124,7 +124,7 @@ static void periodic_lattice_has_no_boundary(const test_case *test)
     sphg_context *context = setup_context_of(1);
     cloud points = cloud_lattice(test->dimension, 6, 0.5);
     scene particles = scene_of_cloud(test, &points);
-    for (int axis = 0; axis < test->dimension; axis++)
+    for (int axis = 0; axis < test->dimension; ++axis)
         particles.period[axis] = 3;
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
@@ -132,7 +132,7 @@ static void periodic_lattice_has_no_boundary(const test_case *test)
     const sphg_geometry geometry = scene_geometry(&particles);
     const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
-    for (int32_t i = 0; i < found.count; i++)
+    for (int32_t i = 0; i < found.count; ++i)
         assert_int_equal(found.offsets[i + 1] - found.offsets[i], test->dimension == 2 ? 8 : 26);
 }
 
@@ -142,7 +142,7 @@ static void periodic_targets_need_not_be_sources(const test_case *test)
     sphg_context *context = setup_context();
     random_state random = random_seeded(71);
     scene particles = scene_empty(test, 200), others = scene_empty(test, 90);
-    for (int axis = 0; axis < test->dimension; axis++)
+    for (int axis = 0; axis < test->dimension; ++axis)
         particles.period[axis] = others.period[axis] = 4;
     scatter_in_box(&particles, 1, 2, &random);
     scatter_in_box(&others, 1, 2, &random);
@@ -159,7 +159,7 @@ static void periods_shorter_than_twice_the_reach_are_refused(const test_case *te
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
     scheme.support_radius = 1;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         sphg_neighbors *neighbors = brute_force_neighbors(context);
         const double unit = test->precision == TEST_F32 ? 0x1p-24 : 0x1p-53;
         const double shorter[] = {2 * (1 - 16 * unit), 1, -5, NAN};
@@ -188,7 +188,7 @@ static void periods_of_twice_the_reach_may_be_rounded(const test_case *test)
     const double period = narrow ? (double)0.6f : 0.6;
     assert_true(period < 2 * H);
     scene particles = scene_empty(test, 110);
-    for (int axis = 0; axis < test->dimension; axis++)
+    for (int axis = 0; axis < test->dimension; ++axis)
         particles.period[axis] = period;
     scatter_in_box(&particles, H, 1, &random);
     assert_true(rows_require_search_exact(context, neighbors, &particles, H, "a rounded box") >
@@ -254,8 +254,8 @@ static void two_particles_may_be_as_far_apart_as_numbers_reach(const test_case *
 {
     const double single[] = {1e3, 1e10, 1e20, 1e30, FLT_MAX};
     const double full[] = {1e3, 1e30, 1e150, 1e300, DBL_MAX};
-    for (int k = 0; k < 5; k++)
-        for (int axis = 0; axis < test->dimension; axis++) {
+    for (int k = 0; k < 5; ++k)
+        for (int axis = 0; axis < test->dimension; ++axis) {
             scene pair = scene_empty(test, 2);
             const double far = scene_rounded(&pair, pair.is_double ? full[k] : single[k]);
             pair.sources[axis] = far;
@@ -269,7 +269,7 @@ static void two_particles_may_be_as_far_apart_as_numbers_reach(const test_case *
 static void diagonal_line_takes_linear_memory(const test_case *test)
 {
     scene line = scene_empty(test, 3000);
-    for (int k = 0; k < 3000 * test->dimension; k++)
+    for (int k = 0; k < 3000 * test->dimension; ++k)
         line.sources[k] = 10.0 * (k / test->dimension);
     require_linear(test, &line, "diagonal");
 }
@@ -280,7 +280,7 @@ static void scattered_magnitudes_take_linear_memory(const test_case *test)
     random_state random = random_seeded(73);
     scene particles = scene_empty(test, 2000);
     const double top = particles.is_double ? 300 : 37;
-    for (int k = 0; k < 2000 * test->dimension; k++)
+    for (int k = 0; k < 2000 * test->dimension; ++k)
         particles.sources[k] =
             scene_rounded(&particles, (random_index(&random, 2) ? 1 : -1) *
                                           pow(10, random_between(&random, 1, top)));
@@ -293,9 +293,9 @@ static void coincident_particles_are_neighbours_at_any_distance(const test_case 
     sphg_context *context = setup_context();
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     const int top = test->precision == TEST_F32 ? 38 : 308;
-    for (int decade = 1; decade <= top; decade++) {
+    for (int decade = 1; decade <= top; ++decade) {
         scene particles = scene_empty(test, 12);
-        for (int k = 0; k < 12 * test->dimension; k++) {
+        for (int k = 0; k < 12 * test->dimension; ++k) {
             const int i = k / test->dimension, axis = k % test->dimension;
             const double x = scene_rounded(&particles, (axis ? -1 : 1) * pow(10, decade));
             const double far = particles.is_double ? nextafter(x, 0) : nextafterf((float)x, 0);
@@ -310,11 +310,11 @@ static void escapee_disturbs_nobody(const test_case *test)
 {
     random_state random = random_seeded(79);
     scene particles = scene_empty(test, 2001);
-    for (int k = 0; k < 2001 * test->dimension; k++)
+    for (int k = 0; k < 2001 * test->dimension; ++k)
         particles.sources[k] = scene_rounded(&particles, random_between(&random, 0, 12));
     const double far[] = {1e30, particles.is_double ? DBL_MAX : (double)FLT_MAX};
     const int64_t before = peak_of(&particles, 1);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         particles.sources[1000 * test->dimension] = far[k];
         const int64_t after = peak_of(&particles, 1);
         assert_true((double)after <= 1.05 * (double)before + FIXED_BYTES);
@@ -329,7 +329,7 @@ static void crowds_have_the_pairs_of_brute_force(const test_case *test)
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(83);
     scene particles = scene_empty(test, CROWD), others = scene_empty(test, TARGETS);
-    for (int k = 0; k < CROWD * test->dimension; k++)
+    for (int k = 0; k < CROWD * test->dimension; ++k)
         particles.sources[k] = scene_rounded(&particles, random_between(&random, 0, 3));
     memcpy(others.sources, particles.sources + 9 * test->dimension,
            (size_t)(TARGETS * test->dimension) * sizeof(double));

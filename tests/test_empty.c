@@ -59,8 +59,8 @@ static single single_of(const nobody *own)
 static void every_form(const nobody *own, const sphg_sources *sources, int sets,
                        const sphg_view *at_sources, sphg_view target, sphg_view gradient)
 {
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
-        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape) {
             sphg_field field = {.shape = (sphg_shape)shape,
                                 .form = (sphg_form)form,
                                 .at_sources = at_sources,
@@ -83,7 +83,7 @@ static void every_operator_takes_an_empty_set(const test_case *test)
     const single one = single_of(&own);
     const sphg_view out = setup_view(&one.result);
     const sphg_view outs[] = {none, out};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         every_form(&own, &sources, 1, &none, none, outs[k]);
         SETUP_OK(own.context,
                  sphg_gradient(own.context, &own.scheme, &sources, NULL, none, outs[k]));
@@ -151,7 +151,7 @@ static void an_empty_set_beside_another_adds_nothing(const test_case *test)
                                      .correction = setup_view(&one.table)},
                                     {.neighbors = setup_search(own.context, &own.scheme, &beside)}};
     every_form(&own, sources, 2, of_nobody, none, setup_view(&one.result));
-    for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
+    for (int c = 0; c < (test->dimension == 2 ? 2 : 3); ++c)
         assert_false(setup_get(&one.result, 0, c) != setup_get(&one.result, 0, c));
 }
 
@@ -171,7 +171,7 @@ static void a_third_set_of_nobody_adds_nothing(const test_case *test)
                                      .correction = setup_view(&one.table)},
                                     {.neighbors = setup_search(own.context, &own.scheme, &beside)}};
     every_form(&own, sources, 3, fields, none, setup_view(&one.result));
-    for (int c = 0; c < (test->dimension == 2 ? 2 : 3); c++)
+    for (int c = 0; c < (test->dimension == 2 ? 2 : 3); ++c)
         assert_true(isfinite(setup_get(&one.result, 0, c)));
 }
 
@@ -186,10 +186,10 @@ static void every_search_finds_nobody(const test_case *test)
     geometries[2].sources = sphg_absent(); /* says nothing about the precision */
     geometries[2].precision = own.type;
     const sphg_view none = sphg_absent();
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &geometries[k]);
         const sphg_sources sources = {.neighbors = neighbors};
-        for (int round = 0; round < 2; round++) {
+        for (int round = 0; round < 2; ++round) {
             SETUP_OK(own.context,
                      sphg_neighbors_search(own.context, neighbors, &own.scheme, &geometries[k]));
             every_form(&own, &sources, 1, &none, none, none);
@@ -217,7 +217,7 @@ static void lists_of_nobody_are_lists(const test_case *test)
                                 {.indices = &unused},
                                 {.rows = &row},
                                 {.lengths = &unused}};
-    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; ++k) {
         own.neighbors = setup_lists(own.context, &own.scheme, &geometry, &lists[k]);
         const sphg_sources sources = {.neighbors = own.neighbors};
         const sphg_view none = sphg_absent();

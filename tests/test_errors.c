@@ -20,12 +20,12 @@ static void every_result_has_a_text_of_its_own(const test_case *test)
         const char *text;
     } codes[] = {SPHG_RESULT_LIST(CODE)};
 #undef CODE
-    for (size_t k = 0; k < sizeof codes / sizeof *codes; k++) {
+    for (size_t k = 0; k < sizeof codes / sizeof *codes; ++k) {
         assert_int_equal(codes[k].result, codes[k].value);
         assert_string_equal(sphg_result_string(codes[k].result), codes[k].text);
     }
     const int unknown[] = {-100, -4, 10, 1000, INT_MAX, INT_MIN};
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 6; ++k) {
         const char *text = sphg_result_string((sphg_result)unknown[k]);
         assert_true(text && text[0] != 0);
     }
@@ -65,16 +65,16 @@ static void context_refuses_bad_configurations(const test_case *test)
     sphg_config config = good;
     assert_int_equal(sphg_context_create(SPHG_VERSION, &good, NULL), SPHG_ERROR_ARGUMENT);
     const int32_t versions[] = {0, -1, SPHG_VERSION + 1000000, INT32_MAX, INT32_MIN};
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 5; ++k)
         expect_no_context(versions[k], &good, SPHG_ERROR_VERSION);
     const int32_t threads[] = {-1, INT32_MIN};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         config.threads = threads[k];
         expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
     }
     config = good;
     const int isas[] = {-1, 5, INT_MAX};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         config.isa = (sphg_isa)isas[k];
         expect_no_context(SPHG_VERSION, &config, SPHG_ERROR_ARGUMENT);
     }
@@ -178,10 +178,10 @@ static void refuse_bad_geometry(valid_call *own, victim_call *call)
     REFUSES(call, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "geometry", own->geometry_given = NULL);
     const int dimensions[] = {1, 4, -1, INT_MAX, INT_MIN};
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 5; ++k)
         REFUSES(call, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = dimensions[k]);
     const double radii[] = {0, -0.0, -1, NAN, INFINITY, -INFINITY};
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius", own->scheme.support_radius = radii[k]);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "source_count", own->geometry.source_count = -1);
     REFUSES(call, SPHG_ERROR_ARGUMENT, "target_count", own->geometry.target_count = -1);
@@ -206,14 +206,14 @@ static void refuse_bad_geometry(valid_call *own, victim_call *call)
     REFUSES(call, SPHG_ERROR_ARGUMENT, "support_radius",
             own->scheme.support_radius =
                 d == 3 ? (single ? 1e-13 : 1e-110) : (single ? 1.5e19 : 1.2e154));
-    for (int part = 1; part < 3 && d == 3; part++) /* one component of three is not aligned */
+    for (int part = 1; part < 3 && d == 3; ++part) /* one component of three is not aligned */
         REFUSES(call, SPHG_ERROR_ARGUMENT, "sources",
                 own->geometry.sources.y = (const char *)own->position_view.x + (part == 1);
                 own->geometry.sources.z = (const char *)own->position_view.x + (part == 2));
     if (single)
         REFUSES(call, SPHG_ERROR_TYPE, "precision", own->geometry.precision = SPHG_F64);
     const double periods[] = {-4, NAN, INFINITY, 1.5};
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; ++k)
         REFUSES(call, SPHG_ERROR_ARGUMENT, "period", own->geometry.period[1] = periods[k]);
 }
 
@@ -224,7 +224,7 @@ static void builds_refuse_bad_geometry(const test_case *test)
     refuse_bad_geometry(own, call_would_rebuild);
     refuse_bad_geometry(own, call_use_lists);
     const double skins[] = {-0.25, NAN, INFINITY};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         REFUSES(call_search, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
         REFUSES(call_would_rebuild, SPHG_ERROR_ARGUMENT, "skin", own->geometry.skin = skins[k]);
     }
@@ -265,11 +265,11 @@ static void builds_refuse_positions_that_are_not_finite(const test_case *test)
     valid_call *own = valid_call_create_plain(test);
     const int items[] = {0, 31, VALID_CALL_COUNT - 1};
     const double values[] = {NAN, INFINITY, -INFINITY};
-    for (int k = 0; k < 9; k++) {
+    for (int k = 0; k < 9; ++k) {
         const int item = items[k % 3];
         const double kept = get(own, item), last = get(own, VALID_CALL_COUNT - 1);
         const char *name = test_text("[%d]", item);
-        for (int lists = 0; lists < 2; lists++) {
+        for (int lists = 0; lists < 2; ++lists) {
             valid_call_reset(own);
             put(own, VALID_CALL_COUNT - 1, NAN);
             put(own, item, values[k / 3]);
@@ -360,7 +360,7 @@ static void inversion_refuses_bad_arguments(const test_case *test)
     valid_call *own = valid_call_create_plain(test);
     const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const double thresholds[] = {-0.01, 1, 2, NAN, INFINITY};
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 5; ++k)
         REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "threshold",
                 own->scheme.threshold = thresholds[k]);
     REFUSES(call_invert_moments, SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
@@ -390,7 +390,7 @@ static void inversion_refuses_bad_arguments(const test_case *test)
     REFUSES(call_invert_moments, SPHG_ERROR_UNSUPPORTED, "method", own->scheme.method = SPHG_PLAIN);
     const float bad_single[] = {-1, NAN, INFINITY};
     const double bad[] = {-1, NAN, INFINITY};
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         REFUSES(call_invert_moments, SPHG_ERROR_VOLUME, "volume", own->scheme.method = SPHG_MLS;
                 own->volume_view.stride = 0;
                 own->volume_view.x = own->volume_view.type == SPHG_F64
@@ -403,7 +403,7 @@ static void eigen_and_svd_refuse_bad_arguments(const test_case *test)
     valid_call *own = valid_call_create_plain(test);
     const sphg_type other = own->position_view.type == SPHG_F32 ? SPHG_F64 : SPHG_F32;
     const int dimensions[] = {1, 4, -1, INT_MAX};
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; ++k)
         REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "dimension", own->dimension = dimensions[k]);
     REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "count", own->count = -1);
     REFUSES(call_eigen, SPHG_ERROR_ARGUMENT, "matrices", own->symmetric.x = NULL);
@@ -465,7 +465,7 @@ static void messages_print_numbers_that_read_back(const test_case *test)
     valid_call *own = valid_call_create_plain(test);
     const double above_one[] = {1, nextafter(1, 2), 1.0000000001, 1.1, 1e300};
     const double below_zero[] = {-5e-324, -1e-9, -0.1, -1.0 / 3, -123456789};
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 5; ++k) {
         SHOWS(call_search, scheme.threshold, above_one[k]);
         SHOWS(call_search, scheme.threshold, below_zero[k]);
         SHOWS(call_search, scheme.support_radius, below_zero[k]);
@@ -489,7 +489,7 @@ static void messages_print_numbers_that_read_back(const test_case *test)
 static void correction_width_is_that_of_the_method(const test_case *test)
 {
     const int32_t classic = test->dimension == 2 ? 9 : 16, linear = test->dimension == 2 ? 3 : 6;
-    for (int method = 0; method < 6; method++) {
+    for (int method = 0; method < 6; ++method) {
         sphg_scheme scheme = setup_scheme(test, 1);
         scheme.method = (sphg_method)method;
         const int32_t expected = method == SPHG_PLAIN                          ? 0

@@ -53,10 +53,10 @@ static double *linear_vectors(const cloud *points, const double *v0, const doubl
 {
     int d = points->dimension;
     double *numbers = test_memory((size_t)(points->count * d) * sizeof *numbers);
-    for (int i = 0; i < points->count; i++)
-        for (int a = 0; a < d; a++) {
+    for (int i = 0; i < points->count; ++i)
+        for (int a = 0; a < d; ++a) {
             numbers[i * d + a] = v0 ? v0[a] : 0;
-            for (int b = 0; b < d; b++)
+            for (int b = 0; b < d; ++b)
                 numbers[i * d + a] += jacobian[a * d + b] * points->x[i * d + b];
         }
     return numbers;
@@ -65,7 +65,7 @@ static double *linear_vectors(const cloud *points, const double *v0, const doubl
 static double size_of(const double *numbers, int count)
 {
     double square = 0;
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         square += numbers[k] * numbers[k];
     return sqrt(square);
 }
@@ -87,7 +87,7 @@ static quality judge(const comparison *on)
     request.rank = setup_view(&found.rank);
     request.lambda_min = setup_view(&found.lambda);
     SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-    for (int i = 0; i < on->points.count; i++)
+    for (int i = 0; i < on->points.count; ++i)
         found.full += setup_get(&found.rank, i, 0) == on->points.dimension;
     return found;
 }
@@ -99,7 +99,7 @@ static double error_of(const comparison *on, const quality *good, const setup_ar
     if (setup_get(&good->rank, i, 0) != on->points.dimension)
         return -1;
     double error[9];
-    for (int k = 0; k < found->width; k++)
+    for (int k = 0; k < found->width; ++k)
         error[k] = setup_get(found, i, k) - exact[k];
     return size_of(error, found->width) * setup_get(&good->lambda, i, 0) / (scale * on->scene.unit);
 }
@@ -108,7 +108,7 @@ static void require_exact(const comparison *on, const quality *good, const setup
                           const double *exact, double scale, const char *what)
 {
     const char *where = test_text("%s, %s, %s", what, on->name, test_method_name(on->test->method));
-    for (int i = 0; i < on->points.count; i++)
+    for (int i = 0; i < on->points.count; ++i)
         TEST_WITHIN(linear_exactness, error_of(on, good, found, i, exact, scale), where);
 }
 
@@ -150,7 +150,7 @@ static void check_linear(const comparison *on, const quality *good, sphg_form fo
 
 static void linear_fields_are_exact(const test_case *test)
 {
-    for (int s = 0; s < exact_scene_count; s++) {
+    for (int s = 0; s < exact_scene_count; ++s) {
         comparison on = make_stage(test, &exact_scenes[s]);
         quality good = judge(&on);
         require_full_ranks(&on, &good, &exact_scenes[s]);
@@ -164,7 +164,7 @@ static void linear_fields_are_exact(const test_case *test)
 static void linear_fields_are_exact_on_lists_that_lack_pairs(const test_case *test)
 {
     const comparison whole = make_stage(test, &exact_scenes[jittered]);
-    for (int lack = 0; lack < COMPARISON_LACKS; lack++) {
+    for (int lack = 0; lack < COMPARISON_LACKS; ++lack) {
         const comparison on = comparison_lacking(&whole, (comparison_lack)lack);
         const quality good = judge(&on);
         TEST_REQUIRE(good.full >= .7 * on.points.count, "only %d: %s", good.full, on.name);
@@ -181,11 +181,11 @@ static void corrections_of_other_lists_are_far_from_exact(const test_case *test)
     const setup_array table = comparison_table(&whole);
     const comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
                                     linear_vectors(&whole.points, start, j)};
-    for (int lack = 0; lack < COMPARISON_LACKS; lack++) {
+    for (int lack = 0; lack < COMPARISON_LACKS; ++lack) {
         const comparison on = comparison_lacking(&whole, (comparison_lack)lack);
         const comparison_result found = comparison_apply(&on, &field, &table);
         double worst = 0;
-        for (int i = 0; i < on.points.count; i++)
+        for (int i = 0; i < on.points.count; ++i)
             worst = test_larger(worst, fabs(setup_get(&found.gradient, i, 0) - j[0]));
         TEST_REQUIRE(worst > .2, "off by %g only: %s", worst, on.name);
     }
@@ -195,22 +195,22 @@ static void linear_scalars_and_tensors_are_exact(const test_case *test)
 {
     int d = test->dimension;
     static const double slope[] = {3, -2, 1};
-    for (int s = 0; s < exact_scene_count; s++) {
+    for (int s = 0; s < exact_scene_count; ++s) {
         comparison on = make_stage(test, &exact_scenes[s]);
         quality good = judge(&on);
         double *scalars = test_memory((size_t)on.points.count * sizeof *scalars);
         double *tensors = test_memory((size_t)(on.points.count * d * d) * sizeof *tensors);
-        for (int i = 0; i < on.points.count; i++) {
-            for (int b = 0; b < d; b++)
+        for (int i = 0; i < on.points.count; ++i) {
+            for (int b = 0; b < d; ++b)
                 scalars[i] += slope[b] * on.points.x[i * d + b];
-            for (int k = 0; k < d * d; k++)
+            for (int k = 0; k < d * d; ++k)
                 tensors[i * d * d + k] = (k + 1) * scalars[i];
         }
         comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, scalars};
         comparison_result found = comparison_apply(&on, &field, NULL);
         require_exact(&on, &good, &found.gradient, slope, size_of(slope, d), "scalar gradient");
         double divergence[3] = {0};
-        for (int k = 0; k < d * d; k++)
+        for (int k = 0; k < d * d; ++k)
             divergence[k / d] += (k + 1) * slope[k % d];
         field = (comparison_field){SPHG_TENSOR, SPHG_DIFFERENCE, tensors};
         found = comparison_apply(&on, &field, NULL);
@@ -228,16 +228,16 @@ static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_c
     static const double spins[2][9] = {{0, -2, 2, 0}, {0, -3, 1, 3, 0, -2, -1, 2, 0}};
     const double *spin = spins[d - 2], none = 0;
     double curl[3] = {4, 2, 6}, size = size_of(spin, d * d);
-    for (int s = 0; s < exact_scene_count; s++) {
+    for (int s = 0; s < exact_scene_count; ++s) {
         comparison on = make_stage(test, &exact_scenes[s]);
         quality good = judge(&on);
         comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
                                   linear_vectors(&on.points, NULL, spin)};
         comparison_result found = comparison_apply(&on, &field, NULL);
         double *numbers = setup_doubles(&found.gradient), zeros[9] = {0};
-        for (int i = 0; i < on.points.count; i++)
-            for (int a = 0; a < d; a++)
-                for (int b = a; b < d; b++) {
+        for (int i = 0; i < on.points.count; ++i)
+            for (int a = 0; a < d; ++a)
+                for (int b = a; b < d; ++b) {
                     double *left = &numbers[i * d * d + a * d + b];
                     double *right = &numbers[i * d * d + b * d + a];
                     *left = *right = (*left + *right) / 2;
@@ -254,18 +254,18 @@ static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_c
 
 static void require_zero(const setup_array *found, const char *what)
 {
-    for (int k = 0; k < found->count * found->width; k++)
+    for (int k = 0; k < found->count * found->width; ++k)
         TEST_REQUIRE(setup_get(found, k / found->width, k % found->width) == 0, "%s, number %d",
                      what, k);
 }
 
 static void constants_have_exactly_no_derivative(const test_case *test)
 {
-    for (int s = 0; s < exact_scene_count; s++) {
+    for (int s = 0; s < exact_scene_count; ++s) {
         comparison on = make_stage(test, &exact_scenes[s]);
         int total = on.points.count * on.points.dimension;
         double *field = test_memory((size_t)total * sizeof *field);
-        for (int k = 0; k < total; k++)
+        for (int k = 0; k < total; ++k)
             field[k] = .1 + k % on.points.dimension;
         comparison_field constant = {SPHG_VECTOR, SPHG_DIFFERENCE, field};
         comparison_result found = comparison_apply(&on, &constant, NULL);
@@ -286,9 +286,9 @@ static void plain_sph_is_far_from_exact(const test_case *test)
     comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, linear_vectors(&on.points, start, j)};
     comparison_result found = comparison_apply(&on, &field, NULL);
     double worst = 0;
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         double error[9];
-        for (int k = 0; k < d * d; k++)
+        for (int k = 0; k < d * d; ++k)
             error[k] = setup_get(&found.gradient, i, k) - j[k];
         worst = test_larger(worst, size_of(error, d * d) / size_of(j, d * d));
     }

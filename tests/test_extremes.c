@@ -65,7 +65,7 @@ static double *positions_in_cube(int count, int dimension, double side)
 {
     random_state random = random_seeded(401);
     double *x = test_memory((size_t)(count * dimension) * sizeof *x);
-    for (int k = 0; k < count * dimension; k++)
+    for (int k = 0; k < count * dimension; ++k)
         x[k] = random_between(&random, 0, side);
     return x;
 }
@@ -82,7 +82,7 @@ static cost cost_of_search(const test_case *test, const setup_array *positions)
     const sphg_scheme scheme = setup_scheme(test, 1);
     sphg_geometry geometry = {.sources = setup_view(positions)};
     geometry.source_count = geometry.target_count = positions->count;
-    for (int repeat = 0; repeat < 3; repeat++) {
+    for (int repeat = 0; repeat < 3; ++repeat) {
         fake_host own;
         sphg_context *context = NULL;
         sphg_neighbors *neighbors = NULL;
@@ -127,7 +127,7 @@ static void escapee_costs_next_to_nothing(const test_case *test)
 static setup_array clump(const test_case *test, int count)
 {
     double *x = positions_in_cube(count, test->dimension, .25);
-    for (int k = 0; k < count / 10 * test->dimension; k++)
+    for (int k = 0; k < count / 10 * test->dimension; ++k)
         x[k] = .125;
     return setup_numbers(test_position_type(test), count, test->dimension, x);
 }
@@ -154,7 +154,7 @@ static void clumps_can_be_summed_without_lists(const test_case *test)
     const sphg_sources sources = {.neighbors = own->neighbors};
     SETUP_OK(own->context,
              sphg_pair_gradients(own->context, &scheme, &sources, &subset, sphg_absent(), &pairs));
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         assert_int_equal(offsets[k + 1] - offsets[k], count - 1);
     TEST_REQUIRE(own->limit.largest <= (size_t)count * 512 + (1 << 22), "asked for %zu bytes",
                  own->limit.largest);
@@ -194,7 +194,7 @@ static setup_array positions_of(const test_case *test, crowd all)
     const setup_array made = setup_output(one.type, (int)count_of(all), 3);
     const float *from = one.data;
     float *to = made.data;
-    for (int c = 0; c < all.clumps; c++)
+    for (int c = 0; c < all.clumps; ++c)
         for (int k = 0; k < all.each; k++, to += 3) {
             to[0] = from[3 * k] + (float)(c % ROW * APART);
             to[1] = from[3 * k + 1] + (float)(c / ROW * APART);
@@ -234,7 +234,7 @@ static void pairs_beyond_32_bits_are_counted(const test_case *test)
     SETUP_OK(own->context,
              sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
     assert_true(pairs.count == pairs_of(all));
-    for (int64_t i = 0; i <= count; i++)
+    for (int64_t i = 0; i <= count; ++i)
         TEST_REQUIRE(offsets[i] == i * (all.each - 1), "offset %lld is %lld", (long long)i,
                      (long long)offsets[i]);
 }
@@ -314,7 +314,7 @@ static void room_for_more_pairs_than_32_bits_count_may_be_offered(const test_cas
     SETUP_OK(own->context,
              sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));
     assert_int_equal(pairs.count, 12);
-    for (int k = 0; k < 12; k++)
+    for (int k = 0; k < 12; ++k)
         assert_int_equal(pairs.indices[k], k % 3 + (k % 3 >= k / 3));
     munmap(memory, for_indices + bytes);
 }

@@ -76,7 +76,7 @@ static void corrected_rotation_is_exact_on_the_jittered_lattice(const test_case 
 static void trigonometric_error_of_plain_sph_does_not_fall(const test_case *test)
 {
     static const double printed[SIZES] = {1.973, 1.969, 1.968};
-    for (int size = 0; size < SIZES; size++) {
+    for (int size = 0; size < SIZES; ++size) {
         const struct study_errors errors =
             errors_of(test, sides[size], 0, FIELD_TRIGONOMETRIC, SPHG_PLAIN);
         agrees(test, sides[size], errors.boundary_max, printed[size], 1e-3, "boundary maximum");
@@ -90,7 +90,7 @@ static void trigonometric_error_of_linearised_methods_is_known(const test_case *
     static const double inside[SIZES] = {0.01121, 0.002811, 0.000711};
     static const double inside_digit[SIZES] = {1e-5, 1e-6, 1e-6};
     const double *boundary = test->method == SPHG_KGC ? kgc : mls_and_rkpm;
-    for (int size = 0; size < SIZES; size++) {
+    for (int size = 0; size < SIZES; ++size) {
         const struct study_errors errors =
             errors_of(test, sides[size], 0, FIELD_TRIGONOMETRIC, test->method);
         agrees(test, sides[size], errors.boundary_max, boundary[size], 1e-4, "boundary maximum");

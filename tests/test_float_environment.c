@@ -115,9 +115,9 @@ static world world_of(const test_case *test)
     own.scheme = setup_scheme(test, 2);
     own.field = setup_numbers(type, COUNT, 1, numbers);
     own.volume = setup_numbers(type, COUNT, 1, cloud_volumes(&points, .2, &random));
-    for (int k = 0; k < COUNT * 9; k++)
+    for (int k = 0; k < COUNT * 9; ++k)
         matrices[k] = random_between(&random, -small, small);
-    for (int k = 0; k < COUNT; k++)
+    for (int k = 0; k < COUNT; ++k)
         numbers[k] *= small;
     own.tiny = setup_numbers(type, COUNT, 1, numbers);
     own.matrices = setup_numbers(type, COUNT, 9, matrices);
@@ -173,7 +173,7 @@ static void *work(void *given)
     job->result = sphg_context_create(SPHG_VERSION, &job->config, &context);
     if (!job->result)
         job->result = sphg_neighbors_create(context, &neighbors);
-    for (int step = 0; step < 2 && !job->result; step++)
+    for (int step = 0; step < 2 && !job->result; ++step)
         job->result = sphg_neighbors_search(context, neighbors, &job->own->scheme, &geometry);
     if (!job->result)
         job->result = operate(job, context, neighbors);
@@ -219,13 +219,13 @@ static void each_in_its_own(sphg_task *task, void *data, int32_t count, int32_t 
     errand errands[workers];
     pthread_t threads[workers];
     (void)grain, (void)user;
-    for (int32_t w = 0; w < workers; w++) {
+    for (int32_t w = 0; w < workers; ++w) {
         const int32_t begin = (int32_t)((int64_t)count * w / workers);
         const int32_t end = (int32_t)((int64_t)count * (w + 1) / workers);
         errands[w] = (errand){task, data, begin, end, w, environment_of(7 * w + 2), 0};
         pthread_create(&threads[w], NULL, do_errand, &errands[w]);
     }
-    for (int w = 0; w < workers; w++) {
+    for (int w = 0; w < workers; ++w) {
         pthread_join(threads[w], NULL);
         was_lost |= errands[w].lost;
     }
@@ -247,7 +247,7 @@ static void results_do_not_depend_on_the_float_environment(const test_case *test
         run_around(&own, &configs[0], environment_of(0), .5, "default")};
     was_lost = 0;
     for (int number = 0; number < ENVIRONMENTS; number += TEST_SLOWED ? 3 : 1)
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 4; ++k) {
             const char *where = test_text("environment %d, executor %d", number, k);
             const setup_array found =
                 run_around(&own, &configs[k], environment_of(number), number % 2 * .5, where);
@@ -280,9 +280,9 @@ static void every_function_leaves_the_environment_alone(const test_case *test)
 {
     valid_call *own = valid_call_create(test, 0);
     unsigned char *expected = test_memory(VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES);
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++)
-            for (int number = 0; number < ENVIRONMENTS; number++) {
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p)
+            for (int number = 0; number < ENVIRONMENTS; ++number) {
                 const probe *tested = &argument_functions[f].probes[p];
                 const environment around = environment_of(number);
                 if (!tested->call)
@@ -310,7 +310,7 @@ static void functions_of_numbers_do_not_depend_on_it(const test_case *test)
     const sphg_scheme scheme = setup_scheme(test, 1.25);
     const double x[3] = {.1, .3, .7}, table[6] = {1.1, .2, .3, .9, .1, 1.3};
     double expected[8] = {0};
-    for (int number = 0; number < ENVIRONMENTS; number++) {
+    for (int number = 0; number < ENVIRONMENTS; ++number) {
         double found[8] = {0};
         const environment around = environment_of(number);
         set_environment(around);

@@ -33,7 +33,7 @@ static setup_array numbers_of(sphg_type type, int width, double low, double high
                               random_state *random)
 {
     double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
-    for (int k = 0; k < COUNT * width; k++)
+    for (int k = 0; k < COUNT * width; ++k)
         numbers[k] = random_between(random, low, high);
     return setup_numbers(type, COUNT, width, numbers);
 }
@@ -45,7 +45,7 @@ static setting setting_of(const test_case *test)
     random_state random = random_seeded(191);
     setting own = {.test = test, .scheme = setup_scheme(test, 2)};
     cloud points = cloud_random(DIMENSION, COUNT, 11, &random);
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         points.x[DIMENSION * i] *= points.x[DIMENSION * i] / 8;
     own.position = setup_positions(test, &points);
     scene particles = scene_of_cloud(test, &points);
@@ -106,7 +106,7 @@ static sphg_view output_of(const setting *own, outputs *all, sphg_type type, int
 static uint64_t hash_of(uint64_t hash, const void *data, size_t bytes) /* FNV-1a */
 {
     const unsigned char *at = data;
-    for (size_t k = 0; k < bytes; k++)
+    for (size_t k = 0; k < bytes; ++k)
         hash = (hash ^ at[k]) * UINT64_C(1099511628211);
     return hash;
 }
@@ -115,7 +115,7 @@ static uint64_t hash_of_outputs(const outputs *all, const sphg_stats *stats)
 {
     /* What came later is 0 here, and has tests of its own. */
     uint64_t hash = hash_of(UINT64_C(14695981039346656037), stats, offsetof(sphg_stats, quadratic));
-    for (int k = 0; k < all->count; k++) {
+    for (int k = 0; k < all->count; ++k) {
         size_t number;
         const size_t bytes = bytes_of(&all->arrays[k], &number);
         hash = hash_of(hash, all->arrays[k].data, bytes);
@@ -249,7 +249,7 @@ static hashes run(const setting *own)
     sphg_context *context = NULL;
     hashes found;
     SETUP_OK(NULL, sphg_context_create(SPHG_VERSION, own->config, &context));
-    for (supply how = KEPT; how < SUPPLIES; how++) {
+    for (supply how = KEPT; how < SUPPLIES; ++how) {
         sphg_neighbors *neighbors = neighbors_of(own, context, how);
         found.of[how] = hash_of_sweeps(own, context, neighbors);
         sphg_neighbors_destroy(neighbors);
@@ -268,7 +268,7 @@ static hashes run_under(const setting *own, const sphg_config *config, random_st
 
 static void require_same(const hashes *found, const hashes *expected, const char *where)
 {
-    for (supply how = KEPT; how < SUPPLIES; how++)
+    for (supply how = KEPT; how < SUPPLIES; ++how)
         TEST_REQUIRE(found->of[how] == expected->of[how], "%s, %s: %016llx, not %016llx", where,
                      supply_names[how], (unsigned long long)found->of[how],
                      (unsigned long long)expected->of[how]);
@@ -282,7 +282,7 @@ static void try_threads(const setting *own, sphg_isa isa, const hashes *expected
     static const int32_t some[2][2] = {{3, 64}, {2, 16}};
     random_state shifts = random_seeded(193);
     const int count = long_or(64, TEST_SLOWED ? 1 : 2);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         const int32_t threads = count == 64 ? k + 1 : some[(int)isa % 2][k];
         const sphg_config config = {.isa = isa, .threads = threads};
         const hashes found = run_under(own, &config, &shifts);
@@ -317,7 +317,7 @@ static void require_one_hash(const test_case *test, int order)
     own.scheme.order = order;
     hashes of_fused; /* of the paths that fuse products and sums: their vectors differ in length */
     int paths = 0, fused = 0;
-    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         const sphg_config serial = {.isa = isa, .threads = 1};
         if (!setup_context_on(isa))
             continue;
@@ -331,7 +331,7 @@ static void require_one_hash(const test_case *test, int order)
         }
         try_threads(&own, isa, &expected);
         try_executors(&own, isa, &expected);
-        paths++;
+        ++paths;
     }
     assert_true(paths > 0);
 }

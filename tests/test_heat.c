@@ -21,7 +21,7 @@ static plate plate_of(const test_case *test, int side, double jitter, double sup
     random_state random = random_seeded(61);
     plate made = {.test = test, .spacing = 2. / side};
     made.points = cloud_jittered(2, side, made.spacing, jitter, &random);
-    for (int k = 0; k < 2 * made.points.count; k++)
+    for (int k = 0; k < 2 * made.points.count; ++k)
         made.points.x[k] += made.spacing / 2 - 1;
     made.context = setup_context();
     made.scheme = setup_scheme(test, support * made.spacing);
@@ -64,7 +64,7 @@ static void give_volumes(plate *on, int alike)
     sphg_field sum = {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &ones};
     sum.value = sphg_view_f64(on->volume, sizeof *on->volume);
     request_one(on, &on->scheme, &sum);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         on->volume[i] = alike ? on->spacing * on->spacing : 1 / on->volume[i];
     on->sources.volume = sphg_view_f64(on->volume, sizeof *on->volume);
     on->sources.same_volumes = 0;
@@ -87,7 +87,7 @@ static void flow(const plate *on, const double *u, double *result)
 static double dot(int n, const double *a, const double *b)
 {
     double sum = 0;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         sum += a[i] * b[i];
     return sum;
 }
@@ -98,22 +98,22 @@ static double *solved(const plate *on, const double *f)
     const int n = on->points.count;
     double *u = numbers_of(on, 1), *r = numbers_of(on, 1), *p = numbers_of(on, 1),
            *q = numbers_of(on, 1);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         p[i] = r[i] = on->volume[i] * f[i];
     double square = dot(n, r, r);
     const double end = 1e-16 * square;
-    for (int step = 0; square > end; step++) {
+    for (int step = 0; square > end; ++step) {
         TEST_REQUIRE(step < 2000, "no solution after %d steps", step);
         flow(on, p, q);
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             q[i] = on->volume[i] * p[i] - .1 * q[i];
         const double a = square / dot(n, p, q), before = square;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; ++i) {
             u[i] += a * p[i];
             r[i] -= a * q[i];
         }
         square = dot(n, r, r);
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             p[i] = r[i] + square / before * p[i];
     }
     return u;
@@ -126,7 +126,7 @@ typedef struct errors {
 static errors errors_of(const plate *on, const double *u, const double *exact)
 {
     errors found = {0, 0};
-    for (int i = 0; i < on->points.count; i++) {
+    for (int i = 0; i < on->points.count; ++i) {
         const double error = fabs(u[i] - exact[i]);
         found.rms += error * error / on->points.count;
         found.most = test_larger(found.most, error);
@@ -141,7 +141,7 @@ static errors wave(plate on, int alike)
     const double pi = acos(-1);
     give_volumes(&on, alike);
     double *f = numbers_of(&on, 1), *exact = numbers_of(&on, 1);
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         exact[i] = cos(pi * on.points.x[2 * i]) * cos(pi * on.points.x[2 * i + 1]);
         f[i] = (1 + .2 * pi * pi) * exact[i];
     }
@@ -157,9 +157,9 @@ static void errors_of_waves_are_known(const test_case *test)
 {
     static const double kgc[2][3] = {{.01405, .00563, .00255}, {.00776, .00265, .00127}},
                         most[3] = {.0547, .0248, .0118}, plain[3] = {.01668, .00660, .00286};
-    for (int size = 0; size < 3; size++) {
+    for (int size = 0; size < 3; ++size) {
         const plate on = plate_of(test, 20 << size, 0, 2);
-        for (int alike = 0; alike <= (test->method == SPHG_KGC); alike++) {
+        for (int alike = 0; alike <= (test->method == SPHG_KGC); ++alike) {
             const errors found = wave(on, alike);
             if (test->method == SPHG_KGC)
                 agrees(found.rms, kgc[alike][size], 1e-5, test_text("side %d", 20 << size));
@@ -175,14 +175,14 @@ static void errors_of_waves_are_known(const test_case *test)
 static void solutions_converge_on_disorder(const test_case *test)
 {
     double error[2], plain[2];
-    for (int fine = 0; fine < 2; fine++) {
+    for (int fine = 0; fine < 2; ++fine) {
         plate on = plate_of(test, 20 << fine, .2, 2);
         error[fine] = wave(on, 0).rms;
         on.scheme.method = SPHG_PLAIN;
         plain[fine] = wave(on, 0).rms;
     }
     TEST_REQUIRE(error[1] < .75 * error[0], "%g, then %g", error[0], error[1]);
-    for (int fine = 0; fine < 2; fine++)
+    for (int fine = 0; fine < 2; ++fine)
         TEST_REQUIRE(error[fine] < .75 * plain[fine], "%g, plain %g", error[fine], plain[fine]);
 }
 
@@ -191,12 +191,12 @@ static void slabs_in_series_are_known(const test_case *test)
 {
     static const double rms[2] = {.00384, .00192};
     const double pi = acos(-1);
-    for (int size = 0; size < 2; size++) {
+    for (int size = 0; size < 2; ++size) {
         plate on = plate_of(test, 20 << size, 0, 2);
         give_volumes(&on, 0);
         on.k = numbers_of(&on, 1);
         double *f = numbers_of(&on, 1), *exact = numbers_of(&on, 1);
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             const double s = sin(pi * on.points.x[2 * i] / 2);
             on.k[i] = on.points.x[2 * i] < 0 ? 1 : 10;
             exact[i] = s / on.k[i];
@@ -218,11 +218,11 @@ static void one_decays_and_the_other_blows_up(const test_case *test)
     const double dt = .1 * on.spacing * on.spacing;
     sphg_scheme second = on.scheme;
     second.order = 2;
-    for (int exact = 0; exact < 2; exact++) {
-        for (int i = 0; i < n; i++)
+    for (int exact = 0; exact < 2; ++exact) {
+        for (int i = 0; i < n; ++i)
             u[i] = cos(40 * on.points.x[2 * i]) * cos(33 * on.points.x[2 * i + 1]);
         double before = 1;
-        for (int step = 0; step < 200; step++) {
+        for (int step = 0; step < 200; ++step) {
             const sphg_view values = sphg_view_f64(u, sizeof *u);
             sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &values};
             field.laplacian = sphg_view_f64(rate, sizeof *rate);
@@ -233,7 +233,7 @@ static void one_decays_and_the_other_blows_up(const test_case *test)
             else
                 flow(&on, u, rate);
             largest[exact] = 0;
-            for (int i = 0; i < n; i++) {
+            for (int i = 0; i < n; ++i) {
                 u[i] += dt * rate[i] / (exact ? 1 : on.volume[i]);
                 largest[exact] = test_larger(largest[exact], fabs(u[i]));
             }

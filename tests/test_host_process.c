@@ -19,7 +19,7 @@ typedef struct reaction {
 
 static void remember_signals(reaction *reactions)
 {
-    for (int k = 1; k < SIGNALS; k++) {
+    for (int k = 1; k < SIGNALS; ++k) {
         struct sigaction action = {0};
         sigaction(k, NULL, &action);
         reactions[k].handler = action.sa_handler;
@@ -34,13 +34,13 @@ static long printed_by_calls(valid_call *own)
     assert_non_null(file);
     fflush(stdout);
     const int kept[2] = {dup(1), dup(2)};
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         dup2(fileno(file), k + 1);
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++) {
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p) {
             const probe *tested = &argument_functions[f].probes[p];
             trial made;
-            for (int a = 0; tested->call && a < tested->count; a++) {
+            for (int a = 0; tested->call && a < tested->count; ++a) {
                 valid_call_reset(own);
                 if (tested->prepare)
                     tested->prepare(own);
@@ -50,7 +50,7 @@ static long printed_by_calls(valid_call *own)
             }
         }
     fflush(stdout);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         dup2(kept[k], k + 1);
         close(kept[k]);
     }
@@ -71,7 +71,7 @@ static void calls_leave_the_process_alone(const test_case *test)
     pthread_sigmask(SIG_SETMASK, NULL, &mask_after);
     remember_signals(after);
     assert_int_equal(printed, 0);
-    for (int k = 1; k < SIGNALS; k++) {
+    for (int k = 1; k < SIGNALS; ++k) {
         assert_true(before[k].handler == after[k].handler && before[k].flags == after[k].flags);
         assert_int_equal(sigismember(&mask_before, k), sigismember(&mask_after, k));
     }
@@ -86,8 +86,8 @@ enum { HELPERS = 12, ROUNDS = 5 };
 static uint64_t digest_of_calls(valid_call *own)
 {
     uint64_t digest = UINT64_C(14695981039346656037);
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++) {
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p) {
             const probe *tested = &argument_functions[f].probes[p];
             if (!tested->call)
                 continue;
@@ -95,7 +95,7 @@ static uint64_t digest_of_calls(valid_call *own)
             if (tested->prepare)
                 tested->prepare(own);
             digest = (digest ^ (uint64_t)tested->call(own)) * UINT64_C(1099511628211);
-            for (int k = 0; k < VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES; k++)
+            for (int k = 0; k < VALID_CALL_SLOTS * VALID_CALL_SLOT_BYTES; ++k)
                 digest = (digest ^ own->outputs[k]) * UINT64_C(1099511628211);
         }
     return digest;
@@ -111,7 +111,7 @@ static void *help(void *given)
 {
     helper *job = given;
     job->same = 1;
-    for (int round = 0; round < ROUNDS; round++)
+    for (int round = 0; round < ROUNDS; ++round)
         job->same &= digest_of_calls(job->own) == job->expected;
     return NULL;
 }
@@ -120,16 +120,16 @@ static void contexts_work_side_by_side(const test_case *test)
 {
     helper helpers[HELPERS];
     pthread_t threads[HELPERS];
-    for (int k = 0; k < HELPERS; k++)
+    for (int k = 0; k < HELPERS; ++k)
         helpers[k].own = valid_call_create(test, 0);
     const uint64_t expected = digest_of_calls(helpers[0].own);
-    for (int k = 0; k < HELPERS; k++) {
+    for (int k = 0; k < HELPERS; ++k) {
         helpers[k].expected = expected;
         assert_int_equal(pthread_create(&threads[k], NULL, help, &helpers[k]), 0);
     }
-    for (int k = 0; k < HELPERS; k++)
+    for (int k = 0; k < HELPERS; ++k)
         pthread_join(threads[k], NULL);
-    for (int k = 0; k < HELPERS; k++)
+    for (int k = 0; k < HELPERS; ++k)
         TEST_REQUIRE(helpers[k].same, "thread %d has other bits", k);
 }
 
@@ -166,7 +166,7 @@ static uint64_t digest_by(const fork_world *own, sphg_context *context)
     sphg_neighbors_destroy(neighbors);
     uint64_t digest = UINT64_C(14695981039346656037);
     const unsigned char *bytes = own->corrections.data;
-    for (size_t k = 0; k < (size_t)FORK_COUNT * (size_t)width * 8; k++)
+    for (size_t k = 0; k < (size_t)FORK_COUNT * (size_t)width * 8; ++k)
         digest = (digest ^ bytes[k]) * UINT64_C(1099511628211);
     return failed ? 0 : digest | 1;
 }
@@ -267,7 +267,7 @@ static void contexts_say_what_they_are(const test_case *test)
     SETUP_OK(NULL, sphg_context_get_info(setup_context_with(NULL), &best));
     assert_int_equal(best.openmp, TEST_OPENMP);
     assert_true(best.isa != SPHG_ISA_BEST && best.threads >= 1 && best.bytes > 0);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         sphg_context *const context = setup_context_on(sets[k]);
         if (!context)
             continue;

@@ -17,9 +17,9 @@ static int begins_with(const char *path, const char *name, size_t length)
 
 static int has_row(const char *function, const char *name, size_t length)
 {
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++)
-            for (int a = 0; a < argument_functions[f].probes[p].count; a++)
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p)
+            for (int a = 0; a < argument_functions[f].probes[p].count; ++a)
                 if ((!function || strcmp(argument_functions[f].name, function) == 0) &&
                     begins_with(argument_functions[f].probes[p].arguments[a].path, name, length))
                     return 1;
@@ -29,7 +29,7 @@ static int has_row(const char *function, const char *name, size_t length)
 static void every_parameter_has_a_row(const test_case *test)
 {
     (void)test;
-    for (int f = 0; f < argument_function_count; f++)
+    for (int f = 0; f < argument_function_count; ++f)
         for (const char *word = argument_functions[f].parameters + 1; *word;) {
             const size_t length = strcspn(word, " ");
             TEST_REQUIRE(!length || has_row(argument_functions[f].name, word, length),
@@ -51,7 +51,7 @@ static const struct {
 
 static void require_row(const char *structure, const char *name)
 {
-    for (size_t k = 0; k < sizeof prefixes / sizeof *prefixes; k++)
+    for (size_t k = 0; k < sizeof prefixes / sizeof *prefixes; ++k)
         if (strcmp(prefixes[k].structure, structure) == 0) {
             const char *path =
                 test_text("%s.%s", prefixes[k].prefix ? prefixes[k].prefix : "", name);
@@ -93,7 +93,7 @@ __attribute__((format(printf, 2, 3))) static void judge(int holds, const char *f
     va_list arguments;
     if (holds)
         return;
-    complaints++;
+    ++complaints;
     va_start(arguments, format);
     vprintf(format, arguments);
     va_end(arguments);
@@ -159,7 +159,7 @@ static int try_once(valid_call *own, const argument_function *function, const pr
     argument_restore(&made);
     prepare(own, tested);
     judge(tested->call(own) == SPHG_OK, "after %s: %s", where, own->host->log_message);
-    cells++;
+    ++cells;
     return 1;
 }
 
@@ -167,16 +167,16 @@ static void refuse_everywhere(const test_case *test, int trusted)
 {
     valid_call *own = valid_call_create(test, trusted);
     cells = complaints = 0;
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++) {
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p) {
             const probe *tested = &argument_functions[f].probes[p];
             if (!tested->call)
                 continue;
-            for (int a = 0; a < tested->count; a++)
+            for (int a = 0; a < tested->count; ++a)
                 for (int number = 0;
                      !(trusted && argument_is_about_numbers(tested->arguments[a].kind)) &&
                      try_once(own, &argument_functions[f], tested, a, number);
-                     number++)
+                     ++number)
                     ;
         }
     printf("%ld cells\n", cells);
@@ -226,8 +226,8 @@ static void every_function_is_refused_while_the_context_is_busy(const test_case 
 {
     valid_call *own = valid_call_create(test, 0);
     setup_array results = setup_output(test_field_type(test), VALID_CALL_COUNT, test->dimension);
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++) {
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p) {
             reentry again = {own, &argument_functions[f].probes[p], SPHG_OK, 0};
             const sphg_lists lists = {.row = row_that_calls_back, .user = &again};
             if (!takes_a_context(again.tested))
@@ -261,7 +261,7 @@ static void functions_without_a_result_are_harmless(const test_case *test)
 {
     (void)test;
     const double x[3] = {.1, .2, .3};
-    for (int k = -1; k < BAD_SCHEMES; k++) {
+    for (int k = -1; k < BAD_SCHEMES; ++k) {
         const sphg_scheme *scheme = k < 0 ? NULL : &bad_schemes[k];
         double a = 0, b = 0, gradient[3] = {0};
         sphg_kernel_value(scheme, .5, &a, &b);

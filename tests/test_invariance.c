@@ -27,8 +27,8 @@ static host_lists everybody(int count)
     lists.offsets = test_memory(((size_t)count + 1) * sizeof *lists.offsets);
     lists.indices = test_memory((size_t)count * (size_t)count * sizeof *lists.indices);
     int64_t used = 0;
-    for (int i = 0; i < count; i++) {
-        for (int j = 0; j < count; j++)
+    for (int i = 0; i < count; ++i) {
+        for (int j = 0; j < count; ++j)
             if (j != i)
                 lists.indices[used++] = j;
         lists.offsets[i + 1] = used;
@@ -61,7 +61,7 @@ static comparison listed_stage(const test_case *test, cloud points, double suppo
 static double *scaled(const double *numbers, int count, int exponent)
 {
     double *result = test_memory((size_t)count * sizeof *result);
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         result[k] = ldexp(numbers[k], exponent);
     return result;
 }
@@ -70,7 +70,7 @@ static double *scaled(const double *numbers, int count, int exponent)
 static void require_scaled(const setup_array *expected, const setup_array *found, int exponent,
                            const char *what, int k)
 {
-    for (int n = 0; n < expected->count * expected->width; n++) {
+    for (int n = 0; n < expected->count * expected->width; ++n) {
         int i = n / expected->width, c = n % expected->width;
         double exact = ldexp(setup_get(expected, i, c), exponent);
         TEST_REQUIRE(exact == setup_get(found, i, c), "%s at 2^%d, item %d: %a, not %a", what, k, i,
@@ -82,7 +82,7 @@ static comparison scaled_stage(const comparison *made, int k)
 {
     cloud points = cloud_copy(&made->points);
     int d = points.dimension;
-    for (int n = 0; n < points.count * d; n++)
+    for (int n = 0; n < points.count * d; ++n)
         points.x[n] = ldexp(points.x[n], k);
     points.spacing = ldexp(points.spacing, k);
     comparison on =
@@ -126,11 +126,11 @@ static void powers_of_two_scale_to_the_bit(const test_case *test)
     int most = largest_exponent(test, 1), least = -largest_exponent(test, -1);
     int exponents[] = {1, -7, most / 2, most, least};
     cloud points = unit_block(test->dimension);
-    for (int k = 0; k < points.count * points.dimension; k++)
+    for (int k = 0; k < points.count * points.dimension; ++k)
         points.x[k] *= .6875; /* so that 1 / H^d and V are normal numbers at both limits */
     points.spacing = .6875;
     comparison small = comparison_of(test, "block", points, 1.5);
-    for (int e = 0; e < 5; e++) {
+    for (int e = 0; e < 5; ++e) {
         int k = exponents[e];
         comparison large = scaled_stage(&small, k);
         comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
@@ -151,11 +151,11 @@ static void powers_of_two_keep_ranks_and_scale_corrections(const test_case *test
 {
     comparison small = comparison_of(test, "block", unit_block(test->dimension), 1.5);
     int d = test->dimension, exponents[] = {5, -9, 20};
-    for (int e = 0; e < 3; e++) {
+    for (int e = 0; e < 3; ++e) {
         int k = exponents[e];
         comparison stages[] = {small, scaled_stage(&small, k)};
         setup_array table[2], rank[2];
-        for (int s = 0; s < 2; s++) {
+        for (int s = 0; s < 2; ++s) {
             table[s] = comparison_table(&stages[s]);
             rank[s] = setup_output(SPHG_U8, small.points.count, 1);
             sphg_sources sources = comparison_sources(&stages[s]);
@@ -198,7 +198,7 @@ static void exact_constants_added_keep_every_bit(const test_case *test)
     double *numbers = test_memory((size_t)total * sizeof *numbers);
     double *raised = test_memory((size_t)total * sizeof *raised);
     random_state random = random_seeded(52);
-    for (int k = 0; k < total; k++) {
+    for (int k = 0; k < total; ++k) {
         numbers[k] = random_index(&random, 4096) * 0x1p-10;
         raised[k] = numbers[k] + 24;
     }
@@ -214,14 +214,14 @@ static void mirror_images_have_mirrored_bits(const test_case *test)
     int d = test->dimension;
     comparison here = listed_stage(test, unit_block(d), 2.25);
     cloud mirrored = cloud_copy(&here.points);
-    for (int i = 0; i < mirrored.count; i++)
+    for (int i = 0; i < mirrored.count; ++i)
         mirrored.x[i * d] = -mirrored.x[i * d];
     comparison there = listed_stage(test, mirrored, 2.25);
     comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
                               comparison_random_field(&here, SPHG_SCALAR, 5)};
     comparison_result one = comparison_apply(&here, &field, NULL),
                       two = comparison_apply(&there, &field, NULL);
-    for (int n = 0; n < mirrored.count * d; n++) {
+    for (int n = 0; n < mirrored.count * d; ++n) {
         double expected = setup_get(&one.gradient, n / d, n % d) * (n % d == 0 ? -1 : 1);
         TEST_REQUIRE(expected == setup_get(&two.gradient, n / d, n % d), "item %d", n / d);
     }
@@ -235,12 +235,12 @@ static void require_subset(const comparison *on, const comparison_field *field,
 {
     comparison_result part = comparison_apply_to(on, field, NULL, subset);
     int width = full->gradient.width;
-    for (int i = 0; i < on->points.count; i++) {
+    for (int i = 0; i < on->points.count; ++i) {
         if (!expected[i]) {
             TEST_REQUIRE(setup_is_canary(&part.gradient, i), "%d was not selected", i);
             continue;
         }
-        for (int c = 0; c < width; c++)
+        for (int c = 0; c < width; ++c)
             TEST_REQUIRE(setup_get(&part.gradient, i, c) == setup_get(&full->gradient, i, c),
                          "item %d", i);
     }
@@ -255,7 +255,7 @@ static void require_share(const comparison *on, const comparison_field *field,
     int32_t *indices = test_memory((size_t)n * sizeof *indices), count = 0;
     int32_t *listed = test_memory((size_t)n * sizeof *listed), entries = 0;
     const int32_t begin = random_index(random, n - n / share), end = begin + n / share;
-    for (int i = n - 1; i >= 0; i--) {
+    for (int i = n - 1; i >= 0; --i) {
         mask[i] = (uint8_t)(random_index(random, share) == 0);
         range[i] = i >= begin && i < end;
         if (mask[i])
@@ -266,7 +266,7 @@ static void require_share(const comparison *on, const comparison_field *field,
     require_subset(on, field, full, &by_mask, mask);
     require_subset(on, field, full, &by_range, range);
     require_subset(on, field, full, &by_list, mask);
-    for (int k = 0; k < count; k++) { /* each, and its successor if that is masked out */
+    for (int k = 0; k < count; ++k) { /* each, and its successor if that is masked out */
         const int32_t next = (indices[k] + 1) % n;
         listed[entries++] = indices[k];
         if (!mask[next])
@@ -288,7 +288,7 @@ static void subsets_have_the_bits_of_the_full_run(const test_case *test)
                               comparison_random_field(&on, SPHG_VECTOR, 6)};
     comparison_result full = comparison_apply(&on, &field, NULL);
     random_state random = random_seeded(53);
-    for (size_t k = 0; k < sizeof shares / sizeof shares[0]; k++)
+    for (size_t k = 0; k < sizeof shares / sizeof shares[0]; ++k)
         require_share(&on, &field, &full, shares[k], &random);
 }
 
@@ -299,7 +299,7 @@ static void threads_do_not_change_a_bit(const test_case *test)
                               comparison_random_field(&on, SPHG_VECTOR, 6)};
     comparison_result two = comparison_apply(&on, &field, NULL);
     static const int threads[] = {1, 3, 5};
-    for (int t = 0; t < 3; t++) {
+    for (int t = 0; t < 3; ++t) {
         comparison other = on;
         other.context = setup_context_of(threads[t]);
         other.neighbors = setup_neighbors(other.context, test, &other.scheme, &other.points);
@@ -320,7 +320,7 @@ static void require_near(const comparison *on, const comparison_field *field,
     oracle_field asked = {field->shape, field->form, field->numbers, NULL};
     for (int i = 0; i < on->points.count; i += 9) {
         quad moved[3], bound = oracle_apply(on->reference, &asked, i).bound;
-        for (int c = 0; c < d; c++)
+        for (int c = 0; c < d; ++c)
             moved[c] = setup_get(&found->gradient, particle ? particle[i] : i,
                                  component ? component[c] : c);
         TEST_WITHIN(equal_within_bound, comparison_ratio(&exact->gradient, i, moved, bound),
@@ -331,7 +331,7 @@ static void require_near(const comparison *on, const comparison_field *field,
 static double *gathered(const double *numbers, const int *from, int count, int width)
 {
     double *result = test_memory((size_t)(count * width) * sizeof *result);
-    for (int k = 0; k < count * width; k++)
+    for (int k = 0; k < count * width; ++k)
         result[k] = numbers[from[k / width] * width + k % width];
     return result;
 }
@@ -342,12 +342,12 @@ static void order_of_particles_matters_within_the_bound(const test_case *test)
     int n = on.points.count, d = test->dimension;
     int *from = test_memory((size_t)n * sizeof *from), *to = test_memory((size_t)n * sizeof *to);
     random_state random = random_seeded(54);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         int j = random_index(&random, i + 1);
         from[i] = from[j];
         from[j] = i;
     }
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         to[from[i]] = i;
     cloud shuffled = on.points;
     shuffled.x = gathered(on.points.x, from, n, d);
@@ -367,7 +367,7 @@ static void axes_may_be_swapped_within_the_bound(const test_case *test)
     int d = test->dimension, next[] = {1, d == 2 ? 0 : 2, 0};
     comparison on = comparison_of(test, "block", unit_block(d), 2.25);
     cloud turned = cloud_copy(&on.points);
-    for (int k = 0; k < turned.count * d; k++)
+    for (int k = 0; k < turned.count * d; ++k)
         turned.x[k / d * d + next[k % d]] = on.points.x[k];
     comparison other = comparison_of(test, "axes swapped", turned, 2.25);
     comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
@@ -382,11 +382,11 @@ static void rotations_turn_gradients_within_the_bound(const test_case *test)
 {
     int d = test->dimension;
     cloud points = unit_block(d);
-    for (int k = 0; k < points.count * d; k++)
+    for (int k = 0; k < points.count * d; ++k)
         points.x[k] *= 5;
     comparison on = comparison_of(test, "block", points, 11.25);
     cloud turned = cloud_copy(&points);
-    for (int i = 0; i < points.count; i++) {
+    for (int i = 0; i < points.count; ++i) {
         const double *x = points.x + i * d;
         turned.x[i * d] = (3 * x[0] - 4 * x[1]) / 5;
         turned.x[i * d + 1] = (4 * x[0] + 3 * x[1]) / 5;
@@ -397,7 +397,7 @@ static void rotations_turn_gradients_within_the_bound(const test_case *test)
     comparison_result one = comparison_apply(&on, &field, NULL),
                       two = comparison_apply(&other, &field, NULL);
     double *back = setup_doubles(&two.gradient);
-    for (int i = 0; i < points.count; i++) {
+    for (int i = 0; i < points.count; ++i) {
         double gx = back[i * d], gy = back[i * d + 1];
         back[i * d] = (3 * gx + 4 * gy) / 5;
         back[i * d + 1] = (-4 * gx + 3 * gy) / 5;
@@ -427,11 +427,11 @@ static void mls_is_rkpm_at_unit_volume(const test_case *test)
     comparison stages[2];
     comparison_result found[2];
     comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, NULL};
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         comparison made =
             comparison_of(&cases[s], "unit volumes", unit_block(test->dimension), 2.25);
         double *volume = test_memory((size_t)made.points.count * sizeof *volume);
-        for (int i = 0; i < made.points.count; i++)
+        for (int i = 0; i < made.points.count; ++i)
             volume[i] = 1;
         stages[s] = comparison_with_volumes(&made, volume);
         field.numbers = comparison_random_field(&stages[s], SPHG_SCALAR, 10);

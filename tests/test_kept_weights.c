@@ -33,7 +33,7 @@ static kept kept_on(const test_case *test, sphg_context *context)
     made.other_volume = setup_numbers(type, n, 1, cloud_volumes(&made.points, .3, &random));
     made.scalar = setup_numbers(type, n, 1, cloud_numbers(&made.points, -1, 1, &random));
     made.vector = setup_output(type, n, test->dimension);
-    for (int k = 0; k < n * test->dimension; k++)
+    for (int k = 0; k < n * test->dimension; ++k)
         setup_put(&made.vector, k, random_between(&random, -1, 1));
     const sphg_geometry keeping = geometry_of(&made, 1), plain = geometry_of(&made, 0);
     made.keeping = setup_search(context, &made.scheme, &keeping);
@@ -106,14 +106,14 @@ static void require_fresh(const kept *on, sphg_view volume, int same_volumes, co
 
 static void bits_are_those_without(const test_case *test)
 {
-    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_context_on(isa);
         if (!context)
             continue;
         const kept on = kept_on(test, context);
         const sphg_view volume = setup_view(&on.volume);
         uint8_t *mask = test_memory((size_t)on.points.count);
-        for (int i = 0; i < on.points.count; i++)
+        for (int i = 0; i < on.points.count; ++i)
             mask[i] = i < on.points.count / 2 || i % 3 == 0;
         const sphg_subset some = sphg_masked(mask, on.points.count);
         evaluate(&on, on.keeping, volume, 0, &some); /* fills some of the groups */
@@ -156,7 +156,7 @@ static void one_volume_for_all_is_compared(const test_case *test)
 {
     const kept on = kept_on(test, setup_context());
     const sphg_type type = test_field_type(test);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const setup_array one = setup_numbers(type, 1, 1, (const double[]){k == 1 ? .75 : 1});
         sphg_view volume = setup_view(&one);
         volume.stride = 0;
@@ -171,7 +171,7 @@ static void a_new_search_forgets_them(const test_case *test)
     kept on = kept_on(test, setup_context());
     const sphg_view volume = setup_view(&on.volume);
     require_fresh(&on, volume, 0, "before");
-    for (int k = 0; k < on.points.count; k++)
+    for (int k = 0; k < on.points.count; ++k)
         on.points.x[k * test->dimension] *= 1.125;
     on.positions = setup_positions(test, &on.points);
     const sphg_geometry keeping = geometry_of(&on, 1), plain = geometry_of(&on, 0);
@@ -210,7 +210,7 @@ static void what_is_kept_is_read(const test_case *test)
     const results told = evaluate(&on, on.keeping, setup_view(&on.other_volume), 1, NULL);
     const results honest = evaluate(&on, on.keeping, setup_view(&on.other_volume), 0, NULL);
     int equal = 0, honest_equal = 0;
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         const double x = setup_get(&before.jacobian, i, 0);
         equal += setup_get(&told.jacobian, i, 0) == x;
         honest_equal += setup_get(&honest.jacobian, i, 0) == x;

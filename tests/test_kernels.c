@@ -16,7 +16,7 @@ static number positive_power(number x, int n)
     number power = 1;
     if (creall(x) <= 0)
         return 0;
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; ++k)
         power *= x;
     return power;
 }
@@ -129,11 +129,11 @@ static long double curvature(const struct row *row, long double q)
 /* Gauss-Legendre nodes and weights on [-1, 1] by Newton's method: exact to degree 31. */
 static void gauss(long double *node, long double *weight)
 {
-    for (int k = 0; k < NODES; k++) {
+    for (int k = 0; k < NODES; ++k) {
         long double x = cosl(PI * (k + 0.75L) / (NODES + 0.5L)), derivative = 1;
-        for (int step = 0; step < 50; step++) {
+        for (int step = 0; step < 50; ++step) {
             long double below = 1, here = x;
-            for (int n = 2; n <= NODES; n++) {
+            for (int n = 2; n <= NODES; ++n) {
                 const long double above = ((2 * n - 1) * x * here - (n - 1) * below) / n;
                 below = here;
                 here = above;
@@ -154,7 +154,7 @@ static long double integral(const sphg_scheme *scheme, radial *f, int power, lon
 {
     long double node[NODES], weight[NODES], sum = 0;
     gauss(node, weight);
-    for (int k = 0; k < NODES; k++) {
+    for (int k = 0; k < NODES; ++k) {
         const double r = (double)((a + b) / 2 + (b - a) / 2 * node[k]);
         sum += weight[k] * f(scheme, r) * powl(r, power);
     }
@@ -166,7 +166,7 @@ static long double whole_integral(const sphg_scheme *scheme, radial *f, int powe
 {
     const long double piece = scheme->support_radius / 6.0L;
     long double sum = 0;
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         sum += integral(scheme, f, power, k * piece, (k + 1) * piece);
     return sum;
 }
@@ -195,7 +195,7 @@ static void integral_is_one_second_moment_mu2_and_gradient_moment_one(const test
     const int dimension = test->dimension;
     const struct row *row = row_of(test);
     const long double shell = dimension == 2 ? 2 * PI : 4 * PI;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const sphg_scheme scheme = scheme_of(row, dimension, RADII[k]);
         const long double square = powl(RADII[k], 2), *mu2 = row->mu2[dimension - 2];
         const long double unity = shell * whole_integral(&scheme, value, dimension - 1);
@@ -215,11 +215,11 @@ static void values_equal_the_closed_form(const test_case *test)
 {
     const int dimension = test->dimension;
     const struct row *row = row_of(test);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const double H = RADII[k];
         const sphg_scheme scheme = scheme_of(row, dimension, H);
         const long double scale = sigma_of(row, dimension) / powl(H, dimension);
-        for (int n = 32; n < 1024; n++) {
+        for (int n = 32; n < 1024; ++n) {
             const double r = H * (n / 1024.0);
             const long double q = (long double)r / H, s = slope(row, q) / q;
             const long double w = creall(row->w(q));
@@ -263,7 +263,7 @@ static void values_keep_their_digits_near_the_centre(const test_case *test)
     const struct row *row = row_of(test);
     const sphg_scheme scheme = scheme_of(row, test->dimension, 1);
     const double sigma = (double)sigma_of(row, test->dimension);
-    for (int n = 0; n < PLACES; n++)
+    for (int n = 0; n < PLACES; ++n)
         require_shape(row, n, value(&scheme, place(n)) / sigma,
                       slope_over_r(&scheme, place(n)) / sigma, (double)UNIT);
 }
@@ -278,7 +278,7 @@ static sphg_neighbors *lonely_pairs(const test_case *test, sphg_context *context
     double *targets = test_memory((size_t)(PLACES * d) * sizeof *targets);
     int64_t *offsets = test_memory((PLACES + 1) * sizeof *offsets);
     int32_t *indices = test_memory(PLACES * sizeof *indices);
-    for (int n = 0; n < PLACES; n++) {
+    for (int n = 0; n < PLACES; ++n) {
         sources[n * d] = place(n);
         indices[n] = n;
         offsets[n + 1] = n + 1;
@@ -324,13 +324,13 @@ static void passes_keep_their_digits_on_every_instruction_set(const test_case *t
     const double sigma = (double)sigma_of(row, test->dimension);
     sphg_scheme scheme = scheme_of(row, test->dimension, 1);
     scheme.method = SPHG_PLAIN;
-    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_context_on((sphg_isa)isa);
         setup_array values, gradients;
         if (!context)
             continue;
         sum_pairs(test, context, &scheme, &values, &gradients);
-        for (int n = 0; n < PLACES; n++)
+        for (int n = 0; n < PLACES; ++n)
             require_shape(row, n, setup_get(&values, n, 0) / sigma,
                           setup_get(&gradients, n, 0) / (sigma * -place(n)),
                           test_unit_roundoff(test));
@@ -346,7 +346,7 @@ static void slope_agrees_with_central_differences(const test_case *test)
     const sphg_scheme scheme = scheme_of(row, dimension, 1);
     const long double scale = sigma_of(row, dimension), step = ldexpl(1, -16);
     const long double rounding = 8 * UNIT * creall(row->w(0)) / step;
-    for (int n = 8; n < 1000; n++) {
+    for (int n = 8; n < 1000; ++n) {
         const double r = n / 1000.0, above = r + (double)step, below = r - (double)step;
         const long double central = (value(&scheme, above) - value(&scheme, below)) / (2 * step);
         const long double third =
@@ -365,7 +365,7 @@ static void slope_integrates_back_to_the_value(const test_case *test)
     const struct row *row = row_of(test);
     const sphg_scheme scheme = scheme_of(row, dimension, 3.0);
     const double top = value(&scheme, 0);
-    for (int n = 0; n < 384; n++) {
+    for (int n = 0; n < 384; ++n) {
         const double a = n / 128.0, b = (n + 1) / 128.0;
         const long double sum = integral(&scheme, slope_over_r, 1, a, b);
         const long double rise = (long double)value(&scheme, b) - value(&scheme, a);
@@ -377,11 +377,11 @@ static void kernel_is_zero_from_the_support_radius_on(const test_case *test)
 {
     const int dimension = test->dimension;
     const struct row *row = row_of(test);
-    for (int k = 0; k < 200; k++) { /* radii whose r (1/H) rounds below 1 among them */
+    for (int k = 0; k < 200; ++k) { /* radii whose r (1/H) rounds below 1 among them */
         const double H = RADII[k % 4] * (1 + k / 211.0);
         const sphg_scheme scheme = scheme_of(row, dimension, H);
         const double outside[] = {H, nextafter(H, INFINITY), 1.5 * H, 1e300, DBL_MAX, INFINITY};
-        for (int n = 0; n < 6; n++) {
+        for (int n = 0; n < 6; ++n) {
             assert_true(value(&scheme, outside[n]) == 0);
             assert_true(slope_over_r(&scheme, outside[n]) == 0);
         }
@@ -396,7 +396,7 @@ static void kernel_is_finite_everywhere(const test_case *test)
     const struct row *row = row_of(test);
     const sphg_scheme scheme = scheme_of(row, dimension, 1);
     const double tiny[] = {0, -0.0, 5e-324, DBL_MIN, 1e-200, 1e-30, 1e-8};
-    for (int n = 0; n < 7; n++) {
+    for (int n = 0; n < 7; ++n) {
         const double s = slope_over_r(&scheme, tiny[n]);
         const int unbounded = row->kernel == SPHG_SPIKY && tiny[n] > 0 && tiny[n] < 1e-300;
         assert_true(isfinite(value(&scheme, tiny[n])));
@@ -417,7 +417,7 @@ static void kernel_decreases_and_stays_positive(const test_case *test)
     const struct row *row = row_of(test);
     const sphg_scheme scheme = scheme_of(row, dimension, 0.7);
     double previous = value(&scheme, 0);
-    for (int n = 1; n < 4096; n++) {
+    for (int n = 1; n < 4096; ++n) {
         const double r = 0.7 * n / 4096, here = value(&scheme, r);
         assert_true(here < previous);
         assert_true(here > 0);
@@ -433,7 +433,7 @@ static void scaling_by_powers_of_two_is_exact(const test_case *test)
     const sphg_scheme unit = scheme_of(row, dimension, 1);
     for (int k = -100; k <= 100; k += 25) {
         const sphg_scheme scaled = scheme_of(row, dimension, ldexp(1, k));
-        for (int n = 0; n <= 64; n++) {
+        for (int n = 0; n <= 64; ++n) {
             const double r = n / 61.0, far = ldexp(r, k);
             assert_true(ldexp(value(&scaled, far), dimension * k) == value(&unit, r));
             assert_true(ldexp(slope_over_r(&scaled, far), (dimension + 2) * k) ==
@@ -457,7 +457,7 @@ static void both_outputs_are_optional(const test_case *test)
 static void zero_dimension_means_three(const test_case *test)
 {
     (void)test;
-    for (int k = 0; k < KERNELS; k++) {
+    for (int k = 0; k < KERNELS; ++k) {
         const sphg_scheme none = scheme_of(&TABLE[k], 0, 2), three = scheme_of(&TABLE[k], 3, 2);
         assert_true(value(&none, 0.5) == value(&three, 0.5));
         assert_true(value(&none, 0.5) > 0);
@@ -483,11 +483,11 @@ static void scheme_that_is_not_valid_gives_nan(const test_case *test)
     (void)test;
     const int dimensions[] = {1, 4, -1, INT_MIN, INT_MAX}, kernels[] = {-1, 7, INT_MIN, INT_MAX};
     const double radii[] = {0, -0.0, -1, NAN, INFINITY, -INFINITY};
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 5; ++k)
         expect_nan(dimensions[k], 0, 1, 1);
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; ++k)
         expect_nan(3, kernels[k], 1, 1);
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         expect_nan(2, 1, radii[k], 0);
 }
 

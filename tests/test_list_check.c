@@ -34,7 +34,7 @@ static place place_of(const test_case *test, int kind)
         own.particles.targets = scene_of_cloud(test, &others).sources;
     if (kind == PART || kind == APART)
         own.particles.target_count = TARGETS;
-    for (int axis = 0; kind == PERIODIC && axis < test->dimension; axis++)
+    for (int axis = 0; kind == PERIODIC && axis < test->dimension; ++axis)
         own.particles.period[axis] = 4;
     own.scheme = setup_scheme(test, test->dimension == 2 ? .75 : 1.25);
     own.geometry = scene_geometry(&own.particles);
@@ -57,7 +57,7 @@ static double distance_between(const place *own, int target, int source)
     const int d = own->particles.dimension;
     const double *x = own->particles.targets ? own->particles.targets : own->particles.sources;
     double square = 0;
-    for (int a = 0; a < d; a++) {
+    for (int a = 0; a < d; ++a) {
         double step = fabs(x[target * d + a] - own->particles.sources[source * d + a]);
         if (own->particles.period[a] > 0)
             step = fmin(step, own->particles.period[a] - step);
@@ -89,10 +89,10 @@ static draft draft_of(const rows *complete)
     const size_t pairs = (size_t)complete->offsets[targets] + room;
     int32_t *next = test_memory(pairs * sizeof *next);
     made.indices = test_memory((pairs + 1) * sizeof *next);
-    for (int i = 0; i < made.count; i++) {
+    for (int i = 0; i < made.count; ++i) {
         made.rows[i] = next;
         made.lengths[i] = (int32_t)(complete->offsets[i + 1] - complete->offsets[i]);
-        for (int k = 0; k < made.lengths[i]; k++)
+        for (int k = 0; k < made.lengths[i]; ++k)
             next[k] = complete->indices[complete->offsets[i] + k];
         next += made.lengths[i] + ROOM;
     }
@@ -108,7 +108,7 @@ static void drop(draft *lists, int target, int32_t source)
 {
     int32_t *row = lists->rows[target];
     int kept = 0;
-    for (int k = 0; k < lists->lengths[target]; k++)
+    for (int k = 0; k < lists->lengths[target]; ++k)
         if (row[k] != source)
             row[kept++] = row[k];
     assert_int_equal(kept, lists->lengths[target] - 1);
@@ -119,7 +119,7 @@ static void drop(draft *lists, int target, int32_t source)
 static void disguise(draft *lists)
 {
     lists->mask = 0x1fffffff;
-    for (int i = 0; i < lists->count; i++)
+    for (int i = 0; i < lists->count; ++i)
         for (int a = 0, b = lists->lengths[i] - 1; a <= b; a++, b--) {
             const int32_t first = lists->rows[i][a];
             lists->rows[i][a] = lists->rows[i][b] | (a % 4) << 29;
@@ -138,7 +138,7 @@ static int32_t row_of(int32_t target, int32_t worker, const int32_t **indices, v
 
 static void copy_as_csr(draft *lists)
 {
-    for (int i = 0; i < lists->count; i++) {
+    for (int i = 0; i < lists->count; ++i) {
         const size_t length = lists->lengths[i] > 0 ? (size_t)lists->lengths[i] : 0;
         lists->offsets[i + 1] = lists->offsets[i] + lists->lengths[i];
         if (length)
@@ -179,7 +179,7 @@ static void require_passed(const place *own, const sphg_neighbors *neighbors, do
 
 static void require_lists_pass(const place *own, draft *lists, const char *where)
 {
-    for (int group = 0; group < GROUPS; group++) {
+    for (int group = 0; group < GROUPS; ++group) {
         const sphg_lists given = group_of(lists, group);
         const sphg_neighbors *brought =
             setup_lists(own->context, &own->scheme, &own->geometry, &given);
@@ -236,14 +236,14 @@ static void add_far_again(const place *own, draft *lists, int target)
 /* Also with pairs further apart than H, twice, the target itself, in another order, masked. */
 static void complete_lists_pass(const test_case *test)
 {
-    for (int kind = 0; kind < PLACES; kind++) {
+    for (int kind = 0; kind < PLACES; ++kind) {
         const place own = place_of(test, kind);
         const rows wide = rows_by_brute_force(&own.particles, 1.4 * own.scheme.support_radius);
         draft exact = draft_of(&own.near), more = draft_of(&wide);
         require_lists_pass(&own, &exact, "exact");
-        for (int i = 0; i < more.count; i++) {
+        for (int i = 0; i < more.count; ++i) {
             add_far_again(&own, &more, i);
-            for (int k = 0; kind != APART && k < i % 3; k++)
+            for (int k = 0; kind != APART && k < i % 3; ++k)
                 add(&more, i, i);
         }
         require_lists_pass(&own, &more, "more");
@@ -268,8 +268,8 @@ static void lists_need_no_more_than_the_scheme_asks(const test_case *test)
 
 static void lists_of_the_library_pass(const test_case *test)
 {
-    for (int kind = 0; kind < PLACES; kind++)
-        for (int way = 0; way < 3; way++) {
+    for (int kind = 0; kind < PLACES; ++kind)
+        for (int way = 0; way < 3; ++way) {
             place own = place_of(test, kind);
             const double H = own.scheme.support_radius;
             own.geometry.list_free = way == 1;
@@ -279,7 +279,7 @@ static void lists_of_the_library_pass(const test_case *test)
             require_passed(&own, searched, .7 * H, test_text("way %d, narrow", way));
             if (way < 2 || kind == APART)
                 continue;
-            for (int k = 0; k < COUNT * test->dimension; k++)
+            for (int k = 0; k < COUNT * test->dimension; ++k)
                 own.particles.sources[k] += k % 2 ? 0x1p-5 : -0x1p-5;
             const sphg_geometry moved = scene_geometry(&own.particles);
             own.geometry.sources = moved.sources;
@@ -317,7 +317,7 @@ static void empty_sets_pass(const test_case *test)
         {.sources = none, .targets = there, .target_count = COUNT},
         {.sources = there, .source_count = 1, .target_count = 1},
     };
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const double H = own.scheme.support_radius;
         const char *where = test_text("empty %d", k);
         require_passed(&own, setup_search(own.context, &own.scheme, &empty[k]), H, where);
@@ -372,9 +372,9 @@ static sphg_list_fault spoil(const place *own, draft *lists, sphg_fault kind, in
 
 static void each_kind_of_fault_is_named(const test_case *test)
 {
-    for (int kind = 0; kind < PLACES; kind++)
-        for (int fault = SPHG_FAULT_LENGTH; fault <= SPHG_FAULT_MISSING; fault++)
-            for (int group = 0; group < GROUPS; group++) {
+    for (int kind = 0; kind < PLACES; ++kind)
+        for (int fault = SPHG_FAULT_LENGTH; fault <= SPHG_FAULT_MISSING; ++fault)
+            for (int group = 0; group < GROUPS; ++group) {
                 const place own = place_of(test, kind);
                 draft lists = draft_of(&own.near);
                 if ((kind == APART && fault == SPHG_FAULT_ONE_SIDED) ||
@@ -389,15 +389,15 @@ static void each_kind_of_fault_is_named(const test_case *test)
 /* The lowest target comes first, whatever the others' faults are; they are counted. */
 static void the_lowest_target_is_named_and_all_are_counted(const test_case *test)
 {
-    for (int kind = 0; kind < PLACES; kind++)
-        for (int fault = SPHG_FAULT_LENGTH; fault <= SPHG_FAULT_MISSING; fault++) {
+    for (int kind = 0; kind < PLACES; ++kind)
+        for (int fault = SPHG_FAULT_LENGTH; fault <= SPHG_FAULT_MISSING; ++fault) {
             const place own = place_of(test, kind);
             draft lists = draft_of(&own.near);
             if (kind == APART && fault == SPHG_FAULT_ONE_SIDED)
                 continue;
             sphg_list_fault expected = spoil(&own, &lists, (sphg_fault)fault, 3);
             const int last = fault == SPHG_FAULT_DOUBLED ? SPHG_FAULT_INDEX : SPHG_FAULT_DOUBLED;
-            for (int target = 50; target < 53; target++) {
+            for (int target = 50; target < 53; ++target) {
                 const int other = near_count(&own, target) ? near_at(&own, target, 0) : -1;
                 const int spoilt = other >= 0 && expected.source != target;
                 if (spoilt)
@@ -448,16 +448,16 @@ static void half_lists_are_found(const test_case *test)
         const place own = place_of(test, kind);
         draft lists = draft_of(&own.near);
         sphg_list_fault expected = {SPHG_FAULT_ONE_SIDED, -1, -1, 0, 0};
-        for (int i = 0; i < COUNT; i++) {
+        for (int i = 0; i < COUNT; ++i) {
             const int32_t lowest = near_count(&own, i) ? near_at(&own, i, 0) : COUNT;
             if (lowest < i && expected.target < 0)
                 expected.target = i, expected.source = lowest;
             expected.faulty += lowest < i;
-            for (int k = 0; k < near_count(&own, i); k++)
+            for (int k = 0; k < near_count(&own, i); ++k)
                 if (near_at(&own, i, k) < i)
                     drop(&lists, i, near_at(&own, i, k));
         }
-        for (int group = 0; group < GROUPS; group++)
+        for (int group = 0; group < GROUPS; ++group)
             require_found(&own, &lists, &expected, group);
     }
 }
@@ -466,7 +466,7 @@ static void half_lists_are_found(const test_case *test)
 static void lists_cut_at_a_maximum_are_found(const test_case *test)
 {
     enum { MOST = 9 };
-    for (int kind = 0; kind < PLACES; kind++) {
+    for (int kind = 0; kind < PLACES; ++kind) {
         const place own = place_of(test, kind);
         draft lists = draft_of(&own.near);
         sphg_list_fault expected = {SPHG_FAULT_MISSING, -1, -1, 0, 0};
@@ -475,14 +475,14 @@ static void lists_cut_at_a_maximum_are_found(const test_case *test)
                 continue;
             lists.lengths[i] = MOST;
             expected.target = i, expected.source = near_at(&own, i, MOST);
-            expected.faulty++;
+            ++expected.faulty;
         }
         assert_true(expected.target >= 0);
         const int there = kind != APART && expected.source < lists.count;
-        for (int k = 0; there && k < lists.lengths[expected.source]; k++)
+        for (int k = 0; there && k < lists.lengths[expected.source]; ++k)
             if (lists.rows[expected.source][k] == expected.target)
                 expected.kind = SPHG_FAULT_ONE_SIDED;
-        for (int group = 0; group < GROUPS; group++)
+        for (int group = 0; group < GROUPS; ++group)
             require_found(&own, &lists, &expected, group);
     }
 }
@@ -501,7 +501,7 @@ static void the_answer_does_not_depend_on_threads(const test_case *test)
     draft lists = draft_of(&near);
     for (int i = 600; i < MANY; i += 1 + random_index(&random, 5))
         if (lists.lengths[i] > 0)
-            lists.lengths[i]--;
+            --lists.lengths[i];
     const sphg_lists given = group_of(&lists, FUNCTION);
     fake_host *host = setup_hooks();
     sphg_config reversed = fake_host_config(host, 4), in_turn = fake_host_config(host, 4);
@@ -510,7 +510,7 @@ static void the_answer_does_not_depend_on_threads(const test_case *test)
     sphg_context *const contexts[] = {setup_context_of(1), setup_context_of(2), setup_context_of(7),
                                       setup_context_with(&reversed), setup_context_with(&in_turn)};
     sphg_list_fault first = {SPHG_FAULT_NONE, 0, 0, 0, 0};
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 5; ++k) {
         const sphg_neighbors *brought = setup_lists(contexts[k], &scheme, &geometry, &given);
         sphg_list_fault found = {SPHG_FAULT_NONE, 0, 0, 0, 0};
         assert_int_equal(sphg_neighbors_check(contexts[k], &scheme, brought, &found),
@@ -547,7 +547,7 @@ static void questions_that_make_no_sense_are_refused(const test_case *test)
                  {&own.scheme, blank, SPHG_ERROR_STATE, "never built"},
                  {&wide, searched, SPHG_ERROR_SIZE, "scheme.support_radius"},
                  {&other, searched, SPHG_ERROR_SIZE, "built in"}};
-    for (size_t k = 0; k < sizeof asked / sizeof *asked; k++) {
+    for (size_t k = 0; k < sizeof asked / sizeof *asked; ++k) {
         const sphg_result result =
             sphg_neighbors_check(own.context, asked[k].scheme, asked[k].neighbors, &fault);
         TEST_REQUIRE(result == asked[k].expected &&

@@ -48,7 +48,7 @@ static world *world_create(const test_case *test)
     own->pairs = rows_by_brute_force(&own->particles, 0.5);
     own->lists.offsets = own->pairs.offsets;
     own->lists.indices = own->pairs.indices;
-    for (int k = 0; k < ITEMS * 9; k++)
+    for (int k = 0; k < ITEMS * 9; ++k)
         matrices[k] = k % 9 == 0 || k % 9 == 3 || k % 9 == 5 ? 1 : 0.1 / (1 + k % 7);
     const sphg_type type = test_field_type(test);
     own->matrices = setup_numbers(type, ITEMS, 9, matrices);
@@ -61,7 +61,7 @@ static world *world_create(const test_case *test)
 static void clear_outputs(world *own)
 {
     setup_array *const outputs[] = {&own->first, &own->second, &own->third};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         *outputs[k] = setup_output(own->field.type, ITEMS, 16);
         memset(outputs[k]->data, 0, (size_t)ITEMS * 16 * 4);
     }
@@ -229,7 +229,7 @@ static void keep_result(world *own, call which, setup_array *kept)
     if (which >= SEARCH && which <= USE_LISTS)
         SETUP_OK(own->context, evaluate(own));
     *kept = setup_output(SPHG_F32, 3 * ITEMS, 16);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         memcpy((char *)kept->data + (size_t)k * bytes, outputs[k]->data, bytes);
 }
 
@@ -269,7 +269,7 @@ static int run_with_failures(world *own, call which, int64_t k, int64_t until,
 static void any_allocation_may_fail(const test_case *test)
 {
     world *own = world_create(test);
-    for (int which = 0; which < CALLS; which++) {
+    for (int which = 0; which < CALLS; ++which) {
         setup_array expected;
         if (which == SVD && test->dimension == 2)
             continue;
@@ -279,9 +279,9 @@ static void any_allocation_may_fail(const test_case *test)
         require_clean(own, call_names[which]);
         int64_t k = 1, persistent = 1;
         while (run_with_failures(own, (call)which, k, k + 1, &expected))
-            k++;
+            ++k;
         while (run_with_failures(own, (call)which, persistent, INT64_MAX, &expected))
-            persistent++;
+            ++persistent;
         TEST_REQUIRE(k > 1 || which > EVALUATE, "%s allocates nothing", call_names[which]);
     }
 }
@@ -308,7 +308,7 @@ static void stir(world *own, const double *rest, int step, random_state *random)
 {
     const int d = own->particles.dimension;
     const double stretch = step ? 1.1 + 0.001 * (step % 5) : 1;
-    for (int k = 0; k < own->particles.source_count * d; k++) {
+    for (int k = 0; k < own->particles.source_count * d; ++k) {
         const double x = stretch * rest[k] + random_between(random, 0, 0.002 * step);
         own->particles.sources[k] = own->particles.is_double ? x : (double)(float)x;
     }
@@ -337,7 +337,7 @@ static void warm_calls_allocate_nothing(const test_case *test)
     const size_t bytes = (size_t)(own->particles.source_count * test->dimension) * sizeof(double);
     double *rest = memcpy(test_memory(bytes), own->particles.sources, bytes);
     const call kinds[] = {SEARCH, SEARCH_WITH_SKIN, SEARCH_LIST_FREE, USE_LISTS};
-    for (int kind = 0; kind < 4; kind++) {
+    for (int kind = 0; kind < 4; ++kind) {
         prepare(own, kinds[kind]);
         stir(own, rest, 0, &random);
         if (kinds[kind] == USE_LISTS)
@@ -345,7 +345,7 @@ static void warm_calls_allocate_nothing(const test_case *test)
         SETUP_OK(own->context, perform(own, kinds[kind]));
         work(own);
         fake_host_fail(own->host, 0, 0);
-        for (int step = 1; step < 12; step++) {
+        for (int step = 1; step < 12; ++step) {
             stir(own, rest, step, &random);
             if (kinds[kind] == USE_LISTS) /* which name all particles */
                 own->geometry = scene_geometry(&own->particles);
@@ -367,8 +367,8 @@ static void spread(world *own, const double *rest, int which, int64_t pairs)
     static const double steps[CLOUDS] = {0, 100, 0x1p90, 100};
     const int d = own->particles.dimension, count = own->particles.source_count;
     const int clump = which == CLUMP ? (int)sqrt((double)pairs) : 0;
-    for (int i = 0; i < count; i++)
-        for (int a = 0; a < d; a++) {
+    for (int i = 0; i < count; ++i)
+        for (int a = 0; a < d; ++a) {
             const double shift = i < count - clump ? steps[which] * (i - 7 * a) : -steps[which];
             const double own_part = which == CLUMP || which == VAST ? 0 : rest[i * d + a];
             const double x = shift + own_part;
@@ -387,9 +387,9 @@ static void spreading_clouds_allocate_nothing(const test_case *test)
     const int64_t pairs = own->pairs.offsets[own->pairs.count];
     const call kinds[] = {SEARCH, SEARCH_WITH_SKIN, SEARCH_LIST_FREE};
     const int order[] = {COMPACT, THIN, CLUMP, VAST, COMPACT, CLUMP};
-    for (int kind = 0; kind < 3; kind++) {
+    for (int kind = 0; kind < 3; ++kind) {
         prepare(own, kinds[kind]);
-        for (int step = 0; step < 6; step++) {
+        for (int step = 0; step < 6; ++step) {
             spread(own, rest, order[step], pairs);
             const char *where = test_text("%s, step %d", call_names[kinds[kind]], step);
             fake_host_fail(own->host, 0, 0);
@@ -409,7 +409,7 @@ static void spreading_clouds_allocate_nothing(const test_case *test)
 static void neighbors_know_what_they_hold(const test_case *test)
 {
     world *own = world_create(test);
-    for (call which = SEARCH; which <= USE_LISTS; which++) {
+    for (call which = SEARCH; which <= USE_LISTS; ++which) {
         prepare(own, which);
         SETUP_OK(own->context, perform(own, which));
         work(own);
@@ -429,7 +429,7 @@ static void neighbors_know_what_they_hold(const test_case *test)
 static void contexts_hold_what_they_say(const test_case *test)
 {
     world *own = world_create(test);
-    for (call which = SEARCH; which <= USE_LISTS; which++) {
+    for (call which = SEARCH; which <= USE_LISTS; ++which) {
         prepare(own, which);
         SETUP_OK(own->context, perform(own, which));
         work(own);

@@ -158,9 +158,9 @@ static void fail_everywhere(valid_call *own, const probe *tested, const char *na
     look(&made, tested);
     memcpy(expected, own->outputs, BYTES);
     forget(&made);
-    for (int64_t k = 1; fail_at(own, tested, k, k + 1, expected, name); k++)
+    for (int64_t k = 1; fail_at(own, tested, k, k + 1, expected, name); ++k)
         ;
-    for (int64_t k = 1; fail_at(own, tested, k, INT64_MAX, expected, name); k++)
+    for (int64_t k = 1; fail_at(own, tested, k, INT64_MAX, expected, name); ++k)
         ;
 }
 
@@ -169,11 +169,11 @@ static void any_allocation_of_any_function_may_fail(const test_case *test)
     valid_call *own = valid_call_create(test, 0);
     failures = 0;
     const int64_t blocks = own->host->live_blocks;
-    for (int f = 0; f < argument_function_count; f++)
-        for (int p = 0; p < argument_functions[f].count; p++)
+    for (int f = 0; f < argument_function_count; ++f)
+        for (int p = 0; p < argument_functions[f].count; ++p)
             if (argument_functions[f].probes[p].call)
                 fail_everywhere(own, &argument_functions[f].probes[p], argument_functions[f].name);
-    for (int k = 0; k < EXTRA; k++)
+    for (int k = 0; k < EXTRA; ++k)
         fail_everywhere(own, &extra[k], test_text("extra call %d", k));
     TEST_REQUIRE(own->host->live_blocks == blocks, "%lld blocks leaked",
                  (long long)(own->host->live_blocks - blocks));

@@ -50,12 +50,12 @@ static void make_world(rig *own, world *made)
     made->scheme.support_radius = ldexp(1 + random_index(random, 40), -4);
     made->scheme.threshold = random_index(random, 2) ? 0 : ldexp(1, -1 - random_index(random, 16));
     made->form = random_index(random, 3) ? SPHG_DIFFERENCE : SPHG_DIRECT;
-    for (int k = 0; k < made->count * d; k++)
+    for (int k = 0; k < made->count * d; ++k)
         made->x[k] = k % d >= 3 - flat % 4 ? .25 : fraction(own, flat == 5 ? 1 : 2, 9);
-    for (int i = 0; i < made->count; i++) {
+    for (int i = 0; i < made->count; ++i) {
         made->volume[i] = ldexp(random_index(random, 256), -8);
         made->field[i] = fraction(own, 8, 8);
-        for (int k = 0; k < made->count; k++)
+        for (int k = 0; k < made->count; ++k)
             made->lists[i * made->count + k] = k;
     }
 }
@@ -64,7 +64,7 @@ static void make_world(rig *own, world *made)
 
 static sphg_view numbers(const rig *own, void *memory, const double *values, int count, int width)
 {
-    for (int k = 0; k < count * width; k++) {
+    for (int k = 0; k < count * width; ++k) {
         if (own->type == SPHG_F64)
             ((double *)memory)[k] = values[k];
         else
@@ -80,7 +80,7 @@ static void run(const rig *own, const world *on, const sphg_subset *subset, outc
     const int d = on->scheme.dimension, n = on->count;
     double memory[3][MOST * 3], result[MOST * 3] = {0};
     int64_t offsets[MOST + 1];
-    for (int i = 0; i <= n; i++)
+    for (int i = 0; i <= n; ++i)
         offsets[i] = (int64_t)i * n;
     const sphg_geometry geometry = {
         .sources = numbers(own, memory[0], on->x, n, d), .source_count = n, .target_count = n};
@@ -101,7 +101,7 @@ static void run(const rig *own, const world *on, const sphg_subset *subset, outc
                                         : sphg_neighbors_use_lists(own->context, own->neighbors,
                                                                    &on->scheme, &geometry, &lists));
     SETUP_OK(own->context, sphg_evaluate(own->context, &on->scheme, &request));
-    for (int k = 0; k < n * d; k++)
+    for (int k = 0; k < n * d; ++k)
         found->gradient[k] = own->type == SPHG_F64 ? result[k] : (double)((float *)result)[k];
 }
 
@@ -112,7 +112,7 @@ static void require_related(const world *on, const outcome *expected, const outc
                             const double *factor, const char *relation)
 {
     const int d = on->scheme.dimension;
-    for (int k = 0; k < on->count * d; k++)
+    for (int k = 0; k < on->count * d; ++k)
         TEST_REQUIRE(expected->gradient[k] * factor[k % d] == found->gradient[k],
                      "%s: %a, not %a; %s, kernel %d, policy %d, H %g, eps %g, %dD, %d particles",
                      relation, found->gradient[k], expected->gradient[k] * factor[k % d],
@@ -131,9 +131,9 @@ static void translation(rig *own, const world *on, const outcome *expected)
     outcome found = {.rank = {0}};
     const int d = on->scheme.dimension;
     double by[3];
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3; ++a)
         by[a] = fraction(own, 1024, 0);
-    for (int k = 0; k < on->count * d; k++)
+    for (int k = 0; k < on->count * d; ++k)
         moved.x[k] += by[k % d];
     run(own, &moved, NULL, &found);
     require_related(on, expected, &found, one, "translation");
@@ -150,7 +150,7 @@ static void mirror(rig *own, const world *on, const outcome *expected)
     factor[axis] = -1;
     if (expected->stats.decomposed > 0)
         return;
-    for (int i = 0; i < on->count; i++)
+    for (int i = 0; i < on->count; ++i)
         mirrored.x[i * d + axis] = -mirrored.x[i * d + axis];
     run(own, &mirrored, NULL, &found);
     require_related(on, expected, &found, factor, "mirror");
@@ -162,9 +162,9 @@ static void unit_of_length(rig *own, const world *on, const outcome *expected)
     outcome found = {.rank = {0}};
     const int d = on->scheme.dimension, k = random_index(&own->random, 31) - 15;
     const double factor[] = {ldexp(1, -k), ldexp(1, -k), ldexp(1, -k)};
-    for (int n = 0; n < on->count * d; n++)
+    for (int n = 0; n < on->count * d; ++n)
         scaled.x[n] = ldexp(scaled.x[n], k);
-    for (int i = 0; i < on->count; i++)
+    for (int i = 0; i < on->count; ++i)
         scaled.volume[i] = ldexp(scaled.volume[i], d * k);
     scaled.scheme.support_radius = ldexp(scaled.scheme.support_radius, k);
     run(own, &scaled, NULL, &found);
@@ -177,7 +177,7 @@ static void unit_of_field(rig *own, const world *on, const outcome *expected)
     outcome found = {.rank = {0}};
     const int k = random_index(&own->random, 41) - 20;
     const double factor[] = {ldexp(1, k), ldexp(1, k), ldexp(1, k)};
-    for (int i = 0; i < on->count; i++)
+    for (int i = 0; i < on->count; ++i)
         scaled.field[i] = ldexp(scaled.field[i], k);
     run(own, &scaled, NULL, &found);
     require_related(on, expected, &found, factor, "unit of the field");
@@ -190,7 +190,7 @@ static void constant(rig *own, const world *on, const outcome *expected)
     const double by = fraction(own, 2048, 0);
     if (on->form != SPHG_DIFFERENCE)
         return;
-    for (int i = 0; i < on->count; i++)
+    for (int i = 0; i < on->count; ++i)
         raised.field[i] += by;
     run(own, &raised, NULL, &found);
     require_related(on, expected, &found, one, "constant");
@@ -203,13 +203,13 @@ static void strangers(rig *own, const world *on, const outcome *expected)
     outcome found = {.rank = {0}};
     const int d = on->scheme.dimension;
     more.count += FAR;
-    for (int i = on->count; i < more.count; i++) {
-        for (int a = 0; a < d; a++)
+    for (int i = on->count; i < more.count; ++i) {
+        for (int a = 0; a < d; ++a)
             more.x[i * d + a] = 512 + 64 * i;
         more.volume[i] = 1;
         more.field[i] = 3;
     }
-    for (int k = 0; k < more.count * more.count; k++)
+    for (int k = 0; k < more.count * more.count; ++k)
         more.lists[k] = k % more.count;
     run(own, &more, NULL, &found);
     require_related(on, expected, &found, one, "strangers");
@@ -222,20 +222,20 @@ static void names(rig *own, const world *on, const outcome *expected)
     outcome found = {.rank = {0}}, back = {.rank = {0}};
     const int d = on->scheme.dimension, n = on->count;
     int32_t name[MOST];
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         const int k = random_index(&own->random, i + 1);
         name[i] = name[k];
         name[k] = i;
     }
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         memcpy(renamed.x + name[i] * d, on->x + i * d, (size_t)d * sizeof(double));
         renamed.volume[name[i]] = on->volume[i];
         renamed.field[name[i]] = on->field[i];
-        for (int k = 0; k < n; k++)
+        for (int k = 0; k < n; ++k)
             renamed.lists[name[i] * n + k] = name[on->lists[i * n + k]];
     }
     run(own, &renamed, NULL, &found);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         memcpy(back.gradient + i * d, found.gradient + name[i] * d, (size_t)d * sizeof(double));
         back.rank[i] = found.rank[name[i]];
     }
@@ -249,9 +249,9 @@ static void subset(rig *own, const world *on, const outcome *expected)
     const int d = on->scheme.dimension;
     const sphg_subset chosen = {0, on->count, NULL, mask};
     memset(&found, 0, sizeof found);
-    for (int i = 0; i < on->count; i++) {
+    for (int i = 0; i < on->count; ++i) {
         mask[i] = (uint8_t)random_index(&own->random, 2);
-        for (int a = 0; a < d && !mask[i]; a++)
+        for (int a = 0; a < d && !mask[i]; ++a)
             mixed.gradient[i * d + a] = found.gradient[i * d + a] = 7;
         if (!mask[i])
             mixed.rank[i] = found.rank[i] = 77;
@@ -271,13 +271,13 @@ static void each_scene(const test_case *test, int searched, relation *const *rel
     rig own = {test_field_type(test), setup_context_of(1), NULL, random_seeded(601)};
     const int scenes = long_or(100000, 250);
     SETUP_OK(own.context, sphg_neighbors_create(own.context, &own.neighbors));
-    for (int k = 0; k < scenes; k++) {
+    for (int k = 0; k < scenes; ++k) {
         world on;
         outcome expected = {.rank = {0}};
         make_world(&own, &on);
         on.searched = searched;
         run(&own, &on, NULL, &expected);
-        for (int r = 0; r < count; r++)
+        for (int r = 0; r < count; ++r)
             relations[r](&own, &on, &expected);
     }
     sphg_neighbors_destroy(own.neighbors);

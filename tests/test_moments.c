@@ -72,7 +72,7 @@ static verdict judge(const setting *own, const double *a)
     verdict found = {0};
     long double trace = 0, gap = INFINITY;
     spectra_eigen(d, a, found.lambda, found.vectors);
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         found.lambda[k] /= reference_moment(own);
         trace += found.lambda[k];
         found.size += found.lambda[k] * found.lambda[k];
@@ -82,7 +82,7 @@ static verdict judge(const setting *own, const double *a)
     found.eps = fmaxl(eps, 16 * own->unit * trace);
     found.full = own->scheme.policy == SPHG_BLEND ? 4 * found.eps : found.eps;
     const int touched = found.lambda[d - 1] <= found.eps;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         judge_value(&found, own->scheme.policy, k, touched);
         found.rank += found.lambda[k] > found.full;
         gap = fminl(gap, fabsl(found.lambda[k] - found.full));
@@ -98,8 +98,8 @@ static verdict judge(const setting *own, const double *a)
 static long double sensitivity(const verdict *found, int d)
 {
     long double worst = 0;
-    for (int k = 0; k < d; k++)
-        for (int l = 0; l <= k; l++) {
+    for (int k = 0; k < d; ++k)
+        for (int l = 0; l <= k; ++l) {
             const long double gap = found->lambda[l] - found->lambda[k];
             worst = fmaxl(worst, fmaxl(found->slope[k], found->slope[l]));
             if (gap > 1e-9L * found->size)
@@ -113,12 +113,12 @@ static double correction_error(const setting *own, const verdict *expected, cons
 {
     const int d = own->scheme.dimension;
     long double sum = 0, size = 0;
-    for (int r = 0; r < d; r++)
-        for (int column = 0; column < d; column++) {
+    for (int r = 0; r < d; ++r)
+        for (int column = 0; column < d; ++column) {
             const int low = r < column ? r : column, high = r + column - low;
             const long double found = c[low * d - low * (low - 1) / 2 + high - low];
             long double exact = 0;
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 exact += expected->f[k] * expected->vectors[r * d + k] *
                          expected->vectors[column * d + k];
             sum += powl(found * reference_moment(own) - exact, 2);
@@ -137,7 +137,7 @@ typedef struct batch {
 
 static void round_to(const setting *own, double *a)
 {
-    for (int k = 0; k < 9 && !own->is_double; k++)
+    for (int k = 0; k < 9 && !own->is_double; ++k)
         a[k] = (double)(float)a[k];
 }
 
@@ -146,10 +146,10 @@ static batch batch_of(const setting *own, spectrum set, int count)
     batch items = {count, test_memory((size_t)count * 9 * sizeof(double))};
     random_state random = random_seeded(300 + (uint64_t)set);
     const double scale = (double)reference_moment(own);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         double *a = items.full + 9 * i;
         spectra_matrix(set, own->scheme.dimension, own->is_double, &random, a);
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 9; ++k)
             a[k] *= scale;
         round_to(own, a);
     }
@@ -160,9 +160,9 @@ static setup_array packed(const setting *own, const batch *items)
 {
     const int d = own->scheme.dimension, width = d * (d + 1) / 2;
     double *numbers = test_memory((size_t)(items->count * width) * sizeof *numbers);
-    for (int i = 0, next = 0; i < items->count; i++)
-        for (int r = 0; r < d; r++)
-            for (int c = r; c < d; c++)
+    for (int i = 0, next = 0; i < items->count; ++i)
+        for (int r = 0; r < d; ++r)
+            for (int c = r; c < d; ++c)
                 numbers[next++] = items->full[9 * i + r * d + c];
     return setup_numbers(own->is_double ? SPHG_F64 : SPHG_F32, items->count, width, numbers);
 }
@@ -221,7 +221,7 @@ static void check_item(const setting *own, const batch *items, const outcome *fo
 {
     const verdict expected = judge(own, items->full + 9 * i);
     double c[6] = {0};
-    for (int k = 0; k < found->correction.width; k++)
+    for (int k = 0; k < found->correction.width; ++k)
         c[k] = setup_get(&found->correction, i, k);
     require_lambda_min(own, &expected, setup_get(&found->lambda_min, i, 0), where);
     if (expected.is_close)
@@ -235,15 +235,15 @@ static void correction_is_f_of_the_moments(const test_case *test)
 {
     sphg_context *context = setup_context();
     const double thresholds[] = {0, 1e-3, 0.2};
-    for (int policy = 0; policy < 4; policy++)
-        for (int t = 0; t < 3; t++)
-            for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
+    for (int policy = 0; policy < 4; ++policy)
+        for (int t = 0; t < 3; ++t)
+            for (int set = 0; set < SPECTRA_SYMMETRIC; ++set) {
                 const setting own = setting_of(test, (sphg_policy)policy, thresholds[t]);
                 const batch items = batch_of(&own, (spectrum)set, 150);
                 const outcome found = inverted(context, &own, &items);
                 const char *where = test_text("%s %s eps %g", spectra_names[set],
                                               policy_names[policy], thresholds[t]);
-                for (int i = 0; i < items.count; i++)
+                for (int i = 0; i < items.count; ++i)
                     check_item(&own, &items, &found, i, where);
             }
 }
@@ -256,7 +256,7 @@ static void full_neighbourhood_is_one(const test_case *test)
     const setting own = setting_of(test, SPHG_BLEND, 0);
     batch items = {1, test_memory(9 * sizeof(double))};
     const long double scale = reference_moment(&own);
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         items.full[k * d + k] = (double)scale;
     round_to(&own, items.full);
     const outcome found = inverted(context, &own, &items);
@@ -274,7 +274,7 @@ static void gather(const setting *own, double eps_hi, random_state *random, doub
 {
     const int d = own->scheme.dimension;
     double values[3];
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         values[k] = pow(10, random_between(random, -2, random_index(random, 4) ? 0.5 : 3));
     const double offset = pow(10, random_between(random, -7, 0));
     values[d - 1] = eps_hi * (1 + (random_index(random, 2) ? offset : -offset));
@@ -289,7 +289,7 @@ static void check_certificate(sphg_context *context, const setting *own, uint64_
     random_state random = random_seeded(seed);
     const size_t bytes = (size_t)count * 9 * sizeof(double);
     batch touched = {0, test_memory(bytes)}, healthy = {0, test_memory(bytes)};
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         double a[9] = {0};
         gather(own, own->scheme.threshold * (own->scheme.policy == SPHG_BLEND ? 4 : 1), &random, a);
         const verdict expected = judge(own, a);
@@ -311,8 +311,8 @@ static void certificate_never_accepts_a_touched_matrix(const test_case *test)
 {
     sphg_context *context = setup_context();
     const double thresholds[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5};
-    for (int t = 0; t < 5; t++)
-        for (int policy = 0; policy < 4; policy++) {
+    for (int t = 0; t < 5; ++t)
+        for (int policy = 0; policy < 4; ++policy) {
             const setting own = setting_of(test, (sphg_policy)policy, thresholds[t]);
             check_certificate(context, &own, 7u + (uint64_t)(4 * t + policy), 3000);
         }
@@ -326,7 +326,7 @@ static void certified_lambda_is_a_lower_bound_and_decomposed_is_exact(const test
     const setting own = setting_of(test, SPHG_BLEND, 1e-2);
     const batch all = batch_of(&own, SPECTRA_one_one_small, 400);
     int ways[2] = {0, 0};
-    for (int i = 0; i < all.count; i++) {
+    for (int i = 0; i < all.count; ++i) {
         const batch one = {1, all.full + 9 * i};
         const outcome found = inverted(context, &own, &one);
         const verdict expected = judge(&own, one.full);
@@ -334,7 +334,7 @@ static void certified_lambda_is_a_lower_bound_and_decomposed_is_exact(const test
         const double given = setup_get(&found.lambda_min, 0, 0);
         assert_int_equal(found.stats.certified + found.stats.decomposed, 1);
         assert_true(found.stats.lambda_min == given);
-        ways[found.stats.certified]++;
+        ++ways[found.stats.certified];
         if (found.stats.certified)
             assert_true(given >= 0.04 && given <= lambda + slack);
         else
@@ -348,17 +348,17 @@ static void noise_of_large_moments_is_not_inverted(const test_case *test)
 {
     sphg_context *context = setup_context();
     const int d = test->dimension;
-    for (int policy = 0; policy < 4; policy++) {
+    for (int policy = 0; policy < 4; ++policy) {
         const setting own = setting_of(test, (sphg_policy)policy, 0);
         batch items = {500, test_memory(500 * 9 * sizeof(double))};
         random_state random = random_seeded(997);
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             const double large = ldexp(1, own.is_double ? 50 : 20);
             double values[3] = {large, d == 3 ? large * random_between(&random, 0.1, 1) : 0, 0};
             spectra_compose(d, values, own.is_double, &random, items.full + 9 * i);
         }
         const outcome found = inverted(context, &own, &items);
-        for (int i = 0; i < items.count; i++)
+        for (int i = 0; i < items.count; ++i)
             assert_true(setup_get(&found.rank, i, 0) < d);
     }
 }
@@ -367,7 +367,7 @@ static void noise_of_large_moments_is_not_inverted(const test_case *test)
 
 static void require_same_item(const outcome *a, const outcome *b, int i)
 {
-    for (int k = 0; k < a->correction.width; k++)
+    for (int k = 0; k < a->correction.width; ++k)
         assert_true(setup_get(&a->correction, i, k) == setup_get(&b->correction, i, k));
     assert_true(setup_get(&a->rank, i, 0) == setup_get(&b->rank, i, 0));
     assert_true(setup_get(&a->lambda_min, i, 0) == setup_get(&b->lambda_min, i, 0));
@@ -378,7 +378,7 @@ static void bad_matrix_spoils_only_itself(const test_case *test)
 {
     sphg_context *context = setup_context();
     const double kinds[] = {NAN, INFINITY, -INFINITY};
-    for (int bad = 0; bad < 37; bad++) {
+    for (int bad = 0; bad < 37; ++bad) {
         const setting own = setting_of(test, (sphg_policy)(bad % 4), 0);
         const batch items = batch_of(&own, SPECTRA_one_one_small, 37);
         const outcome clean = inverted(context, &own, &items);
@@ -386,10 +386,10 @@ static void bad_matrix_spoils_only_itself(const test_case *test)
         const int d = test->dimension, entry = bad % d; /* diagonal or off it */
         a[entry] = a[entry * d] = kinds[bad / 2 % 3];
         const outcome found = inverted(context, &own, &items);
-        for (int i = 0; i < items.count; i++)
+        for (int i = 0; i < items.count; ++i)
             if (i != bad)
                 require_same_item(&found, &clean, i);
-        for (int k = 0; k < found.correction.width; k++)
+        for (int k = 0; k < found.correction.width; ++k)
             assert_true(isnan(setup_get(&found.correction, bad, k)));
         assert_int_equal((int)setup_get(&found.rank, bad, 0), 0);
     }
@@ -398,13 +398,13 @@ static void bad_matrix_spoils_only_itself(const test_case *test)
 static void stats_add_up(const test_case *test)
 {
     sphg_context *context = setup_context();
-    for (int policy = 0; policy < 4; policy++) {
+    for (int policy = 0; policy < 4; ++policy) {
         const setting own = setting_of(test, (sphg_policy)policy, 0);
         const batch items = batch_of(&own, SPECTRA_one_small_small, 1000);
         const outcome found = inverted(context, &own, &items);
         int64_t rank[4] = {0};
         double least = INFINITY;
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             rank[(int)setup_get(&found.rank, i, 0)]++;
             least = fmin(least, setup_get(&found.lambda_min, i, 0));
         }
@@ -425,7 +425,7 @@ static void each_output_may_be_asked_for_alone(const test_case *test)
     const sphg_inversion wanted[] = {{.correction = setup_view(&alone.correction)},
                                      {.rank = setup_view(&alone.rank)},
                                      {.lambda_min = setup_view(&alone.lambda_min)}};
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         invert(context, &own, items.count, setup_view(&moments), &wanted[k]);
     assert_true(setup_same_bits(&alone.correction, &all.correction));
     assert_true(setup_same_bits(&alone.rank, &all.rank));
@@ -442,7 +442,7 @@ static void correction_may_replace_the_moments(const test_case *test)
     const setup_array moments = packed(&own, &items);
     setup_array record = setup_output(moments.type, items.count, 9);
     const size_t size = own.is_double ? 8 : 4, width = (size_t)moments.width * size;
-    for (int i = 0; i < items.count; i++)
+    for (int i = 0; i < items.count; ++i)
         memcpy((char *)record.data + (size_t)i * 9 * size + size,
                (const char *)moments.data + (size_t)i * width, width);
     sphg_view place = setup_view(&record);
@@ -450,7 +450,7 @@ static void correction_may_replace_the_moments(const test_case *test)
     const sphg_inversion wanted = {.correction = place};
     invert(context, &own, items.count, place, &wanted);
     const setup_array canary = setup_output(moments.type, 1, 1);
-    for (int i = 0; i < items.count; i++) {
+    for (int i = 0; i < items.count; ++i) {
         const char *item = (const char *)record.data + (size_t)i * 9 * size;
         assert_memory_equal(item + size, (const char *)plain.correction.data + (size_t)i * width,
                             width);

@@ -50,7 +50,7 @@ static setup_array gradient_through(const comparison *own, const sphg_neighbors 
 
 static void shuffle(int32_t *items, int64_t count, random_state *random)
 {
-    for (int64_t k = count - 1; k > 0; k--) {
+    for (int64_t k = count - 1; k > 0; --k) {
         const int64_t other = random_index(random, (int)k + 1);
         const int32_t kept = items[k];
         items[k] = items[other];
@@ -77,14 +77,14 @@ static host_lists host_lists_of(const comparison *own, double radius, int32_t ma
     lists.pointers = test_memory(COUNT * sizeof *lists.pointers);
     lists.lengths = test_memory(COUNT * sizeof *lists.lengths);
     int64_t next = 0;
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         int32_t *row = lists.csr.indices + next;
-        for (int64_t k = wide.offsets[i]; k < wide.offsets[i + 1]; k++)
+        for (int64_t k = wide.offsets[i]; k < wide.offsets[i + 1]; ++k)
             lists.csr.indices[next++] = wide.indices[k];
         if (!own->particles.targets && i % 3)
             lists.csr.indices[next++] = i;
         shuffle(row, lists.csr.indices + next - row, &random);
-        for (int32_t *item = row; mask && item < lists.csr.indices + next; item++)
+        for (int32_t *item = row; mask && item < lists.csr.indices + next; ++item)
             *item |= random_index(&random, 4) << 29;
         lists.pointers[i] = row;
         lists.lengths[i] = (int32_t)(lists.csr.indices + next - row);
@@ -131,7 +131,7 @@ static void lists_of_the_host_give_the_pairs_of_the_search(const test_case *test
     const rows expected = rows_by_brute_force(&own.particles, H);
     const setup_array gradient = gradient_through(&own, searched);
     const int32_t masks[] = {0, 0x1fffffff};
-    for (int k = 0; k < 2 * GROUPS; k++) {
+    for (int k = 0; k < 2 * GROUPS; ++k) {
         host_lists lists = host_lists_of(&own, k % 2 ? H : 1.5 * H, masks[k / GROUPS]);
         const sphg_lists given = group_of(&lists, k % GROUPS);
         const sphg_neighbors *brought =
@@ -167,12 +167,12 @@ static void lists_see_periodic_images_and_targets(const test_case *test)
     cloud others = cloud_random(test->dimension, COUNT, 4, &random);
     const scene apart = scene_of_cloud(test, &others);
     own.particles.targets = apart.sources;
-    for (int axis = 0; axis < test->dimension; axis++)
+    for (int axis = 0; axis < test->dimension; ++axis)
         own.particles.period[axis] = 4;
     const sphg_geometry geometry = scene_geometry(&own.particles);
     const rows expected = rows_by_brute_force(&own.particles, own.scheme.support_radius);
     host_lists lists = host_lists_of(&own, 1.5, 0);
-    for (int group = 0; group < GROUPS; group++) {
+    for (int group = 0; group < GROUPS; ++group) {
         const sphg_lists given = group_of(&lists, group);
         const sphg_neighbors *brought = setup_lists(own.context, &own.scheme, &geometry, &given);
         const rows found = rows_listed(own.context, brought, &own.scheme, NULL);
@@ -189,7 +189,7 @@ static void built_neighbours_keep_their_positions(const test_case *test)
     const size_t bytes =
         (size_t)(COUNT * test->dimension) * (own.particles.is_double ? sizeof(double) : 4);
     host_lists lists = host_lists_of(&own, 1.25, 0);
-    for (int kind = 0; kind < 3; kind++) {
+    for (int kind = 0; kind < 3; ++kind) {
         sphg_geometry geometry = scene_geometry(&own.particles);
         const sphg_lists given = group_of(&lists, CSR);
         geometry.list_free = kind == 1;
@@ -229,7 +229,7 @@ static void info_reports_pairs_counts_and_bytes(const test_case *test)
     own.geometry.list_free = 0;
     own.geometry.target_count = COUNT;
     host_lists lists = host_lists_of(&own, 1.25, 0);
-    for (int group = 0; group < GROUPS; group++) {
+    for (int group = 0; group < GROUPS; ++group) {
         const sphg_lists given = group_of(&lists, group);
         SETUP_OK(own.context, sphg_neighbors_use_lists(own.context, neighbors, &own.scheme,
                                                        &own.geometry, &given));
@@ -243,8 +243,8 @@ static double path_length(const comparison *own, const int32_t *order)
 {
     const int d = own->points.dimension;
     double sum = 0;
-    for (int k = 1; k < COUNT; k++)
-        for (int axis = 0; axis < d; axis++)
+    for (int k = 1; k < COUNT; ++k)
+        for (int axis = 0; axis < d; ++axis)
             sum +=
                 pow(own->points.x[order[k] * d + axis] - own->points.x[order[k - 1] * d + axis], 2);
     return sum;
@@ -256,12 +256,12 @@ static void order_is_a_permutation_and_a_short_path(const test_case *test)
     int32_t order[COUNT], identity[COUNT], seen[COUNT] = {0};
     const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &own.geometry);
     SETUP_OK(own.context, sphg_neighbors_get_order(own.context, neighbors, order));
-    for (int k = 0; k < COUNT; k++) {
+    for (int k = 0; k < COUNT; ++k) {
         assert_in_range(order[k], 0, COUNT - 1);
-        seen[order[k]]++;
+        ++seen[order[k]];
         identity[k] = k;
     }
-    for (int k = 0; k < COUNT; k++)
+    for (int k = 0; k < COUNT; ++k)
         assert_int_equal(seen[k], 1);
     assert_true(path_length(&own, order) < 0.5 * path_length(&own, identity));
 }
@@ -276,7 +276,7 @@ static void sorting_by_the_order_renames_the_pairs(const test_case *test)
     SETUP_OK(own.context, sphg_neighbors_get_order(own.context, neighbors, order));
     scene sorted = own.particles;
     sorted.sources = test_memory(COUNT * 3 * sizeof(double));
-    for (int k = 0; k < COUNT * d; k++)
+    for (int k = 0; k < COUNT * d; ++k)
         sorted.sources[k] = own.particles.sources[order[k / d] * d + k % d];
     rows_require_search_exact(own.context, brute_force_neighbors(own.context), &sorted,
                               own.scheme.support_radius, "sorted");
@@ -321,7 +321,7 @@ static void object_can_be_rebuilt_for_other_scenes(const test_case *test)
     sphg_context *context = setup_context();
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     const int counts[] = {200, 0, 1, 50, 2, 0, 300};
-    for (int k = 0; k < 14; k++) {
+    for (int k = 0; k < 14; ++k) {
         random_state random = random_seeded(101 + (uint64_t)k);
         test_case other = *test;
         other.dimension = k < 7 ? test->dimension : 5 - test->dimension;
@@ -335,7 +335,7 @@ static void object_can_be_rebuilt_for_other_scenes(const test_case *test)
 static void no_and_one_particle_give_empty_results(const test_case *test)
 {
     sphg_context *context = setup_context();
-    for (int count = 0; count < 2; count++) {
+    for (int count = 0; count < 2; ++count) {
         const double zero[3] = {0};
         const setup_array x = setup_numbers(test_position_type(test), count, test->dimension, zero);
         const setup_array field = setup_numbers(test_field_type(test), count, 1, zero);
@@ -350,7 +350,7 @@ static void no_and_one_particle_give_empty_results(const test_case *test)
         sources.volume = setup_view(&volume);
         SETUP_OK(context, sphg_gradient(context, &scheme, &sources, NULL, setup_view(&field),
                                         setup_view(&gradient)));
-        for (int k = 0; k < count * test->dimension; k++)
+        for (int k = 0; k < count * test->dimension; ++k)
             assert_true(setup_get(&gradient, 0, k) == 0);
     }
 }
@@ -363,8 +363,8 @@ static void lists_without_pairs_need_no_indices(const test_case *test)
     const sphg_lists none = {.offsets = offsets};
     const setup_array gradient =
         gradient_through(&own, setup_lists(own.context, &own.scheme, &own.geometry, &none));
-    for (int i = 0; i < COUNT; i++)
-        for (int k = 0; k < gradient.width; k++)
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < gradient.width; ++k)
             assert_true(setup_get(&gradient, i, k) == 0);
 }
 
@@ -372,7 +372,7 @@ static void lists_without_pairs_need_no_indices(const test_case *test)
 static void targets_without_sources_have_sums_of_nothing(const test_case *test)
 {
     const comparison own = comparison_of(test);
-    for (int list_free = 0; list_free < 2; list_free++) {
+    for (int list_free = 0; list_free < 2; ++list_free) {
         sphg_geometry geometry = own.geometry;
         geometry.targets = geometry.sources;
         geometry.target_count = COUNT;
@@ -391,7 +391,7 @@ static void targets_without_sources_have_sums_of_nothing(const test_case *test)
         const sphg_request request = {
             .sources = &sources, .fields = &asked, .set_count = 1, .field_count = 1};
         SETUP_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
-        for (int i = 0; i < COUNT; i++)
+        for (int i = 0; i < COUNT; ++i)
             assert_true(setup_get(&value, i, 0) == 0);
     }
 }

@@ -33,7 +33,7 @@ static setup_array random_numbers(const scenery *own, int width, double low, dou
     const int count = own->particles.source_count;
     random_state random = random_seeded(500 + (uint64_t)width);
     double *numbers = test_memory((size_t)(count * width) * sizeof *numbers);
-    for (int k = 0; k < count * width; k++)
+    for (int k = 0; k < count * width; ++k)
         numbers[k] = random_between(&random, low, high);
     return setup_numbers(test_field_type(own->test), count, width, numbers);
 }
@@ -43,9 +43,9 @@ static sphg_lists everybody(int targets, int sources)
 {
     int64_t *offsets = test_memory((size_t)(targets + 1) * sizeof *offsets);
     int32_t *indices = test_memory((size_t)(targets * sources) * sizeof *indices);
-    for (int i = 0; i <= targets; i++)
+    for (int i = 0; i <= targets; ++i)
         offsets[i] = (int64_t)i * sources;
-    for (int k = 0; k < targets * sources; k++)
+    for (int k = 0; k < targets * sources; ++k)
         indices[k] = k % sources;
     return (sphg_lists){.offsets = offsets, .indices = indices};
 }
@@ -62,7 +62,7 @@ static void move_a_little(scenery *own)
 {
     random_state random = random_seeded(503);
     sphg_neighbors_info info;
-    for (int k = 0; k < own->particles.source_count * own->test->dimension; k++) {
+    for (int k = 0; k < own->particles.source_count * own->test->dimension; ++k) {
         const double x = own->particles.sources[k] + random_between(&random, -.1, .1);
         own->particles.sources[k] = own->particles.is_double ? x : (double)(float)x;
     }
@@ -150,10 +150,10 @@ static int same_item(const setup_array *a, const setup_array *b, int i)
 
 static int is_reached(const scenery *own, int32_t i)
 {
-    for (int b = 0; b < BAD; b++) {
+    for (int b = 0; b < BAD; ++b) {
         if (own->bad[b] == i)
             return 1;
-        for (int64_t k = own->pairs.offsets[i]; k < own->pairs.offsets[i + 1]; k++)
+        for (int64_t k = own->pairs.offsets[i]; k < own->pairs.offsets[i + 1]; ++k)
             if (own->pairs.indices[k] == own->bad[b])
                 return 1;
     }
@@ -162,7 +162,7 @@ static int is_reached(const scenery *own, int32_t i)
 
 static int is_finite(const setup_array *found, int i)
 {
-    for (int k = 0; k < found->width; k++)
+    for (int k = 0; k < found->width; ++k)
         if (!isfinite(setup_get(found, i, k)))
             return 0;
     return 1;
@@ -173,7 +173,7 @@ static int require_contained(const scenery *own, const results *clean, const res
                              const char *where)
 {
     int shown = 0;
-    for (int32_t i = 0; i < own->particles.target_count; i++) {
+    for (int32_t i = 0; i < own->particles.target_count; ++i) {
         if (is_reached(own, i)) {
             shown += !is_finite(&found->gradient, i);
             continue;
@@ -196,7 +196,7 @@ static void spoil_and_compare(scenery *own, setup_array *spoilt, sphg_form form,
     const size_t bytes = (size_t)(spoilt->count * spoilt->width) * size;
     void *kept = memcpy(test_memory(bytes), spoilt->data, bytes);
     const char *where = test_text("%s, form %d, %s", what, (int)form, supply_names[own->way]);
-    for (int b = 0; b < BAD; b++)
+    for (int b = 0; b < BAD; ++b)
         for (int k = b % spoilt->width; k < spoilt->width; k += 2) {
             const int place = own->bad[b] * spoilt->width + k;
             if (size == 8)
@@ -215,9 +215,9 @@ static void not_a_number_reaches_neighbours_alone(const test_case *test)
     /* Clumps are large, and only who supplies their pairs is new: a method of either kind. */
     const int with_clumps =
         test->method == SPHG_KGC || (test->method == SPHG_CRKPM && test->precision == TEST_F32);
-    for (int way = 0; way < (with_clumps ? SUPPLIES : CLUMP); way++) {
+    for (int way = 0; way < (with_clumps ? SUPPLIES : CLUMP); ++way) {
         scenery own = scenery_of(test, (supply)way);
-        for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
+        for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form) {
             const results clean = evaluate(&own, (sphg_form)form);
             spoil_and_compare(&own, &own.field, (sphg_form)form, &clean, "field");
             if (form >= SPHG_SYMMETRIC && test->method != SPHG_PLAIN)

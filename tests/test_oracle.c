@@ -18,11 +18,11 @@ enum { gauss_points = 10 };
 /* Nodes and weights of Gauss and Legendre on [-1, 1]: roots of P_n by Newton's method. */
 static void gauss(quad *nodes, quad *weights)
 {
-    for (int k = 0; k < gauss_points; k++) {
+    for (int k = 0; k < gauss_points; ++k) {
         quad x = cos(3.141592653589793 * (k + .75) / (gauss_points + .5)), slope = 1;
-        for (int step = 0; step < 6; step++) {
+        for (int step = 0; step < 6; ++step) {
             quad last = 1, now = x;
-            for (int n = 2; n <= gauss_points; n++) {
+            for (int n = 2; n <= gauss_points; ++n) {
                 quad next = ((2 * n - 1) * x * now - (n - 1) * last) / n;
                 last = now;
                 now = next;
@@ -41,8 +41,8 @@ static quad integral(sphg_kernel kernel, int derivative, int power)
     quad nodes[gauss_points], weights[gauss_points], sum = 0;
     quad knots[] = {0, (quad)1 / 3, (quad)1 / 2, (quad)2 / 3, 1};
     gauss(nodes, weights);
-    for (int piece = 0; piece < 4; piece++)
-        for (int k = 0; k < gauss_points; k++) {
+    for (int piece = 0; piece < 4; ++piece)
+        for (int k = 0; k < gauss_points; ++k) {
             quad half = (knots[piece + 1] - knots[piece]) / 2, shape[3];
             quad q = knots[piece] + half * (1 + nodes[k]);
             oracle_shape_of(kernel, q, shape);
@@ -71,12 +71,12 @@ static void kernel_has_unit_integral_and_second_moment(const test_case *test)
 static void kernel_derivatives_are_difference_quotients(const test_case *test)
 {
     const quad step = 0x1p-30;
-    for (int k = 1; k < 32; k++) {
+    for (int k = 1; k < 32; ++k) {
         quad q = (quad)k / 32 + (quad)1 / 1024, here[3], low[3], high[3];
         oracle_shape_of(test->kernel, q, here);
         oracle_shape_of(test->kernel, q - step, low);
         oracle_shape_of(test->kernel, q + step, high);
-        for (int n = 0; n < 2; n++) {
+        for (int n = 0; n < 2; ++n) {
             quad quotient = (high[n] - low[n]) / (2 * step);
             double error = (double)(quad_abs(quotient - here[n + 1]) / (step * step));
             TEST_WITHIN(quad_difference_quotient, error, test_kernel_name(test->kernel));
@@ -87,7 +87,7 @@ static void kernel_derivatives_are_difference_quotients(const test_case *test)
 static void radial_weights_are_those_of_the_shape(const test_case *test)
 {
     const quad h = .75, step = 0x1p-30;
-    for (int k = 3; k < 16; k++) {
+    for (int k = 3; k < 16; ++k) {
         quad r = h * k / 16 + (quad)1 / 1024;
         int d = test->dimension;
         oracle_weights here = oracle_weights_at(test->kernel, d, h, r);
@@ -147,7 +147,7 @@ static double linear(const double *x, int d)
 static double *linear_field(const cloud *points)
 {
     double *field = test_memory((size_t)points->count * sizeof *field);
-    for (int i = 0; i < points->count; i++)
+    for (int i = 0; i < points->count; ++i)
         field[i] = linear(points->x + i * points->dimension, points->dimension);
     return field;
 }
@@ -155,7 +155,7 @@ static double *linear_field(const cloud *points)
 static void require_linear_gradient(const oracle_result *result, int d, quad unit)
 {
     static const double slope[] = {2, -1, .5};
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         TEST_WITHIN(quad_exactness, in_quad_units((result->gradient[k] - slope[k]) / unit),
                     "gradient");
 }
@@ -166,10 +166,10 @@ static void linear_fields_are_exact_in_quad(const test_case *test)
     int d = test->dimension;
     oracle_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, linear_field(&on.points), NULL};
     int compared = 0;
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         if (oracle_at(on.reference, i)->rank < d)
             continue;
-        compared++;
+        ++compared;
         field.form = SPHG_DIFFERENCE;
         oracle_result result = oracle_apply(on.reference, &field, i);
         require_linear_gradient(&result, d, 1);
@@ -189,15 +189,15 @@ static void partition_of_unity_holds_in_quad(const test_case *test)
     bench benches[] = {jittered_bench(test), sheet_bench(test),
                        make_bench(test, cloud_pair(test->dimension, .25), .5),
                        make_bench(test, cloud_single(test->dimension), .5)};
-    for (int b = 0; b < 4; b++) {
+    for (int b = 0; b < 4; ++b) {
         double *ones = test_memory((size_t)benches[b].points.count * sizeof *ones);
         oracle_field field = {SPHG_SCALAR, SPHG_DIRECT, ones, NULL};
-        for (int i = 0; i < benches[b].points.count; i++)
+        for (int i = 0; i < benches[b].points.count; ++i)
             ones[i] = 1;
-        for (int i = 0; i < benches[b].points.count; i++) {
+        for (int i = 0; i < benches[b].points.count; ++i) {
             oracle_result result = oracle_apply(benches[b].reference, &field, i);
             TEST_WITHIN(quad_exactness, in_quad_units(result.value[0] - 1), "value of 1");
-            for (int k = 0; k < test->dimension; k++)
+            for (int k = 0; k < test->dimension; ++k)
                 TEST_WITHIN(quad_exactness, in_quad_units(result.gradient[k]), "gradient of 1");
         }
     }
@@ -208,23 +208,23 @@ static void adjoint_is_the_negative_transpose_in_quad(const test_case *test)
 {
     bench benches[] = {jittered_bench(test), sheet_bench(test)};
     random_state random = random_seeded(5);
-    for (int b = 0; b < 2; b++) {
+    for (int b = 0; b < 2; ++b) {
         const cloud *points = &benches[b].points;
         int d = test->dimension;
         double *velocity = test_memory((size_t)(points->count * d) * sizeof *velocity);
-        for (int k = 0; k < points->count * d; k++)
+        for (int k = 0; k < points->count * d; ++k)
             velocity[k] = random_between(&random, -1, 1);
         double *stress = cloud_numbers(points, -1, 1, &random);
         oracle_field motion = {SPHG_VECTOR, SPHG_DIFFERENCE, velocity, NULL};
         oracle_field force = {SPHG_SCALAR, SPHG_ADJOINT, stress, NULL};
         quad work = 0, size = 0;
-        for (int i = 0; i < points->count; i++) {
+        for (int i = 0; i < points->count; ++i) {
             oracle_result rate = oracle_apply(benches[b].reference, &motion, i);
             oracle_result push = oracle_apply(benches[b].reference, &force, i);
             quad first = benches[b].scene.volume[i] * stress[i] * rate.divergence[0];
             work += first;
             size += quad_abs(first);
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 work += velocity[i * d + k] * push.gradient[k];
         }
         TEST_WITHIN(quad_exactness, in_quad_units(work / size), "work");
@@ -236,13 +236,13 @@ static void two_sided_forms_conserve_momentum_in_quad(const test_case *test)
     bench on = sheet_bench(test);
     random_state random = random_seeded(6);
     double *stress = cloud_numbers(&on.points, -1, 1, &random);
-    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
         oracle_field field = {SPHG_SCALAR, (sphg_form)form, stress, NULL};
         quad sum[3] = {0}, size = 0;
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             oracle_result push = oracle_apply(on.reference, &field, i);
             quad weight = form == SPHG_SYMMETRIC ? (quad)on.scene.volume[i] : 1;
-            for (int k = 0; k < test->dimension; k++)
+            for (int k = 0; k < test->dimension; ++k)
                 sum[k] += weight * push.gradient[k];
             size += weight * quad_norm(push.gradient, test->dimension);
         }
@@ -269,9 +269,9 @@ static void classic_gradient_is_the_derivative_of_the_value(const test_case *tes
     random_state random = random_seeded(21);
     double *field = cloud_numbers(&on.points, -1, 1, &random), step = 0x1p-26;
     oracle_field direct = {SPHG_SCALAR, SPHG_DIRECT, field, NULL};
-    for (int trial = 0; trial < 4; trial++) {
+    for (int trial = 0; trial < 4; ++trial) {
         double x[3];
-        for (int k = 0; k < test->dimension; k++)
+        for (int k = 0; k < test->dimension; ++k)
             x[k] = (double)(float)random_between(&random, .1, .6);
         oracle_scene scene = on.scene;
         scene.targets = x;
@@ -279,7 +279,7 @@ static void classic_gradient_is_the_derivative_of_the_value(const test_case *tes
         oracle *here = oracle_of(&scene);
         assert_int_equal(oracle_at(here, 0)->rank, test->dimension);
         oracle_result result = oracle_apply(here, &direct, 0);
-        for (int k = 0; k < test->dimension; k++) {
+        for (int k = 0; k < test->dimension; ++k) {
             double low[3] = {x[0], x[1], x[2]}, high[3] = {x[0], x[1], x[2]};
             low[k] -= step;
             high[k] += step;

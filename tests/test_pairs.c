@@ -94,9 +94,9 @@ static void require_searched(const targets *own, const rows *found)
     const comparison *on = &own->on;
     const rows expected = rows_listed(on->context, own->neighbors, &on->scheme, NULL);
     const int self = own->are_sources && test_is_classic(on->test);
-    for (int i = 0; i < own->count; i++) {
+    for (int i = 0; i < own->count; ++i) {
         int64_t at = found->offsets[i];
-        for (int64_t k = expected.offsets[i]; k < expected.offsets[i + 1]; k++, at++) {
+        for (int64_t k = expected.offsets[i]; k < expected.offsets[i + 1]; k++, ++at) {
             at += self && found->indices[at] == i;
             assert_int_equal(found->indices[at], expected.indices[k]);
         }
@@ -109,7 +109,7 @@ static void require_searched(const targets *own, const rows *found)
 
 static void pairs_are_those_of_the_search(const test_case *test)
 {
-    for (int are_sources = 0; are_sources < 2; are_sources++) {
+    for (int are_sources = 0; are_sources < 2; ++are_sources) {
         const targets own = targets_of(test, are_sources);
         const pair_rows full = pairs_of(&own, NULL, 1), bare = pairs_of(&own, NULL, 0);
         require_searched(&own, &full.listed);
@@ -122,9 +122,9 @@ static void require_row(const pair_rows *all, int target, const pair_rows *some,
     const int64_t first = all->listed.offsets[target], at = some->listed.offsets[row];
     const int64_t length = all->listed.offsets[target + 1] - first;
     assert_int_equal(some->listed.offsets[row + 1] - at, length);
-    for (int64_t k = 0; k < length; k++) {
+    for (int64_t k = 0; k < length; ++k) {
         assert_int_equal(some->listed.indices[at + k], all->listed.indices[first + k]);
-        for (int c = 0; c < all->gradient.width; c++)
+        for (int c = 0; c < all->gradient.width; ++c)
             TEST_REQUIRE(setup_get(&some->gradient, (int)(at + k), c) ==
                              setup_get(&all->gradient, (int)(first + k), c),
                          "target %d: other bits", target);
@@ -133,7 +133,7 @@ static void require_row(const pair_rows *all, int target, const pair_rows *some,
 
 static int64_t place_of(const pair_rows *all, int row, int32_t source)
 {
-    for (int64_t k = all->listed.offsets[row]; k < all->listed.offsets[row + 1]; k++)
+    for (int64_t k = all->listed.offsets[row]; k < all->listed.offsets[row + 1]; ++k)
         if (all->listed.indices[k] == source)
             return k;
     return -1;
@@ -143,19 +143,19 @@ static int64_t place_of(const pair_rows *all, int row, int32_t source)
 static void pairs_in_any_order_are_those_in_order(const test_case *test)
 {
     int64_t moved = 0;
-    for (int are_sources = 0; are_sources < 2; are_sources++) {
+    for (int are_sources = 0; are_sources < 2; ++are_sources) {
         const targets own = targets_of(test, are_sources);
         const pair_rows sorted = pairs_of(&own, NULL, 1), any = pairs_in_order(&own, NULL, 1, 1);
         const pair_rows again = pairs_in_order(&own, NULL, 1, 1),
                         bare = pairs_in_order(&own, NULL, 0, 1);
-        for (int i = 0; i < own.count; i++) {
+        for (int i = 0; i < own.count; ++i) {
             assert_int_equal(any.listed.offsets[i + 1], sorted.listed.offsets[i + 1]);
-            for (int64_t k = any.listed.offsets[i]; k < any.listed.offsets[i + 1]; k++) {
+            for (int64_t k = any.listed.offsets[i]; k < any.listed.offsets[i + 1]; ++k) {
                 const int64_t at = place_of(&sorted, i, any.listed.indices[k]);
                 TEST_REQUIRE(at >= 0 && place_of(&any, i, any.listed.indices[k]) == k,
                              "row %d: %d is no pair, or twice", i, any.listed.indices[k]);
                 moved += at != k;
-                for (int c = 0; c < any.gradient.width; c++)
+                for (int c = 0; c < any.gradient.width; ++c)
                     TEST_REQUIRE(setup_get(&any.gradient, (int)k, c) ==
                                      setup_get(&sorted.gradient, (int)at, c),
                                  "row %d: other bits", i);
@@ -169,16 +169,16 @@ static void pairs_in_any_order_are_those_in_order(const test_case *test)
 
 static void masked_targets_have_the_pairs_they_have_among_all(const test_case *test)
 {
-    for (int are_sources = 0; are_sources < 2; are_sources++) {
+    for (int are_sources = 0; are_sources < 2; ++are_sources) {
         const targets own = targets_of(test, are_sources);
         uint8_t *mask = test_memory((size_t)own.count);
-        for (int i = 0; i < own.count; i++)
+        for (int i = 0; i < own.count; ++i)
             mask[i] = i % 4 == 2;
         const sphg_subset subset = {0, own.count, NULL, mask};
         const pair_rows all = pairs_of(&own, NULL, 1), some = pairs_of(&own, &subset, 1);
-        for (int i = 0, row = 0; i < own.count; i++)
+        for (int i = 0, row = 0; i < own.count; ++i)
             if (mask[i])
-                require_row(&all, i, &some, row++);
+                require_row(&all, i, &some, ++row);
     }
 }
 
@@ -190,10 +190,10 @@ static void single_pairs_have_as_many_components_as_the_scheme(const test_case *
     const double x_ij[3] = {.25, -.125, .5};
     double gradient[3] = {-7, -7, -7};
     sphg_pair_gradient(&scheme, NULL, .01, NULL, gradient);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; ++c)
         assert_true(c < test->dimension ? isnan(gradient[c]) : gradient[c] == -7);
     sphg_pair_gradient(&scheme, x_ij, .01, NULL, gradient);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; ++c)
         assert_true(c < test->dimension ? isfinite(gradient[c]) : gradient[c] == -7);
 }
 

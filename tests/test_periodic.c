@@ -11,7 +11,7 @@
 static void scatter(const scene *particles, double *x, int count, double length,
                     random_state *random)
 {
-    for (int k = 0; k < count * particles->dimension; k++)
+    for (int k = 0; k < count * particles->dimension; ++k)
         x[k] = scene_rounded(particles, random_between(random, 0, length));
 }
 
@@ -26,8 +26,8 @@ enum { FAR_COUNT = 10, MANY = 90, ESCAPED = 8 };
 static void let_escape(const scene *particles, double *x, double periods, int axes)
 {
     const double largest = particles->is_double ? DBL_MAX : (double)FLT_MAX;
-    for (int i = 0; i < ESCAPED; i++)
-        for (int a = 0; a < particles->dimension; a++) {
+    for (int i = 0; i < ESCAPED; ++i)
+        for (int a = 0; a < particles->dimension; ++a) {
             const double length = particles->period[a], sign = i % 4 < 2 ? 1 : -1;
             double *own = &x[(i * 7) * particles->dimension + a];
             if (axes >> a & 1 && periods < largest / 1e4)
@@ -44,9 +44,9 @@ static void require_lists_agree(sphg_context *context, const scene *particles, c
     enum { ROOM = MANY * MANY };
     int64_t offsets[MANY + 1];
     int32_t *indices = test_memory(ROOM * sizeof *indices);
-    for (int i = 0; i <= MANY; i++)
+    for (int i = 0; i <= MANY; ++i)
         offsets[i] = (int64_t)i * MANY;
-    for (int k = 0; k < ROOM; k++)
+    for (int k = 0; k < ROOM; ++k)
         indices[k] = k % MANY;
     sphg_scheme scheme = {0};
     sphg_lists lists = {0};
@@ -62,9 +62,9 @@ static void require_lists_agree(sphg_context *context, const scene *particles, c
     int32_t order[MANY];
     char seen[MANY] = {0};
     SETUP_OK(context, sphg_neighbors_get_order(context, brought, order));
-    for (int k = 0; k < MANY; k++)
-        seen[order[k]]++;
-    for (int k = 0; k < MANY; k++)
+    for (int k = 0; k < MANY; ++k)
+        ++seen[order[k]];
+    for (int k = 0; k < MANY; ++k)
         assert_int_equal(seen[k], 1);
 }
 
@@ -90,7 +90,7 @@ static void check_escapees(const test_case *test, sphg_context *context, int far
     random_state random = random_seeded(89 + (uint64_t)far);
     scene particles = scene_empty(test, MANY);
     double *targets = test_memory(MANY * 3 * sizeof *targets);
-    for (int a = 0; a < test->dimension; a++)
+    for (int a = 0; a < test->dimension; ++a)
         particles.period[a] =
             axes >> a & 1 ? scene_rounded(&particles, random_between(&random, 2.6, 7)) : 0;
     scatter(&particles, particles.sources, MANY, 4, &random);
@@ -105,9 +105,9 @@ static void check_escapees(const test_case *test, sphg_context *context, int far
 static void escapees_have_the_pairs_of_brute_force(const test_case *test)
 {
     static const sphg_isa sets[] = {SPHG_ISA_BASE, SPHG_ISA_X86_V3, SPHG_ISA_X86_V4};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         sphg_context *context = setup_context_on(sets[k]);
-        for (int far = 0; far < FAR_COUNT && context; far++) {
+        for (int far = 0; far < FAR_COUNT && context; ++far) {
             check_escapees(test, context, far, 1 << far % test->dimension);
             check_escapees(test, context, far, (1 << test->dimension) - 1);
         }
@@ -127,17 +127,17 @@ static void escapees_leave_the_grid_as_it_is(const test_case *test)
     sphg_scheme scheme = {0};
     scheme.dimension = test->dimension;
     scheme.support_radius = 0.5;
-    for (int a = 0; a < test->dimension; a++)
+    for (int a = 0; a < test->dimension; ++a)
         particles.period[a] = 12;
     scatter(&particles, particles.sources, COUNT, 12, &random);
-    for (int a = 0; a < test->dimension; a++)
+    for (int a = 0; a < test->dimension; ++a)
         particles.sources[1000 * test->dimension + a] = 0;
     sphg_geometry geometry = scene_geometry(&particles);
     const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
     SETUP_OK(context, sphg_neighbors_get_order(context, neighbors, before));
     const int doublings[] = {20, 23, 30, 60, 100, 120, 500, 1000};
-    for (int k = 0; k < (particles.is_double ? 8 : 6); k++) {
-        for (int a = 0; a < (k % 2 ? 1 : test->dimension); a++)
+    for (int k = 0; k < (particles.is_double ? 8 : 6); ++k) {
+        for (int a = 0; a < (k % 2 ? 1 : test->dimension); ++a)
             particles.sources[1000 * test->dimension + a] = ldexp(-12, doublings[k]);
         geometry = scene_geometry(&particles);
         neighbors = setup_search(context, &scheme, &geometry);
@@ -153,13 +153,13 @@ static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test
     sphg_context *context = setup_context_of(1);
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(101);
-    for (int round = 0; round < 60; round++) {
+    for (int round = 0; round < 60; ++round) {
         scene particles = scene_empty(test, MANY);
         const int d = test->dimension, most = round % 3 == 0 ? 0 : round % 3 == 1 ? 5 : 6000;
         const double length = scene_rounded(&particles, random_between(&random, 3.02, 9));
         const double cells = floor(length / (1 + 0x1p-9));
         scatter(&particles, particles.sources, MANY, length, &random);
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             particles.period[a] = length;
         for (int i = 0; i < MANY; i += 2) {
             double *x = &particles.sources[i * d];
@@ -168,7 +168,7 @@ static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test
             const double step = (particles.is_double ? 0x1p-52 : 0x1p-23) * length;
             x[i % d] = border + step * ((int)random_index(&random, 5) - 2);
             x[d + i % d] = x[i % d] + (i % 4 ? 1 : -1) + step * ((int)random_index(&random, 3) - 1);
-            for (int k = 0; k < 2 * d; k++)
+            for (int k = 0; k < 2 * d; ++k)
                 x[k] = scene_rounded(&particles,
                                      x[k] + length * (random_index(&random, 2 * most + 1) - most));
         }
@@ -222,13 +222,13 @@ static int rebuilds_of(const test_case *test, enum host host, int axes, int own_
     int rebuilt = 0;
     particles.skin = 0.3;
     particles.targets = own_targets ? test_memory(WALKERS * 3 * sizeof(double)) : NULL;
-    for (int a = 0; a < d; a++)
+    for (int a = 0; a < d; ++a)
         particles.period[a] = axes >> a & 1 ? 3 + a : 0;
     scatter(&particles, place, WALKERS, 3, &random);
-    for (int k = 0; k < WALKERS * d; k++)
+    for (int k = 0; k < WALKERS * d; ++k)
         speed[k] = (k < d ? 1 : random_between(&random, -1, 1)) * 0.045 / sqrt(d);
-    for (int step = 0; step < STEPS; step++) {
-        for (int k = 0; k < WALKERS * d; k++) {
+    for (int step = 0; step < STEPS; ++step) {
+        for (int k = 0; k < WALKERS * d; ++k) {
             const double length = particles.period[k % d], x = place[k] + speed[k] * step;
             const double put =
                 scene_rounded(&particles, length > 0 ? wrapped_by(host, x, length) : x);
@@ -247,8 +247,8 @@ static int rebuilds_of(const test_case *test, enum host host, int axes, int own_
 
 static void skins_hold_whether_the_host_wraps_or_not(const test_case *test)
 {
-    for (int axes = 1; axes < 1 << test->dimension; axes++)
-        for (int host = 0; host < HOSTS; host++)
+    for (int axes = 1; axes < 1 << test->dimension; ++axes)
+        for (int host = 0; host < HOSTS; ++host)
             assert_int_equal(rebuilds_of(test, (enum host)host, axes, axes == 1), 9);
 }
 
@@ -259,13 +259,13 @@ static void skins_leave_room_for_rounding(const test_case *test)
     sphg_context *context = setup_context_of(1);
     random_state random = random_seeded(107);
     int kept = 0;
-    for (int round = 0; round < 120; round++) {
+    for (int round = 0; round < 120; ++round) {
         sphg_neighbors *neighbors = brute_force_neighbors(context);
         scene particles = scene_empty(test, MANY);
         const int d = test->dimension;
         const double unit = particles.is_double ? 0x1p-53 : 0x1p-24;
         const double away = ldexp(1, -(int)random_index(&random, 6)) * 0x1p-9 / unit;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             particles.period[a] = scene_rounded(&particles, random_between(&random, 3, 4));
         particles.skin = 16 * unit * away * random_between(&random, 0.25, 4);
         scatter(&particles, particles.sources, MANY, 3, &random);
@@ -274,18 +274,18 @@ static void skins_leave_room_for_rounding(const test_case *test)
             memcpy(x, x - d, (size_t)d * sizeof *x);
             x[0] += 1 + particles.skin * random_between(&random, 0.9, 1.1);
         }
-        for (int i = 0; i < MANY; i++)
-            for (int a = 0; a < d; a++) {
+        for (int i = 0; i < MANY; ++i)
+            for (int a = 0; a < d; ++a) {
                 const double turns = nearbyint(away / particles.period[a]) * (i % 2 ? -1 : 1);
                 double *x = &particles.sources[i * d + a];
                 *x = scene_rounded(&particles, *x + turns * particles.period[a]);
             }
-        for (int step = 0; step < 4; step++) {
+        for (int step = 0; step < 4; ++step) {
             sphg_neighbors_info info = {0};
             rows_require_search_exact(context, neighbors, &particles, 1, "rounded");
             SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
             kept += !info.rebuilt;
-            for (int i = 0; i < MANY; i++) /* towards each other */
+            for (int i = 0; i < MANY; ++i) /* towards each other */
                 particles.sources[i * d] = scene_rounded(
                     &particles, particles.sources[i * d] + (i % 2 ? -0.16 : 0.16) * particles.skin);
         }

@@ -26,9 +26,9 @@ static void compare(const comparison *on, sphg_shape shape, const second_order *
 
 static void results_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
-        for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); shape++) {
+        for (int shape = SPHG_SCALAR; shape <= (s ? SPHG_VECTOR : SPHG_TENSOR); ++shape) {
             const double *numbers = comparison_random_field(&on, (sphg_shape)shape, 3);
             const second_order found =
                 second_order_apply(&on, (sphg_shape)shape, numbers, (second_order_how){0});
@@ -43,10 +43,10 @@ static void results_match_the_oracle(const test_case *test)
 /* Forms of both sides, with the table of a call before. */
 static void two_sided_forms_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
         const setup_array table = comparison_table(&on);
-        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape) {
             const sphg_form form = (sphg_form)(shape % 2 ? SPHG_ADJOINT : SPHG_SYMMETRIC);
             const comparison_field field = {(sphg_shape)shape, form,
                                             comparison_random_field(&on, (sphg_shape)shape, 21)};
@@ -60,7 +60,7 @@ static void two_sided_forms_match_the_oracle(const test_case *test)
                 const setup_array *const arrays[] = {&found.gradient, &found.divergence,
                                                      &found.curl};
                 const quad *const numbers[] = {exact.gradient, exact.divergence, exact.curl};
-                for (int k = 0; k < 3; k++)
+                for (int k = 0; k < 3; ++k)
                     TEST_WITHIN(quadratic_two_sided,
                                 second_order_ratio(arrays[k], i, numbers[k], exact.gradient_bound),
                                 test_text("result %d of particle %d, %s, %s", k, i, on.name,
@@ -73,9 +73,9 @@ static void two_sided_forms_match_the_oracle(const test_case *test)
 static void every_policy_and_instruction_set_matches_the_oracle(const test_case *test)
 {
     static const int chosen[] = {0, 5, 10};
-    for (int s = 0; s < 3; s++)
-        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++)
-            for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (int s = 0; s < 3; ++s)
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy)
+            for (int isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
                 const comparison made = comparison_of_scene(test, &scenes_hard[chosen[s]]);
                 comparison on =
                     second_order_comparison(comparison_under(&made, (sphg_policy)policy, .0625));
@@ -98,7 +98,7 @@ static void uneven_volumes_match_the_oracle(const test_case *test)
     const comparison even = comparison_of_scene(test, &scenes_hard[0]);
     const double heavy = test_unit_roundoff(test) > 1e-10 ? 0x1p17 : 0x1p46;
     double *volumes = test_memory((size_t)even.points.count * sizeof *volumes);
-    for (int i = 0; i < even.points.count; i++)
+    for (int i = 0; i < even.points.count; ++i)
         volumes[i] = setup_get(&even.volume, i, 0) * (i % 9 == 4 ? heavy : 1);
     const comparison on = second_order_comparison(comparison_with_volumes(&even, volumes));
     const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 15);
@@ -127,7 +127,7 @@ static void volumes_that_are_alike_need_not_be_told(const test_case *test)
                                              comparison_random_field(&on, SPHG_SCALAR, 16));
     const sphg_view at_sources = setup_view(&values);
     second_order found[2];
-    for (int mean = 0; mean < 2; mean++) {
+    for (int mean = 0; mean < 2; ++mean) {
         found[mean] = second_order_outputs(&on, SPHG_SCALAR, 0);
         const sphg_view same = f64 ? sphg_same_f64(&volume) : sphg_same_f32(&narrow);
         setup_array positions = setup_positions(test, (cloud *)&on.points);
@@ -152,17 +152,17 @@ static void volumes_that_are_alike_need_not_be_told(const test_case *test)
 static void rank_is_the_oracles(const test_case *test)
 {
     int open = 0, all = 0;
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         const comparison on = second_order_comparison(comparison_of_scene(test, &scenes_hard[s]));
         const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 4);
         const second_order found =
             second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
         int64_t full = 0;
-        for (int i = 0; i < on.points.count; i++)
+        for (int i = 0; i < on.points.count; ++i)
             full += setup_get(&found.rank, i, 0) == full_rank(on.points.dimension);
         TEST_REQUIRE(found.stats.quadratic == full, "%lld of %lld, %s",
                      (long long)found.stats.quadratic, (long long)full, on.name);
-        for (int i = 0; i < on.points.count; i += 1 + on.points.count / 9, all++) {
+        for (int i = 0; i < on.points.count; i += 1 + on.points.count / 9, ++all) {
             oracle_second second;
             const oracle_point *point = oracle_at(on.reference, i);
             oracle_solve_second(&on.scene, point, &second);
@@ -172,7 +172,7 @@ static void rank_is_the_oracles(const test_case *test)
                 second.kept > 0 && (quad_abs(second.t - 4 * second.eps) <= blur ||
                                     quad_abs(part - (quad).5) <= blur * second.norm_f * 9);
             if (oracle_rank_is_open(&on.scene, point) || near_limit)
-                open++;
+                ++open;
             else
                 TEST_REQUIRE(setup_get(&found.rank, i, 0) == second.rank,
                              "%g, not %d: particle %d, %s", setup_get(&found.rank, i, 0),
@@ -187,7 +187,7 @@ static void rank_is_the_oracles(const test_case *test)
 static double distance_to(const setup_array *found, int i, const double *exact)
 {
     double square = 0;
-    for (int k = 0; k < found->width; k++)
+    for (int k = 0; k < found->width; ++k)
         square += pow(setup_get(found, i, k) - exact[k], 2);
     return sqrt(square);
 }
@@ -207,14 +207,14 @@ static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
 {
     static const double jitters[] = {0, .2, .4}, supports[] = {2, 2.5, 3};
     const double size = 15;
-    for (int k = 0; k < 9; k++) {
+    for (int k = 0; k < 9; ++k) {
         const comparison on = exact_stage(test, jitters[k % 3], supports[k / 3]);
         const int n = on.points.count, d = on.points.dimension;
         const double h = on.scheme.support_radius;
         const second_order found = second_order_apply(
             &on, SPHG_SCALAR, second_order_polynomial(&on.points, 2), (second_order_how){0});
         int full = 0;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; ++i) {
             double exact[3];
             oracle_second second;
             if (setup_get(&found.rank, i, 0) < full_rank(d))
@@ -238,13 +238,13 @@ static void quadratic_fields_are_exact_at_full_rank(const test_case *test)
 
 static void linear_fields_are_exact_wherever_order_1_is(const test_case *test)
 {
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const comparison on = exact_stage(test, .2 * k, 2);
         const second_order found = second_order_apply(
             &on, SPHG_SCALAR, second_order_polynomial(&on.points, 1), (second_order_how){0});
         const double none[PAIRS_MOST] = {0}, h = on.scheme.support_radius;
         int partial = 0;
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             const int rank = (int)setup_get(&found.rank, i, 0);
             oracle_second second;
             if (rank < on.points.dimension)
@@ -268,11 +268,11 @@ static void constants_have_exactly_no_derivative(const test_case *test)
 {
     const comparison on = exact_stage(test, .2, 2);
     double *numbers = test_memory((size_t)on.points.count * sizeof *numbers);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         numbers[i] = .1;
     const second_order found = second_order_apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
-    for (int i = 0; i < on.points.count; i++)
-        for (int k = 0; k < found.hessian.width; k++)
+    for (int i = 0; i < on.points.count; ++i)
+        for (int k = 0; k < found.hessian.width; ++k)
             assert_true(setup_get(&found.hessian, i, k) == 0 &&
                         setup_get(&found.gradient, i, k % test->dimension) == 0 &&
                         setup_get(&found.laplacian, i, 0) == 0);
@@ -289,9 +289,9 @@ typedef struct lattice_gate {
 static double volume_of(const cloud *points, const sphg_scheme *scheme, int i)
 {
     double sum = 0, w;
-    for (int j = 0; j < points->count; j++) {
+    for (int j = 0; j < points->count; ++j) {
         double square = 0;
-        for (int a = 0; a < points->dimension; a++)
+        for (int a = 0; a < points->dimension; ++a)
             square +=
                 pow(points->x[i * points->dimension + a] - points->x[j * points->dimension + a], 2);
         sphg_kernel_value(scheme, sqrt(square), &w, NULL);
@@ -306,12 +306,12 @@ static comparison gate_stage(const test_case *test, int per_axis, double support
     const int d = test->dimension;
     const double spacing = 2. / per_axis;
     cloud points = cloud_lattice(d, per_axis, spacing);
-    for (int k = 0; k < points.count * d; k++)
+    for (int k = 0; k < points.count * d; ++k)
         points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing;
     comparison on = second_order_comparison(
         comparison_of(test, "lattice", points, support * spacing * (1 + 1e-6)));
     double *volumes = test_memory((size_t)points.count * sizeof *volumes);
-    for (int i = 0; i < points.count; i++)
+    for (int i = 0; i < points.count; ++i)
         volumes[i] = volume_of(&on.points, &on.scheme, i);
     return comparison_with_volumes(&on, volumes);
 }
@@ -319,7 +319,7 @@ static comparison gate_stage(const test_case *test, int per_axis, double support
 static int is_boundary(const comparison *on, int i, int layers)
 {
     const int d = on->points.dimension;
-    for (int a = 0; a < d; a++)
+    for (int a = 0; a < d; ++a)
         if (1 - fabs(on->points.x[i * d + a]) < layers * on->points.spacing)
             return 1;
     return 0;
@@ -343,27 +343,27 @@ static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
         {2.5, SPHG_MLS, .02226, .014516, 1.3416, 1.3263},
         {3, SPHG_MLS, .02309, .021838, 1.3421, 1.3263},
     };
-    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++) {
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; ++g) {
         if (gates[g].method != test->method)
             continue;
         const comparison on = gate_stage(test, 40, gates[g].support);
         double *v = test_memory((size_t)on.points.count * 2 * sizeof *v);
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             const double *x = on.points.x + 2 * i;
             v[2 * i] = cos(2 * x[0]);
             v[2 * i + 1] = cos(x[1]) - sin(3 * x[0]);
         }
         const second_order found = second_order_apply(&on, SPHG_VECTOR, v, (second_order_how){0});
         double gradient[2] = {0}, hessian[2] = {0}, laplacian[2] = {0};
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             const double x = on.points.x[2 * i], y = on.points.x[2 * i + 1];
             const double j[] = {-2 * sin(2 * x), 0, -3 * cos(3 * x), -sin(y)};
             const double h[] = {-4 * cos(2 * x), 0, 0, 9 * sin(3 * x), 0, -cos(y)};
             const int inside = !is_boundary(&on, i, 2);
             double square = 0, l = 0;
-            for (int k = 0; k < 6; k++)
+            for (int k = 0; k < 6; ++k)
                 square += pow(setup_get(&found.hessian, i, k) - h[k], 2) * (k % 3 == 1 ? 2 : 1);
-            for (int c = 0; c < 2; c++)
+            for (int c = 0; c < 2; ++c)
                 l = fmax(l, fabs(setup_get(&found.laplacian, i, c) - h[3 * c] - h[3 * c + 2]));
             gradient[inside] = fmax(gradient[inside], distance_to(&found.gradient, i, j));
             hessian[inside] = fmax(hessian[inside], sqrt(square));
@@ -387,17 +387,17 @@ static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
         {3, SPHG_KGC, .2724, .2473, 0, 4.863},
         {2, SPHG_RKPM, .53055, .124337, 0, 0},
     };
-    for (size_t g = 0; g < sizeof gates / sizeof *gates; g++) {
+    for (size_t g = 0; g < sizeof gates / sizeof *gates; ++g) {
         if (gates[g].method != test->method)
             continue;
         const comparison on = gate_stage(test, 12, gates[g].support);
         double *a = test_memory((size_t)on.points.count * sizeof *a), worst[2] = {0}, l = 0;
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             const double *x = on.points.x + 3 * i;
             a[i] = cos(x[1]) - sin(3 * x[0]) + cos(2 * x[2]);
         }
         const second_order found = second_order_apply(&on, SPHG_SCALAR, a, (second_order_how){0});
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             const double *x = on.points.x + 3 * i;
             const double exact[] = {-3 * cos(3 * x[0]), -sin(x[1]), -2 * sin(2 * x[2])};
             const double trace = -cos(x[1]) + 9 * sin(3 * x[0]) - 4 * cos(2 * x[2]);
@@ -440,10 +440,10 @@ static void laplacians_are_traces_of_hessians(const test_case *test)
     const int d = test->dimension, step = second_order_pairs(d);
     const second_order found = second_order_apply(
         &on, SPHG_VECTOR, comparison_random_field(&on, SPHG_VECTOR, 7), (second_order_how){0});
-    for (int i = 0; i < on.points.count; i++)
-        for (int c = 0; c < d; c++) {
+    for (int i = 0; i < on.points.count; ++i)
+        for (int c = 0; c < d; ++c) {
             double trace = setup_get(&found.hessian, i, c * step);
-            for (int a = 1; a < d; a++) {
+            for (int a = 1; a < d; ++a) {
                 const int k = c * step + a * d - a * (a - 1) / 2;
                 trace += setup_get(&found.hessian, i, k);
                 if (test_field_type(test) == SPHG_F32)
@@ -468,13 +468,13 @@ static void pairs_found_anew_give_the_same_bits(const test_case *test)
     second_order_require_same_bits(&kept, &again, "list-free");
     TEST_REQUIRE(setup_same_bits(&kept.table, &again.table), "tables");
     int32_t chosen[12];
-    for (int k = 0; k < 12; k++)
+    for (int k = 0; k < 12; ++k)
         chosen[k] = k * 3;
     const sphg_subset few = sphg_listed(chosen, 12);
     const second_order some =
         second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){.subset = &few});
-    for (int k = 0; k < 12; k++)
-        for (int c = 0; c < some.hessian.width; c++)
+    for (int k = 0; k < 12; ++k)
+        for (int c = 0; c < some.hessian.width; ++c)
             TEST_REQUIRE(setup_get(&some.hessian, chosen[k], c) ==
                              setup_get(&kept.hessian, chosen[k], c),
                          "target %d", chosen[k]);
@@ -514,8 +514,8 @@ static void two_sided_forms_have_the_same_bits_in_any_company(const test_case *t
     const int32_t chosen[] = {0, 7, on.points.count - 1};
     const sphg_subset few = sphg_listed(chosen, 3);
     const comparison_result some = comparison_apply_to(&on, &stress, &table, &few);
-    for (int k = 0; k < 3; k++)
-        for (int a = 0; a < test->dimension; a++)
+    for (int k = 0; k < 3; ++k)
+        for (int a = 0; a < test->dimension; ++a)
             TEST_REQUIRE(setup_get(&some.gradient, chosen[k], a) ==
                              setup_get(&alone.gradient, chosen[k], a),
                          "target %d", chosen[k]);
@@ -535,7 +535,7 @@ static void two_source_sets_are_one_cloud(const test_case *test)
     const sphg_view all = setup_view(&positions), volume = setup_view(&on.volume);
     sphg_sources sets[2] = {{0}, {0}};
     sphg_view at_sources[2];
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         const int first = s ? half : 0, count = s ? n - half : half;
         sphg_view part = all;
         part.x = (const char *)all.x + first * all.stride;
@@ -579,12 +579,12 @@ static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
                                              setup_view(&found.table), &pairs));
     setup_array sums = setup_output(SPHG_F64, n, d), alone = setup_output(SPHG_F64, n, d);
     const double *table = setup_doubles(&found.table);
-    for (int i = 0; i < n; i++)
-        for (int a = 0; a < d; a++) {
+    for (int i = 0; i < n; ++i)
+        for (int a = 0; a < d; ++a) {
             double sum = 0, one[3], x_ij[3], other = 0;
-            for (int64_t k = offsets[i]; k < offsets[i + 1]; k++) {
+            for (int64_t k = offsets[i]; k < offsets[i + 1]; ++k) {
                 const int j = pairs.indices[k];
-                for (int b = 0; b < d; b++)
+                for (int b = 0; b < d; ++b)
                     x_ij[b] = on.points.x[i * d + b] - on.points.x[j * d + b];
                 sphg_pair_gradient(&on.scheme, x_ij, setup_get(&on.volume, j, 0),
                                    table + (ptrdiff_t)i * found.table.width, one);
@@ -596,8 +596,8 @@ static void gradients_of_pairs_sum_to_the_gradient(const test_case *test)
         }
     const setup_array f64 = setup_numbers(SPHG_F64, n, d, setup_doubles(&found.gradient));
     double worst = 0, size = 0;
-    for (int i = 0; i < n; i++)
-        for (int a = 0; a < d; a++) {
+    for (int i = 0; i < n; ++i)
+        for (int a = 0; a < d; ++a) {
             const double g = setup_get(&f64, i, a);
             size = fmax(size, fabs(g));
             worst = test_larger(
@@ -633,10 +633,10 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
     const double volume = d == 2 ? .25 : .125;
     sphg_neighbors *neighbors = NULL;
     SETUP_OK(context, sphg_neighbors_create(context, &neighbors));
-    for (int step = 0; step <= steps; step++) {
-        for (int a = 0; a < d; a++)
+    for (int step = 0; step <= steps; ++step) {
+        for (int a = 0; a < d; ++a)
             points.x[(n - 1) * d + a] = a ? .31 : 2.5 - 2.2 * step / steps;
-        for (int i = 0; i < n; i++)
+        for (int i = 0; i < n; ++i)
             value[i] = smooth_field(d, points.x + i * d);
         sphg_geometry geometry = sphg_all(sphg_view_f64(points.x, 8 * d), n);
         geometry.list_free = 1;
@@ -649,8 +649,8 @@ static double largest_step(const test_case *test, sphg_policy policy, int steps)
         const sphg_request request = {
             .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
         SETUP_OK(context, sphg_evaluate(context, &scheme, &request));
-        for (int i = 0; i < n; i++)
-            for (int k = 0; k < d + second_order_pairs(d); k++) {
+        for (int i = 0; i < n; ++i)
+            for (int k = 0; k < d + second_order_pairs(d); ++k) {
                 const double now = k < d ? gradient[i][k] : h * h * hessian[i][k - d] / 5;
                 if (step)
                     worst = test_larger(worst, fabs(now - before[i][k]));
@@ -675,7 +675,7 @@ static void a_sliding_neighbour_makes_no_jump(const test_case *test)
 
 static void require_finite(const setup_array *found, const char *where)
 {
-    for (int k = 0; k < found->count * found->width; k++)
+    for (int k = 0; k < found->count * found->width; ++k)
         TEST_REQUIRE(isfinite(setup_get(found, k / found->width, k % found->width)), "%s", where);
 }
 
@@ -697,7 +697,7 @@ static void degenerate_clouds_have_the_result_of_order_1(const test_case *test)
                             cloud_plane(d, d == 2 ? 8 : 5, .25),
                             cloud_coincident(d, 4, 0, .25),
                             cloud_coincident(d, 3, 1, .25)};
-    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; c++) {
+    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; ++c) {
         const comparison made = comparison_of(test, test_text("cloud %d", (int)c), clouds[c], .6);
         const comparison on = second_order_comparison(made);
         const double *numbers = comparison_random_field(&on, SPHG_SCALAR, 11);
@@ -709,9 +709,9 @@ static void degenerate_clouds_have_the_result_of_order_1(const test_case *test)
         require_finite(&found.hessian, on.name);
         require_finite(&found.table, on.name);
         require_close(&linear.gradient, &found.gradient, on.name);
-        for (int i = 0; i < on.points.count; i++) {
+        for (int i = 0; i < on.points.count; ++i) {
             TEST_REQUIRE(setup_get(&found.rank, i, 0) < d, "rank of %d, %s", i, on.name);
-            for (int k = 0; k < found.hessian.width; k++)
+            for (int k = 0; k < found.hessian.width; ++k)
                 TEST_REQUIRE(setup_get(&found.hessian, i, k) == 0, "Hessian of %d, %s", i, on.name);
         }
     }
@@ -721,7 +721,7 @@ static void degenerate_clouds_have_the_result_of_order_1(const test_case *test)
 static void few_neighbours_give_numbers(const test_case *test)
 {
     const int d = test->dimension;
-    for (int count = 2; count < 14; count++) {
+    for (int count = 2; count < 14; ++count) {
         random_state random = random_seeded((uint64_t)count);
         const comparison on = second_order_comparison(
             comparison_of(test, test_text("%d", count), cloud_random(d, count, 1, &random), 3));
@@ -729,7 +729,7 @@ static void few_neighbours_give_numbers(const test_case *test)
             &on, SPHG_VECTOR, comparison_random_field(&on, SPHG_VECTOR, 12), (second_order_how){0});
         require_finite(&found.gradient, on.name);
         require_finite(&found.hessian, on.name);
-        for (int i = 0; i < count; i++)
+        for (int i = 0; i < count; ++i)
             TEST_REQUIRE(setup_get(&found.rank, i, 0) <= count - 1, "rank of %d, %s", i, on.name);
     }
 }

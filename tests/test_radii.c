@@ -11,7 +11,7 @@
 static void scatter(const scene *particles, int count, double *x, double low, double side,
                     random_state *random)
 {
-    for (int k = 0; k < count * particles->dimension; k++)
+    for (int k = 0; k < count * particles->dimension; ++k)
         x[k] = scene_rounded(particles, random_between(random, low, low + side));
 }
 
@@ -20,7 +20,7 @@ static double *radii_for(const scene *particles, int count, const double *x, dou
                          double ratio, int rising, random_state *random)
 {
     double *radii = test_memory(((size_t)count + 1) * sizeof *radii);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; ++i) {
         const double share =
             rising ? fabs(x[i * particles->dimension]) / side : random_between(random, 0, 1);
         radii[i] = scene_rounded(particles, pow(ratio, -share));
@@ -48,7 +48,7 @@ static scene random_scene(const test_case *test, random_state *random)
     } else if (particles.source_count > 2 && random_index(random, 3) == 0) {
         particles.target_count = random_index(random, particles.source_count);
     }
-    for (int a = 0; a < test->dimension && side > 2; a++)
+    for (int a = 0; a < test->dimension && side > 2; ++a)
         particles.period[a] = random_index(random, 4) == 0 ? side : 0;
     particles.list_free = random_index(random, 3) == 0;
     particles.mutual = random_index(random, 2);
@@ -61,12 +61,12 @@ static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(311 + (uint64_t)test->precision);
     int64_t pairs = 0;
-    for (int k = 0; k < 150; k++) {
+    for (int k = 0; k < 150; ++k) {
         const scene particles = random_scene(test, &random);
         double largest = 0;
-        for (int i = 0; i < particles.source_count; i++)
+        for (int i = 0; i < particles.source_count; ++i)
             largest = fmax(largest, particles.support[i]);
-        for (int i = 0; particles.targets && i < particles.target_count; i++)
+        for (int i = 0; particles.targets && i < particles.target_count; ++i)
             largest = fmax(largest, particles.target_support[i]);
         pairs += rows_require_search_exact(context, neighbors, &particles, largest,
                                            test_text("cloud %d", k));
@@ -88,11 +88,11 @@ static graded graded_block(int d, double ratio, double support)
     const int per_axis = d == 2 ? 9 : 5;
     graded made = {.points = cloud_jittered(d, per_axis, .125, .2, &random)};
     made.radii = test_memory((size_t)made.points.count * sizeof *made.radii);
-    for (int i = 0; i < made.points.count; i++) {
+    for (int i = 0; i < made.points.count; ++i) {
         double *x = made.points.x + i * d;
         const double wide = exp(log(ratio) * x[0] / (.125 * (per_axis - 1)));
         made.radii[i] = support * made.points.spacing * wide;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             x[a] = (x[a] + .5) * wide;
     }
     return made;
@@ -112,7 +112,7 @@ static void compare(const comparison *on, sphg_shape shape, sphg_form form,
 static void operators_match_the_oracle(const test_case *test)
 {
     static const double ratios[] = {1.5, 8, 64};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         graded block = graded_block(test->dimension, ratios[k], 2.5);
         comparison on =
             comparison_of_radii(test, "graded block", block.points, block.radii, k == 1);
@@ -129,12 +129,12 @@ static void operators_match_the_oracle(const test_case *test)
 static void both_sides_match_the_oracle(const test_case *test)
 {
     static const double ratios[] = {1.5, 8, 64};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         graded block = graded_block(test->dimension, ratios[k], 2.5);
         comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 1);
         setup_array table = comparison_table(&on);
-        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++)
-            for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
+            for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape)
                 if (shape - 1 == k || k == 1)
                     compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
     }
@@ -146,19 +146,19 @@ static void two_sided_forms_conserve_momentum(const test_case *test)
     comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 1);
     const int d = test->dimension;
     setup_array table = comparison_table(&on);
-    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
         comparison_field field = {SPHG_SYM_TENSOR, (sphg_form)form,
                                   comparison_random_field(&on, SPHG_SYM_TENSOR, 5)};
         comparison_result found = comparison_apply(&on, &field, &table);
         double sum[3] = {0}, size = 0;
-        for (int i = 0; i < on.points.count; i++)
-            for (int a = 0; a < d; a++) {
+        for (int i = 0; i < on.points.count; ++i)
+            for (int a = 0; a < d; ++a) {
                 const double f = setup_get(&found.divergence, i, a) *
                                  (form == SPHG_SYMMETRIC ? on.scene.volume[i] : 1);
                 sum[a] += f;
                 size += fabs(f);
             }
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             TEST_WITHIN(linear_momentum, fabs(sum[a]) / size / test_unit_roundoff(test),
                         test_text("form %d", form));
     }
@@ -170,7 +170,7 @@ static void require_same_bits(const comparison *a, const comparison *b, const ch
 {
     const setup_array table = comparison_table(a), other = comparison_table(b);
     TEST_REQUIRE(setup_same_bits(&table, &other), "table, %s", where);
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; form++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; ++form) {
         comparison_field field = {SPHG_SCALAR, (sphg_form)form,
                                   comparison_random_field(a, SPHG_SCALAR, 3)};
         const comparison_result one = comparison_apply(a, &field, NULL),
@@ -187,11 +187,11 @@ static void same_radii_give_the_bits_of_one(const test_case *test)
     comparison one =
         comparison_of(test, "block", cloud_jittered(d, d == 2 ? 9 : 5, .125, .3, &random), .275);
     double *radii = test_memory((size_t)one.points.count * sizeof *radii);
-    for (int i = 0; i < one.points.count; i++)
+    for (int i = 0; i < one.points.count; ++i)
         radii[i] = one.scheme.support_radius;
     const setup_array x = setup_positions(test, &one.points);
     const setup_array h = setup_numbers(test_position_type(test), one.points.count, 1, radii);
-    for (int way = 0; way < 8; way++) {
+    for (int way = 0; way < 8; ++way) {
         comparison same = one;
         sphg_geometry geometry = setup_geometry(test, &one.points, &x);
         geometry.source_support = setup_view(&h);
@@ -213,9 +213,9 @@ static void results_scale_with_the_unit_of_length(const test_case *test)
             comparison_of_radii(test, "graded block", block.points, block.radii, 0);
         other.points = cloud_copy(&on.points);
         other.radii = test_memory((size_t)on.points.count * sizeof *other.radii);
-        for (int i = 0; i < on.points.count * test->dimension; i++)
+        for (int i = 0; i < on.points.count * test->dimension; ++i)
             other.points.x[i] = ldexp(on.points.x[i], k);
-        for (int i = 0; i < on.points.count; i++)
+        for (int i = 0; i < on.points.count; ++i)
             other.radii[i] = ldexp(on.scene.support[i], k);
         other.points.spacing = ldexp(other.points.spacing, k);
         const comparison scaled =
@@ -224,8 +224,8 @@ static void results_scale_with_the_unit_of_length(const test_case *test)
                                   comparison_random_field(&on, SPHG_SCALAR, 3)};
         const comparison_result a = comparison_apply(&on, &field, NULL);
         const comparison_result b = comparison_apply(&scaled, &field, NULL);
-        for (int i = 0; i < on.points.count; i++)
-            for (int c = 0; c < test->dimension; c++)
+        for (int i = 0; i < on.points.count; ++i)
+            for (int c = 0; c < test->dimension; ++c)
                 TEST_REQUIRE(setup_get(&a.gradient, i, c) == ldexp(setup_get(&b.gradient, i, c), k),
                              "particle %d, 2^%d", i, k);
     }
@@ -243,20 +243,20 @@ static void tables_subsets_and_lists_give_the_same_bits(const test_case *test)
 {
     const comparison on = graded_stage(test, 0), mutual = graded_stage(test, 1);
     const setup_array table = comparison_table(&on);
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; form++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; ++form) {
         comparison_field field = {SPHG_VECTOR, (sphg_form)form,
                                   comparison_random_field(&on, SPHG_VECTOR, 4)};
         const comparison_result fused = comparison_apply(&on, &field, NULL);
         const comparison_result given = comparison_apply(&on, &field, &table);
         const comparison_result wide = comparison_apply(&mutual, &field, NULL);
         assert_true(comparison_results_have_same_bits(&fused, &given));
-        for (int i = 0; i < on.points.count; i++) { /* other lists: another order of the sums */
+        for (int i = 0; i < on.points.count; ++i) { /* other lists: another order of the sums */
             comparison_compare(&on, &field, &wide, i);
             i += on.points.count / 4;
         }
         const sphg_subset one = sphg_range(on.points.count / 2, on.points.count / 2 + 1);
         const comparison_result alone = comparison_apply_to(&on, &field, NULL, &one);
-        for (int k = 0; k < alone.gradient.width; k++)
+        for (int k = 0; k < alone.gradient.width; ++k)
             assert_true(setup_get(&alone.gradient, one.begin, k) ==
                         setup_get(&fused.gradient, one.begin, k));
     }
@@ -269,19 +269,19 @@ static void masks_give_the_same_bits(const test_case *test)
     const int n = on.points.count;
     const setup_array table = comparison_table(&on);
     uint8_t *mask = test_memory((size_t)n);
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form) {
         if (form >= SPHG_SYMMETRIC && test_is_classic(test))
             continue;
         comparison_field field = {SPHG_VECTOR, (sphg_form)form,
                                   comparison_random_field(&on, SPHG_VECTOR, 4)};
         const comparison_result all = comparison_apply(&on, &field, &table);
         for (int every = 2; every < 9; every += 3) {
-            for (int i = 0; i < n; i++)
+            for (int i = 0; i < n; ++i)
                 mask[i] = i * 7 % every != 0;
             const sphg_subset some = sphg_masked(mask, n);
             const comparison_result found = comparison_apply_to(&on, &field, &table, &some);
-            for (int i = 0; i < n; i++)
-                for (int k = 0; k < found.gradient.width && mask[i]; k++)
+            for (int i = 0; i < n; ++i)
+                for (int k = 0; k < found.gradient.width && mask[i]; ++k)
                     TEST_REQUIRE(setup_get(&found.gradient, i, k) == setup_get(&all.gradient, i, k),
                                  "form %d, particle %d", form, i);
         }
@@ -295,14 +295,14 @@ static void nothing_comes_from_beyond_the_targets_radius(const test_case *test)
     const int n = on.points.count, d = on.points.dimension;
     double *numbers = comparison_random_field(&on, SPHG_SCALAR, 5);
     int largest = 0, touched = 0;
-    for (int i = 1; i < n; i++)
+    for (int i = 1; i < n; ++i)
         largest = on.scene.support[i] > on.scene.support[largest] ? i : largest;
     numbers[largest] = (double)NAN;
     comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers};
     const comparison_result found = comparison_apply(&on, &field, NULL);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         double square = 0;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             square += pow(on.points.x[i * d + a] - on.points.x[largest * d + a], 2);
         const int near = sqrt(square) < on.scene.support[i] * (1 + 1e-6);
         touched += near;
@@ -319,12 +319,12 @@ enum { SKIN_COUNT = 400 };
 static void move_all(scene *particles, const double *radii, double share, random_state *random)
 {
     const int d = particles->dimension;
-    for (int i = 0; i < SKIN_COUNT; i++) {
+    for (int i = 0; i < SKIN_COUNT; ++i) {
         const double most = share * .15 * radii[i], growth = random_between(random, 0, .5);
         double way[3] = {0}, size = 0;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             size += pow(way[a] = random_between(random, -1, 1), 2);
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             particles->sources[i * d + a] =
                 scene_rounded(particles, particles->sources[i * d + a] +
                                              way[a] / sqrt(size) * most * (1 - growth));
@@ -338,7 +338,7 @@ static void skins_in_proportion_miss_no_pair(const test_case *test)
     sphg_context *context = setup_context_of(2);
     random_state random = random_seeded(41);
     int kept = 0, rebuilt = 0;
-    for (int k = 0; k < 12; k++) {
+    for (int k = 0; k < 12; ++k) {
         scene particles = scene_empty(test, SKIN_COUNT);
         const double side = test->dimension == 2 ? 6 : 3;
         scatter(&particles, SKIN_COUNT, particles.sources, 0, side, &random);
@@ -384,17 +384,17 @@ static void pair_gradients_are_those_of_one_pair(const test_case *test)
     SETUP_OK(on.context,
              sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
     for (int i = 0; i < n; i += 5)
-        for (int64_t k = offsets[i]; k < offsets[i + 1]; k++) {
+        for (int64_t k = offsets[i]; k < offsets[i + 1]; ++k) {
             const int j = pairs.indices[k];
             sphg_scheme own = on.scheme;
             double x[3] = {0}, row[16] = {0}, gradient[3], size = 0, off = 0;
             own.support_radius = on.scene.support[i];
-            for (int a = 0; a < d; a++)
+            for (int a = 0; a < d; ++a)
                 x[a] = on.points.x[i * d + a] - on.points.x[j * d + a];
-            for (int c = 0; c < table.width; c++)
+            for (int c = 0; c < table.width; ++c)
                 row[c] = setup_get(&table, i, c);
             sphg_pair_gradient(&own, x, on.scene.volume[j], row, gradient);
-            for (int a = 0; a < d && i != j; a++) {
+            for (int a = 0; a < d && i != j; ++a) {
                 size += fabs(gradient[a]);
                 off += fabs(gradient[a] - setup_get(&found, (int)k, a));
             }
@@ -425,9 +425,9 @@ static void moments_hold_the_grad_h_term(const test_case *test)
         low.support_radius = H * (1 - step);
         high.support_radius = H * (1 + step);
         double trace = 0, rho = 0, below = 0, above = 0;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             trace += (double)point->moment[a][a];
-        for (int k = -1; k < point->pair_count; k++) {
+        for (int k = -1; k < point->pair_count; ++k) {
             const double r = k < 0 ? 0 : (double)point->pairs[k].r;
             const double m = on.scene.volume[k < 0 ? i : point->pairs[k].j];
             sphg_scheme own = on.scheme;
@@ -460,12 +460,12 @@ static void halves_add_up(const test_case *test)
     const setup_array a = setup_numbers(test_field_type(test), n, 1, numbers);
     sphg_sources sets[2] = {{0}, {0}};
     sphg_view at_sources[2];
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         const int count = s ? n - half : half;
         sphg_view places = setup_view(&x), radii = setup_view(&h);
         sphg_view volumes = setup_view(&on.volume), values = setup_view(&a);
         sphg_view *const views[] = {&places, &radii, &volumes, &values};
-        for (int k = 0; k < 4 && s; k++)
+        for (int k = 0; k < 4 && s; ++k)
             views[k]->x = (const char *)views[k]->x + half * views[k]->stride;
         sphg_geometry geometry = sphg_targets_apart(setup_view(&x), n, places, count);
         geometry.source_support = radii;

@@ -30,7 +30,7 @@ static void evaluate_refuses_bad_schemes(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
     const int enums[] = {-1, 7, INT_MAX, INT_MIN};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "method",
                 own->scheme.method = (sphg_method)enums[k]);
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "kernel",
@@ -40,7 +40,7 @@ static void evaluate_refuses_bad_schemes(const test_case *test)
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "dimension", own->scheme.dimension = enums[k]);
     }
     const double radii[] = {0, -1, NAN, INFINITY}, thresholds[] = {-1e-3, 1, NAN, INFINITY};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "support_radius",
                 own->scheme.support_radius = radii[k]);
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "threshold",
@@ -93,7 +93,7 @@ static void evaluate_refuses_bad_fields(const test_case *test)
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = -1);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "field_count", own->request.field_count = 4097);
     const int shapes[] = {0, 5, -1, INT_MAX}, forms[] = {-1, 4, INT_MIN, INT_MAX};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "shape",
                 own->field.shape = (sphg_shape)shapes[k]);
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "form", own->field.form = (sphg_form)forms[k]);
@@ -127,7 +127,7 @@ static void evaluate_refuses_differences_to_what_is_absent(const test_case *test
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_sources[1] is absent",
             own->sources[1] = own->sources[0];
             own->request.set_count = 2; own->at_sources[1] = sphg_absent());
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form)
         REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "mirror", own->at_sources[0] = sphg_absent();
                 own->field.form = (sphg_form)form; own->field.mirror = 1);
     REFUSES(call_evaluate, SPHG_ERROR_ARGUMENT, "fields[0].at_targets is absent",
@@ -154,7 +154,7 @@ static void evaluate_refuses_subsets_without_an_end(const test_case *test)
                                  sphg_masked(NULL, 0),
                                  {.begin = 1, .end = 1, .indices = some},
                                  {.begin = 7, .end = 7, .mask = mask}};
-    for (size_t k = 0; k < sizeof empty / sizeof *empty; k++) {
+    for (size_t k = 0; k < sizeof empty / sizeof *empty; ++k) {
         valid_call_reset(own);
         own->subset = empty[k];
         SETUP_OK(own->context, call_evaluate(own));
@@ -207,7 +207,7 @@ static void evaluate_refuses_operators_that_a_shape_has_not(const test_case *tes
 static void two_sided_forms_need_tables_and_densities(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
-    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
 #define TWO_SIDED                                                                                  \
     own->field.form = (sphg_form)form;                                                             \
     own->request.correction = own->request.rank = sphg_absent();                                   \
@@ -299,7 +299,7 @@ static void single_item_may_stand_inside_a_record(const test_case *test)
              sphg_neighbors_search(own->context, own->lone, &own->scheme, &own->geometry));
     own->sources[0].neighbors = own->lone;
     own->field.at_targets = own->scalars;
-    for (ptrdiff_t at = 0; at < 24; at++) { /* members 0 to d - 1 of records 0 and 1 are written */
+    for (ptrdiff_t at = 0; at < 24; ++at) { /* members 0 to d - 1 of records 0 and 1 are written */
         own->sources[0].volume.x = memory + at * size;
         own->sources[0].volume.stride = 5 * size;
         const sphg_result expected = at % 12 < test->dimension ? SPHG_ERROR_ARGUMENT : SPHG_OK;
@@ -373,9 +373,9 @@ static void bad_volumes_are_found_and_named(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
     const double bad[] = {-1, NAN, INFINITY, -1e-30, -1 - 0x1p-20};
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 5; ++k) {
         double numbers[VALID_CALL_COUNT];
-        for (int i = 0; i < VALID_CALL_COUNT; i++)
+        for (int i = 0; i < VALID_CALL_COUNT; ++i)
             numbers[i] = i == 41 ? bad[k] : 0.125;
         const setup_array volumes =
             setup_numbers(test_field_type(test), VALID_CALL_COUNT, 1, numbers);
@@ -397,7 +397,7 @@ static void bad_indices_are_found_where_operators_read_them(const test_case *tes
 {
     valid_call *own = valid_call_create_plain(test);
     const int32_t bad[] = {-1, VALID_CALL_COUNT, INT32_MAX, INT32_MIN};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const int place = 17 * VALID_CALL_COUNT + 5;
         SETUP_OK(own->context, sphg_neighbors_use_lists(own->context, own->built, &own->scheme,
                                                         &own->geometry, &own->lists));
@@ -427,9 +427,9 @@ static int32_t bad_row(int32_t target, int32_t worker, const int32_t **indices, 
 static void lists_of_no_length_are_found_where_operators_read_them(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 6; ++k) {
         bad_rows bad;
-        for (int i = 0; i < VALID_CALL_COUNT; i++) {
+        for (int i = 0; i < VALID_CALL_COUNT; ++i) {
             bad.rows[i] = own->indices;
             bad.lengths[i] = 3;
         }
@@ -456,7 +456,7 @@ static void first_bad_list_is_named_in_any_order_of_targets(const test_case *tes
     valid_call *own = valid_call_create_plain(test);
     const int32_t picked[] = {50, 9, 30, 3, 40};
     bad_rows bad;
-    for (int i = 0; i < VALID_CALL_COUNT; i++) {
+    for (int i = 0; i < VALID_CALL_COUNT; ++i) {
         bad.rows[i] = own->indices;
         bad.lengths[i] = i % 10 == 0 || i == 9 ? -1 : 3;
     }
@@ -484,7 +484,7 @@ static void trusted_contexts_do_not_look_at_volumes(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
     double numbers[VALID_CALL_COUNT];
-    for (int i = 0; i < VALID_CALL_COUNT; i++)
+    for (int i = 0; i < VALID_CALL_COUNT; ++i)
         numbers[i] = i == 41 ? -1 : 0.125;
     const setup_array volumes = setup_numbers(test_field_type(test), VALID_CALL_COUNT, 1, numbers);
     own->scheme.method = SPHG_MLS;
@@ -578,7 +578,7 @@ static void pairs_report_the_capacity_they_need(const test_case *test)
         own->pairs.offsets = offsets;
         valid_call_require(own, pair_gradients(own), SPHG_ERROR_CAPACITY, "capacity", "capacity");
         assert_int_equal(own->pairs.count, needed);
-        for (int k = 0; k < 5; k++)
+        for (int k = 0; k < 5; ++k)
             assert_int_equal(offsets[k], -7);
     }
     valid_call_reset(own);
@@ -610,7 +610,7 @@ static void short_ways_refuse_bad_arguments(const test_case *test)
 {
     valid_call *own = valid_call_create_plain(test);
     sphg_result (*const calls[])(valid_call *) = {correction, gradient, force};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "scheme", own->scheme_given = NULL);
         REFUSES(calls[k], SPHG_ERROR_ARGUMENT, "sources", own->sources_given = NULL);
         REFUSES(calls[k], SPHG_ERROR_STATE, "", own->sources[0].neighbors = own->blank);

@@ -18,13 +18,13 @@ static double rounded(const scene *particles, double x)
 static void scatter(const scene *particles, int count, double *x, double low, double side,
                     random_state *random)
 {
-    for (int k = 0; k < count * particles->dimension; k++)
+    for (int k = 0; k < count * particles->dimension; ++k)
         x[k] = rounded(particles, random_between(random, low, low + side));
 }
 
 static double next_after(const scene *particles, double x, int steps)
 {
-    for (int k = 0; k < abs(steps); k++)
+    for (int k = 0; k < abs(steps); ++k)
         x = particles->is_double ? nextafter(x, steps < 0 ? -INFINITY : INFINITY)
                                  : (double)nextafterf((float)x, steps < 0 ? -INFINITY : INFINITY);
     return x;
@@ -68,7 +68,7 @@ static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(11 + (uint64_t)test->precision);
     int64_t pairs = 0;
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < 200; ++k) {
         double H = 0;
         const scene particles = random_scene(test, &random, &H);
         const char *where = test_text("cloud %d, %d sources, H %g", k, particles.source_count, H);
@@ -93,7 +93,7 @@ static scene lattice_scene(const test_case *test, int per_axis, double spacing, 
 {
     cloud points = cloud_lattice(test->dimension, per_axis, 1);
     scene particles = scene_of_cloud(test, &points);
-    for (int k = 0; k < points.count * points.dimension; k++)
+    for (int k = 0; k < points.count * points.dimension; ++k)
         particles.sources[k] = rounded(&particles, origin + points.x[k] * spacing);
     return particles;
 }
@@ -107,7 +107,7 @@ static void lattices_at_the_support_radius_have_the_pairs_of_brute_force(const t
     int64_t pairs = 0;
     const double radii[] = {1, 0.6875, 3}, origins[] = {0, -2, 17.3, -1000};
     const int parts[] = {1, 2, 3, 5}; /* (1, 2, 2) / 3 and (3, 4, 0) / 5 are ties as well */
-    for (int k = 0; k < 3 * 4 * 4 * 5; k++) {
+    for (int k = 0; k < 3 * 4 * 4 * 5; ++k) {
         const double H = radii[k % 3], part = rounded(&any, H / parts[k / 12 % 4]);
         const double spacing = next_after(&any, part, k / 48 - 2);
         const scene particles = lattice_scene(test, 5, spacing, origins[k / 3 % 4]);
@@ -125,16 +125,16 @@ static void near_ties_are_rounded_as_the_predicate_says(const test_case *test)
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(19);
     const int d = test->dimension;
-    for (int k = 0; k < 30; k++) {
+    for (int k = 0; k < 30; ++k) {
         scene sources = scene_empty(test, 1000), targets = scene_empty(test, 10);
         const double H = 0.6875, unit = test_position_type(test) == SPHG_F32 ? 0x1p-24 : 0x1p-53;
         scatter(&targets, 10, targets.sources, -1, 2, &random);
-        for (int i = 0; i < 1000; i++) {
+        for (int i = 0; i < 1000; ++i) {
             double way[3], square = 0;
-            for (int a = 0; a < d; a++)
+            for (int a = 0; a < d; ++a)
                 square += pow(way[a] = random_between(&random, -1, 1), 2);
             const double r = H * (1 + 4 * unit * random_between(&random, -1, 1)) / sqrt(square);
-            for (int a = 0; a < d; a++)
+            for (int a = 0; a < d; ++a)
                 sources.sources[i * d + a] =
                     rounded(&sources, targets.sources[i % 10 * d + a] + r * way[a]);
         }
@@ -153,11 +153,11 @@ static void positions_at_cell_borders_have_the_pairs_of_brute_force(const test_c
     random_state random = random_seeded(23);
     const double radii[] = {1, 0.6875, 0.34375}, bases[] = {-1, 1 << 20, -(1 << 20)};
     int64_t pairs = 0;
-    for (int k = 0; k < 60; k++) {
+    for (int k = 0; k < 60; ++k) {
         scene particles = scene_empty(test, 150);
         const double H = radii[k % 3];
         const double base = k % 4 ? random_index(&random, 2000) - 1000 : bases[k / 4 % 3];
-        for (int n = 0; n < 150 * test->dimension; n++)
+        for (int n = 0; n < 150 * test->dimension; ++n)
             particles.sources[n] =
                 next_after(&particles, rounded(&particles, (base + random_index(&random, 4)) * H),
                            random_index(&random, 3) - 1);
@@ -177,7 +177,7 @@ static void signs_do_not_matter(const test_case *test)
     for (int k = 0; k < 200; k += 3)
         particles.sources[k] = k % 2 ? -0.0 : 0.0;
     rows_require_search_exact(context, brute_force_neighbors(context), &particles, 1, "zeros");
-    for (int k = 0; k < 200 * test->dimension; k++)
+    for (int k = 0; k < 200 * test->dimension; ++k)
         particles.sources[k] = -fabs(particles.sources[k]);
     rows_require_search_exact(context, brute_force_neighbors(context), &particles, 1, "negative");
 }
@@ -207,11 +207,11 @@ static void require_crowd(const test_case *test, sphg_context *context, int coun
     const int64_t all = (int64_t)count * (count - 1);
     scatter(&particles, count, particles.sources, 0.4, 0.01, &random);
     assert_int_equal(rows_require_search_exact(context, neighbors, &particles, 1, "one cell"), all);
-    for (int k = 0; k < count * test->dimension; k++)
+    for (int k = 0; k < count * test->dimension; ++k)
         particles.sources[k] = 0.375;
     assert_int_equal(rows_require_search_exact(context, neighbors, &particles, 1, "coincident"),
                      all);
-    for (int k = 0; k < count * test->dimension; k++)
+    for (int k = 0; k < count * test->dimension; ++k)
         particles.sources[k] = k / test->dimension % 7;
     rows_require_search_exact(context, neighbors, &particles, 1, "seven places");
 }
@@ -228,7 +228,7 @@ static void executors_of_the_host_search_crowded_cells(const test_case *test)
 {
     fake_host_executor *const executors[] = {fake_host_odd_splits, fake_host_reversed,
                                              fake_host_pthreads};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         fake_host *host = setup_hooks();
         sphg_config config = fake_host_config(host, host->workers);
         config.parallel_for = executors[k];
@@ -265,8 +265,8 @@ static void relation_is_symmetric_and_rows_ascend(const test_case *test)
     const sphg_neighbors *neighbors = setup_search(context, &scheme, &geometry);
     const rows found = rows_listed(context, neighbors, &scheme, NULL);
     assert_true(found.offsets[20000] > 200000);
-    for (int32_t i = 0; i < found.count; i++)
-        for (int64_t k = found.offsets[i]; k < found.offsets[i + 1]; k++) {
+    for (int32_t i = 0; i < found.count; ++i)
+        for (int64_t k = found.offsets[i]; k < found.offsets[i + 1]; ++k) {
             assert_true(k == found.offsets[i] || found.indices[k - 1] < found.indices[k]);
             assert_true(lists(&found, found.indices[k], i));
         }
@@ -277,7 +277,7 @@ static void smaller_radius_and_subsets_select_from_the_same_pairs(const test_cas
 {
     sphg_context *context = setup_context();
     random_state random = random_seeded(43);
-    for (int list_free = 0; list_free < 2; list_free++) {
+    for (int list_free = 0; list_free < 2; ++list_free) {
         scene particles = scene_empty(test, 500);
         particles.list_free = list_free;
         scatter(&particles, 500, particles.sources, 0, 4, &random);
@@ -294,7 +294,7 @@ static void smaller_radius_and_subsets_select_from_the_same_pairs(const test_cas
         const sphg_subset subset = {1, 5, picked, NULL};
         const rows some = rows_listed(context, neighbors, &scheme, &subset);
         assert_int_equal(some.count, 4);
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 4; ++k) {
             const int32_t i = picked[1 + k];
             const int64_t length = some.offsets[k + 1] - some.offsets[k];
             assert_int_equal(length, expected.offsets[i + 1] - expected.offsets[i]);
@@ -312,9 +312,9 @@ static double largest_move(const scene *particles, const double *old)
 {
     const int d = particles->dimension;
     double largest = 0;
-    for (int i = 0; i < particles->source_count; i++) {
+    for (int i = 0; i < particles->source_count; ++i) {
         double square = 0;
-        for (int k = 0; k < d; k++)
+        for (int k = 0; k < d; ++k)
             square += pow(particles->sources[i * d + k] - old[i * d + k], 2);
         largest = fmax(largest, sqrt(square));
     }
@@ -342,7 +342,7 @@ static void require_skin_promise(sphg_context *context, const sphg_neighbors *ne
 static void skin_keeps_lists_and_exactness(const test_case *test)
 {
     sphg_context *context = setup_context_of(1);
-    for (int periodic = 0; periodic < 2; periodic++) {
+    for (int periodic = 0; periodic < 2; ++periodic) {
         sphg_neighbors *neighbors = brute_force_neighbors(context);
         random_state random = random_seeded(47);
         scene particles = scene_empty(test, 200);
@@ -352,13 +352,13 @@ static void skin_keeps_lists_and_exactness(const test_case *test)
         particles.period[0] = periodic ? 3 : 0;
         scatter(&particles, 200, particles.sources, 0, 3, &random);
         old[0] = 1e3; /* the first search has nothing to keep */
-        for (int step = 0; step < steps; step++) {
+        for (int step = 0; step < steps; ++step) {
             sphg_neighbors_info info = {0};
             rows_require_search_exact(context, neighbors, &particles, 0.75, "random walk");
             require_skin_promise(context, neighbors, &particles, old);
             SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
             kept += !info.rebuilt;
-            for (int k = 0; k < 200 * test->dimension; k++)
+            for (int k = 0; k < 200 * test->dimension; ++k)
                 particles.sources[k] = rounded(
                     &particles, particles.sources[k] + random_between(&random, -0.02, 0.02));
         }
@@ -372,7 +372,7 @@ static void moves_of_either_side_use_up_the_skin(const test_case *test)
 {
     sphg_context *context = setup_context_of(1);
     random_state random = random_seeded(59);
-    for (int side = 0; side < 2; side++) {
+    for (int side = 0; side < 2; ++side) {
         sphg_neighbors *neighbors = brute_force_neighbors(context);
         scene particles = scene_empty(test, 200);
         particles.skin = 0.25;
@@ -381,7 +381,7 @@ static void moves_of_either_side_use_up_the_skin(const test_case *test)
         scatter(&particles, 200, particles.sources, 0, 3, &random);
         scatter(&particles, 90, particles.targets, 0, 3, &random);
         double *moving = side ? particles.sources : particles.targets, start = moving[0];
-        for (int step = 0; step < 24; step++) {
+        for (int step = 0; step < 24; ++step) {
             sphg_neighbors_info info = {0};
             rows_require_search_exact(context, neighbors, &particles, 0.75, "one side walks");
             SETUP_OK(context, sphg_neighbors_get_info(context, neighbors, &info));
@@ -425,7 +425,7 @@ static void changed_arguments_rebuild(const test_case *test)
     rows_require_search_exact(context, neighbors, &particles, 0.5, "other dimension");
     particles.dimension = test->dimension;
     if (particles.is_double) {
-        for (int k = 0; k < 600; k++)
+        for (int k = 0; k < 600; ++k)
             particles.sources[k] = (double)(float)particles.sources[k];
         particles.precision = SPHG_F32;
         rows_require_search_exact(context, neighbors, &particles, 0.5, "narrow fields");
@@ -448,7 +448,7 @@ static void another_precision_rebuilds(const test_case *test)
     scene particles = scene_empty(test, 200);
     scatter(&particles, 200, particles.sources, 0, 4, &random);
     particles.skin = 0.25;
-    for (int step = 0; step < 6; step++) {
+    for (int step = 0; step < 6; ++step) {
         sphg_neighbors_info info = {0};
         particles.precision = step / 2 % 2 ? SPHG_F32 : SPHG_F64;
         rows_require_search_exact(context, neighbors, &particles, 0.75, "precision");

@@ -26,8 +26,8 @@ static int by_height(const cloud *points, cloud *sorted)
     double border = .2;
     *sorted = *points;
     sorted->x = test_memory((size_t)(points->count * d) * sizeof *sorted->x);
-    for (int wall = 0; wall < 2; wall++)
-        for (int i = 0; i < points->count; i++) {
+    for (int wall = 0; wall < 2; ++wall)
+        for (int i = 0; i < points->count; ++i) {
             const double *x = points->x + i * d;
             if ((x[d - 1] < border) != wall)
                 continue;
@@ -62,7 +62,7 @@ static two_sets split_block(const test_case *test)
     two_sets sets = {.fluid = by_height(&points, &sorted)};
     sets.whole = comparison_of(test, "fluid and wall", sorted, 2.5 * .125);
     sphg_type type = test_field_type(test);
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         sets.part[s] = sets.whole.points;
         sets.part[s].x += s ? sets.fluid * d : 0;
         sets.part[s].count = s ? sorted.count - sets.fluid : sets.fluid;
@@ -71,8 +71,8 @@ static two_sets split_block(const test_case *test)
         sets.volume[s] = setup_numbers(type, n, 1, part_of(&sets, sets.whole.scene.volume, s, 1));
         sets.density[s] = setup_numbers(type, n, 1, part_of(&sets, sets.whole.scene.density, s, 1));
     }
-    for (int t = 0; t < 2; t++)
-        for (int s = 0; s < 2; s++)
+    for (int t = 0; t < 2; ++t)
+        for (int s = 0; s < 2; ++s)
             sets.from[t][s] = neighbors_between(&sets, t, s);
     return sets;
 }
@@ -80,7 +80,7 @@ static two_sets split_block(const test_case *test)
 /* Both sets as targets of set t see them. */
 static void sources_of(const two_sets *sets, int t, sphg_sources *sources)
 {
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         sources[s] = (sphg_sources){.neighbors = sets->from[t][s]};
         sources[s].volume = setup_view(&sets->volume[s]);
         sources[s].density = setup_view(&sets->density[s]);
@@ -113,7 +113,7 @@ static comparison_result evaluate_fluid(const two_sets *sets, const comparison_f
     sphg_sources sources[2];
     sphg_view at_sources[2];
     sources_of(sets, 0, sources);
-    for (int s = 0; s < 2; s++) {
+    for (int s = 0; s < 2; ++s) {
         setup_array numbers = setup_numbers(type, sets->part[s].count, width,
                                             part_of(sets, field->numbers, s, width));
         at_sources[s] = lacks >> s & 1 ? sphg_absent() : setup_view(&numbers);
@@ -136,7 +136,7 @@ static void two_source_sets_equal_their_union(const test_case *test)
     two_sets sets = split_block(test);
     setup_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
     TEST_REQUIRE(sets.fluid > 10 && sets.part[1].count > 10, "not two sets");
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form) {
         comparison_field field = {SPHG_SCALAR, (sphg_form)form,
                                   comparison_random_field(&sets.whole, SPHG_SCALAR, 21)};
         comparison_result found =
@@ -152,7 +152,7 @@ static double *seen_by(const two_sets *sets, const comparison_field *field, unsi
     const int width = setup_width(field->shape, sets->whole.points.dimension);
     const size_t item = (size_t)width * sizeof(double);
     double *numbers = test_memory((size_t)sets->whole.points.count * item);
-    for (int j = 0; j < sets->whole.points.count; j++)
+    for (int j = 0; j < sets->whole.points.count; ++j)
         memcpy(numbers + j * width,
                field->numbers + (lacks >> (j >= sets->fluid) & 1 ? i : j) * width, item);
     return numbers;
@@ -162,9 +162,9 @@ static void a_mirrored_field_has_the_value_of_the_target(const test_case *test)
 {
     const two_sets sets = split_block(test);
     const setup_array tables[] = {table_of(&sets, 0), table_of(&sets, 1)};
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
-        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++)
-            for (unsigned lacks = 1; lacks < 4; lacks++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape)
+            for (unsigned lacks = 1; lacks < 4; ++lacks) {
                 const comparison_field field = {
                     (sphg_shape)shape, (sphg_form)form,
                     comparison_random_field(&sets.whole, (sphg_shape)shape, 24)};
@@ -198,7 +198,7 @@ static void probes_may_look_into_mirrors(const test_case *test)
                                           comparison_random_field(on, SPHG_SCALAR, 25));
     const sphg_view absent = sphg_absent();
     setup_array found[3];
-    for (int way = 0; way < 3; way++) {
+    for (int way = 0; way < 3; ++way) {
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
         if (way == 2)
@@ -218,8 +218,8 @@ static void probes_may_look_into_mirrors(const test_case *test)
                                       .target_volume = sources[0].volume};
         SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     }
-    for (int i = 0; i < sets.fluid; i++)
-        for (int c = 0; c < test->dimension; c++)
+    for (int i = 0; i < sets.fluid; ++i)
+        for (int c = 0; c < test->dimension; ++c)
             TEST_REQUIRE(setup_get(&found[0], i, c) == 0, "a difference to itself, target %d", i);
     TEST_REQUIRE(setup_get(&found[1], 0, test->dimension - 1) != 0, "no wall is seen");
     setup_require_close(&found[1], &found[2], "through lists");
@@ -236,7 +236,7 @@ static void an_absent_field_is_zero(const test_case *test)
     setup_array here = setup_numbers(type, n, 1, numbers);
     setup_array none = setup_numbers(type, sets.part[1].count, 1, zeros);
     setup_array found[2];
-    for (int way = 0; way < 2; way++) {
+    for (int way = 0; way < 2; ++way) {
         sphg_view at_sources[] = {setup_view(&here), way ? sphg_absent() : setup_view(&none)};
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
@@ -260,10 +260,10 @@ static void lists_of_the_host_may_lack_a_field(const test_case *test)
                                            comparison_random_field(on, SPHG_SCALAR, 23));
     const sphg_view at_sources[] = {setup_view(&here), sphg_absent()};
     setup_array found[2];
-    for (int way = 0; way < 2; way++) {
+    for (int way = 0; way < 2; ++way) {
         sphg_sources sources[2];
         sources_of(&sets, 0, sources);
-        for (int s = 0; s < 2 && way; s++)
+        for (int s = 0; s < 2 && way; ++s)
             sources[s].neighbors = brought_between(&sets, 0, s);
         found[way] = setup_output(here.type, sets.fluid, test->dimension);
         const sphg_field asked = {.shape = SPHG_SCALAR,
@@ -285,7 +285,7 @@ static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *tes
     const setup_array whole = table_of(&sets, 0);
     setup_array some = setup_output(whole.type, sets.fluid, whole.width);
     uint8_t *mask = test_memory((size_t)sets.fluid);
-    for (int i = 0; i < sets.fluid; i++)
+    for (int i = 0; i < sets.fluid; ++i)
         mask[i] = i % 3 == 1;
     const sphg_subset subset = {0, sets.fluid, NULL, mask};
     sphg_sources sources[2];
@@ -293,8 +293,8 @@ static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *tes
     const sphg_request request = {
         .sources = sources, .set_count = 2, .subset = &subset, .correction = setup_view(&some)};
     SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-    for (int i = 0; i < sets.fluid; i++)
-        for (int c = 0; c < whole.width; c++)
+    for (int i = 0; i < sets.fluid; ++i)
+        for (int c = 0; c < whole.width; ++c)
             TEST_REQUIRE(mask[i] ? setup_get(&some, i, c) == setup_get(&whole, i, c)
                                  : setup_is_canary(&some, i),
                          "target %d, number %d", i, c);
@@ -358,7 +358,7 @@ static void compare_probe(const probe *made, sphg_form form)
     }
     SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
     oracle_field exact_field = {SPHG_SCALAR, form, numbers, made->at_targets};
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; ++i) {
         oracle_result exact = oracle_apply(on->reference, &exact_field, i);
         double ratio = comparison_ratio(&gradient, i, exact.gradient, exact.bound);
         double of_square = comparison_ratio(&square, i, &exact.square, exact.square_bound);
@@ -373,7 +373,7 @@ static void compare_probe(const probe *made, sphg_form form)
 
 static void targets_unlike_sources_match_the_oracle(const test_case *test)
 {
-    for (int with_volume = 0; with_volume < 2; with_volume++) {
+    for (int with_volume = 0; with_volume < 2; ++with_volume) {
         probe made = make_probe(test, with_volume);
         compare_probe(&made, SPHG_DIFFERENCE);
         compare_probe(&made, SPHG_DIRECT);
@@ -395,7 +395,7 @@ static void fields_of_one_call_equal_calls_of_one_field(const test_case *test)
     sphg_field fields[3] = {{0}};
     setup_array numbers[3], together[3];
     comparison_result alone[3];
-    for (int f = 0; f < 3; f++) {
+    for (int f = 0; f < 3; ++f) {
         int width = setup_width(shapes[f], d);
         comparison_field field = {shapes[f], forms[f],
                                   comparison_random_field(&on, shapes[f], (uint64_t)(90 + f))};
@@ -412,7 +412,7 @@ static void fields_of_one_call_equal_calls_of_one_field(const test_case *test)
     sphg_request request = {.sources = &sources, .fields = fields, .set_count = 1};
     request.field_count = 3;
     SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    for (int f = 0; f < 3; f++)
+    for (int f = 0; f < 3; ++f)
         TEST_REQUIRE(setup_same_bits(&together[f], &alone[f].gradient), "field %d", f);
 }
 
@@ -430,13 +430,13 @@ static void a_result_alone_has_the_bits_it_has_among_all(const test_case *test)
     comparison on = comparison_of(
         test, "block", cloud_jittered(d, d == 2 ? 6 : 4, .125, .25, &random), 2.5 * .125);
     setup_array table = comparison_table(&on);
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
-        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape) {
             const setup_array *given = form < SPHG_SYMMETRIC ? NULL : &table;
             comparison_field field = {(sphg_shape)shape, (sphg_form)form,
                                       comparison_random_field(&on, (sphg_shape)shape, 91)};
             comparison_result all = comparison_apply(&on, &field, given);
-            for (int which = 0; which < 5; which++) {
+            for (int which = 0; which < 5; ++which) {
                 if (!result_of(&all, which)->width) /* this shape or form has none */
                     continue;
                 comparison_result alone = comparison_apply_alone(&on, &field, given, which);
@@ -459,7 +459,7 @@ static void what_is_known_of_corrections_is_the_same_alone(const test_case *test
     setup_array found[2][3];
     memset(stats, 0, sizeof stats);
     n = on.points.count;
-    for (int which = -1; which < 4; which++) {
+    for (int which = -1; which < 4; ++which) {
         setup_array *to = found[which >= 0];
         sphg_request request = {.sources = &sources, .set_count = 1};
         to[0] = setup_output(type, n, sphg_correction_width(&on.scheme));
@@ -487,7 +487,7 @@ static void accumulate_adds_to_what_is_there(const test_case *test)
     comparison_result once = comparison_apply(on, &field, NULL);
     setup_array numbers = setup_numbers(type, on->points.count, 1, field.numbers);
     double *start = test_memory((size_t)(on->points.count * test->dimension) * sizeof *start);
-    for (int k = 0; k < on->points.count * test->dimension; k++)
+    for (int k = 0; k < on->points.count * test->dimension; ++k)
         start[k] = k % 5;
     setup_array sum = setup_numbers(type, on->points.count, test->dimension, start);
     sphg_view at_sources = setup_view(&numbers);
@@ -497,7 +497,7 @@ static void accumulate_adds_to_what_is_there(const test_case *test)
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
     request.field_count = 1;
     SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-    for (int k = 0; k < sum.count * sum.width; k++) {
+    for (int k = 0; k < sum.count * sum.width; ++k) {
         int i = k / sum.width, c = k % sum.width;
         double g = setup_get(&once.gradient, i, c), expected = start[k] + g;
         double error = fabs(setup_get(&sum, i, c) - expected);
@@ -516,7 +516,7 @@ typedef struct crowd {
 
 static void put_points(double *x, int dimension, int count, double where, random_state *random)
 {
-    for (int k = 0; k < count * dimension; k++)
+    for (int k = 0; k < count * dimension; ++k)
         x[k] = random_between(random, 0, .05) + (k % dimension ? 0 : where);
 }
 
@@ -568,16 +568,16 @@ static setup_array values_in_crowd(const test_case *test, const crowd *on, const
 static void a_crowd_of_sources_is_summed_alike_for_any_subset(const test_case *test)
 {
     static const int near[] = {90, 200};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const crowd on = crowd_of(test, near[k / 2], k % 2);
         const setup_array full = values_in_crowd(test, &on, NULL);
         uint8_t *mask = test_memory((size_t)on.targets);
         for (int share = 1; share < 6; share += 4) {
-            for (int t = 0; t < on.near; t++)
+            for (int t = 0; t < on.near; ++t)
                 mask[t] = t % share == 0;
             const setup_array some = values_in_crowd(test, &on, mask);
             for (int t = 0; t < on.near; t += share)
-                for (int c = 0; c < test->dimension; c++)
+                for (int c = 0; c < test->dimension; ++c)
                     TEST_REQUIRE(setup_get(&some, t, c) == setup_get(&full, t, c),
                                  "target %d, 1 of %d, %d see sources", t, share, on.near);
         }

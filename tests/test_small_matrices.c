@@ -23,7 +23,7 @@ static batch batch_of(const test_case *test, spectrum set)
     items.unit = test_unit_roundoff(test);
     items.grain = items.is_double ? 0x1p-1074 : 0x1p-149;
     items.full = test_memory((size_t)(items.count * 9) * sizeof(double));
-    for (int i = 0; i < items.count; i++)
+    for (int i = 0; i < items.count; ++i)
         spectra_matrix(set, items.dimension, items.is_double, &random, items.full + 9 * i);
     return items;
 }
@@ -33,9 +33,9 @@ static setup_array packed(const batch *items)
 {
     const int d = items->dimension, width = d * (d + 1) / 2;
     double *numbers = test_memory((size_t)(items->count * width) * sizeof *numbers);
-    for (int i = 0, next = 0; i < items->count; i++)
-        for (int r = 0; r < d; r++)
-            for (int c = r; c < d; c++)
+    for (int i = 0, next = 0; i < items->count; ++i)
+        for (int r = 0; r < d; ++r)
+            for (int c = r; c < d; ++c)
                 numbers[next++] = items->full[9 * i + r * d + c];
     return setup_numbers(items->is_double ? SPHG_F64 : SPHG_F32, items->count, width, numbers);
 }
@@ -43,7 +43,7 @@ static setup_array packed(const batch *items)
 static long double frobenius(int numbers, const double *a)
 {
     long double sum = 0;
-    for (int k = 0; k < numbers; k++)
+    for (int k = 0; k < numbers; ++k)
         sum += (long double)a[k] * a[k];
     return sqrtl(sum);
 }
@@ -55,10 +55,10 @@ static double backward_error(const batch *items, const double *a, const double *
     const int d = items->dimension;
     const long double size = frobenius(d * d, a);
     long double sum = 0;
-    for (int r = 0; r < d; r++)
-        for (int c = 0; c < d; c++) {
+    for (int r = 0; r < d; ++r)
+        for (int c = 0; c < d; ++c) {
             long double rest = a[r * d + c];
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 rest -= (long double)u[r * d + k] * values[k] * v[c * d + k];
             sum += rest * rest;
         }
@@ -71,10 +71,10 @@ static double orthogonality(const batch *items, const double *q)
 {
     const int d = items->dimension;
     long double sum = 0;
-    for (int j = 0; j < d; j++)
-        for (int k = 0; k < d; k++) {
+    for (int j = 0; j < d; ++j)
+        for (int k = 0; k < d; ++k) {
             long double dot = j == k ? -1 : 0;
-            for (int r = 0; r < d; r++)
+            for (int r = 0; r < d; ++r)
                 dot += (long double)q[r * d + j] * q[r * d + k];
             sum += dot * dot;
         }
@@ -102,7 +102,7 @@ static void within_gate(const batch *items, double ratio, const char *where)
 static void require_descending(const batch *items, const double *values, int index,
                                const char *where)
 {
-    for (int k = 1; k < items->dimension; k++)
+    for (int k = 1; k < items->dimension; ++k)
         TEST_REQUIRE(values[k - 1] >= values[k], "%s, matrix %d: values rise", where, index);
 }
 
@@ -127,10 +127,10 @@ static void eigen_is_backward_stable(const test_case *test)
 {
     sphg_context *context = setup_context();
     const int d = test->dimension;
-    for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
+    for (int set = 0; set < SPECTRA_SYMMETRIC; ++set) {
         const batch items = batch_of(test, (spectrum)set);
         const factors found = eigen_of(context, &items);
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             const double *q = found.vectors + d * d * i, *values = found.values + d * i;
             const double *a = items.full + 9 * i;
             within_gate(&items, backward_error(&items, a, q, values, q), spectra_names[set]);
@@ -146,16 +146,16 @@ static void lapack_eigen(const batch *items, const double *a, double *values, do
     const int d = items->dimension;
     float single[9], single_values[3];
     memcpy(vectors, a, (size_t)(d * d) * sizeof *a);
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         single[k] = (float)a[k];
     if (items->is_double) {
         assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'L', d, vectors, d, values), 0);
         return;
     }
     assert_int_equal(LAPACKE_ssyev(LAPACK_ROW_MAJOR, 'V', 'L', d, single, d, single_values), 0);
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         vectors[k] = (double)single[k];
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         values[k] = (double)single_values[k];
 }
 
@@ -164,17 +164,17 @@ static void eigenvalues_agree_with_lapack(const test_case *test)
 {
     sphg_context *context = setup_context();
     const int d = test->dimension;
-    for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
+    for (int set = 0; set < SPECTRA_SYMMETRIC; ++set) {
         const batch items = batch_of(test, (spectrum)set);
         const factors found = eigen_of(context, &items);
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             const double *a = items.full + 9 * i;
             double values[3], vectors[9];
             lapack_eigen(&items, a, values, vectors);
             const double own = (double)frobenius(d * d, a) * items.unit + 2 * items.grain;
             TEST_WITHIN(lapack_residual, backward_error(&items, a, vectors, values, vectors),
                         spectra_names[set]);
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 TEST_WITHIN(solver_against_lapack,
                             fabs(found.values[d * i + k] - values[d - 1 - k]) / own,
                             spectra_names[set]);
@@ -187,15 +187,15 @@ static void eigenvalues_agree_with_the_reference(const test_case *test)
 {
     sphg_context *context = setup_context();
     const int d = test->dimension;
-    for (int set = 0; set < SPECTRA_SYMMETRIC; set++) {
+    for (int set = 0; set < SPECTRA_SYMMETRIC; ++set) {
         const batch items = batch_of(test, (spectrum)set);
         const factors found = eigen_of(context, &items);
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             long double values[3], vectors[9];
             spectra_eigen(d, items.full + 9 * i, values, vectors);
             const long double own =
                 frobenius(d * d, items.full + 9 * i) * items.unit + 2 * (long double)items.grain;
-            for (int k = 0; k < d; k++) {
+            for (int k = 0; k < d; ++k) {
                 const long double error = fabsl(found.values[d * i + k] - values[k]);
                 within_gate(&items, (double)(error / own), spectra_names[set]);
             }
@@ -226,10 +226,10 @@ static singular svd_of(sphg_context *context, const batch *items)
 static void svd_is_backward_stable(const test_case *test)
 {
     sphg_context *context = setup_context();
-    for (int set = 0; set < SPECTRA_COUNT; set++) {
+    for (int set = 0; set < SPECTRA_COUNT; ++set) {
         const batch items = batch_of(test, (spectrum)set);
         const singular found = svd_of(context, &items);
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             const double *u = found.u + 9 * i, *v = found.v + 9 * i, *sigma = found.sigma + 3 * i;
             const double *a = items.full + 9 * i;
             within_gate(&items, backward_error(&items, a, u, sigma, v), spectra_names[set]);
@@ -246,7 +246,7 @@ static void lapack_svd(const batch *items, const double *a, double *sigma)
     double copy[9], u[9], v[9], spare[3];
     float single[9], single_sigma[3], single_u[9], single_v[9], single_spare[3];
     memcpy(copy, a, sizeof copy);
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         single[k] = (float)a[k];
     if (items->is_double) {
         assert_int_equal(
@@ -256,22 +256,22 @@ static void lapack_svd(const batch *items, const double *a, double *sigma)
     assert_int_equal(LAPACKE_sgesvd(LAPACK_ROW_MAJOR, 'A', 'A', 3, 3, single, 3, single_sigma,
                                     single_u, 3, single_v, 3, single_spare),
                      0);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         sigma[k] = (double)single_sigma[k];
 }
 
 static void singular_values_agree_with_lapack(const test_case *test)
 {
     sphg_context *context = setup_context();
-    for (int set = 0; set < SPECTRA_COUNT; set++) {
+    for (int set = 0; set < SPECTRA_COUNT; ++set) {
         const batch items = batch_of(test, (spectrum)set);
         const singular found = svd_of(context, &items);
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             double sigma[3];
             lapack_svd(&items, items.full + 9 * i, sigma);
             const double own =
                 (double)frobenius(9, items.full + 9 * i) * items.unit + 2 * items.grain;
-            for (int k = 0; k < 3; k++)
+            for (int k = 0; k < 3; ++k)
                 TEST_WITHIN(solver_against_lapack, fabs(found.sigma[3 * i + k] - sigma[k]) / own,
                             spectra_names[set]);
         }
@@ -283,7 +283,7 @@ static void singular_values_agree_with_lapack(const test_case *test)
 static void require_scaled(const double *found, const double *expected, int count, int exponent,
                            const char *where)
 {
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         TEST_REQUIRE(found[k] == ldexp(expected[k], exponent), "%s: %.17g, not %.17g", where,
                      found[k], ldexp(expected[k], exponent));
 }
@@ -295,7 +295,7 @@ static void units_change_no_digit(const test_case *test)
     const int d = test->dimension;
     batch items = batch_of(test, SPECTRA_indefinite);
     items.count = 100;
-    for (int k = 0; k < 9 * items.count; k++) /* eigenvalues below 1 / 2, digits that survive */
+    for (int k = 0; k < 9 * items.count; ++k) /* eigenvalues below 1 / 2, digits that survive */
         items.full[k] =
             rint(ldexp(tanh(items.full[k]), 18)) * (k % 9 % (d + 1) == 0 ? 7 * 0x1p-22 : 0x1p-24);
     batch other = items;
@@ -304,10 +304,10 @@ static void units_change_no_digit(const test_case *test)
     const int f32[] = {-95, -90, -50, 50, 100, 120, 126, 129};
     const factors expected = eigen_of(context, &items);
     const singular expected_svd = d == 3 ? svd_of(context, &items) : (singular){0};
-    for (int k = 0; k < 8; k++) {
+    for (int k = 0; k < 8; ++k) {
         const int exponent = items.is_double ? f64[k] : f32[k];
         const char *where = test_text("times 2^%d", exponent);
-        for (int i = 0; i < 9 * items.count; i++)
+        for (int i = 0; i < 9 * items.count; ++i)
             other.full[i] = ldexp(items.full[i], exponent);
         const factors found = eigen_of(context, &other);
         require_scaled(found.values, expected.values, d * items.count, exponent, where);
@@ -331,12 +331,12 @@ static void bad_matrix_spoils_only_itself(const test_case *test)
     batch items = batch_of(test, SPECTRA_indefinite);
     items.count = 37;
     const factors clean = eigen_of(context, &items);
-    for (int bad = 0; bad < items.count; bad++) {
+    for (int bad = 0; bad < items.count; ++bad) {
         double *a = items.full + 9 * bad, kept = a[d];
         a[1] = a[d] = bad % 3 == 0 ? NAN : bad % 3 == 1 ? INFINITY : -INFINITY;
         const factors found = eigen_of(context, &items);
         const singular other = d == 3 ? svd_of(context, &items) : (singular){0};
-        for (int i = 0; i < items.count; i++) {
+        for (int i = 0; i < items.count; ++i) {
             const size_t values = (size_t)d * sizeof(double), vectors = (size_t)d * values;
             if (i == bad)
                 continue;
@@ -358,7 +358,7 @@ static void batches_do_not_change_results(const test_case *test)
     const factors all = eigen_of(context, &items);
     batch one = items;
     one.count = 1;
-    for (int i = 0; i < 100; i++) {
+    for (int i = 0; i < 100; ++i) {
         one.full = items.full + 9 * i;
         const factors found = eigen_of(context, &one);
         assert_memory_equal(found.values, all.values + d * i, (size_t)d * sizeof(double));
@@ -390,8 +390,8 @@ static void nothing_behind_the_last_matrix_is_touched(const test_case *test)
 {
     sphg_context *const contexts[] = {setup_context_of(1), setup_context()};
     batch items = batch_of(test, SPECTRA_indefinite);
-    for (items.count = 1; items.count <= 100; items.count++)
-        for (int k = 0; k < 2; k++) {
+    for (items.count = 1; items.count <= 100; ++items.count)
+        for (int k = 0; k < 2; ++k) {
             eigen_of(contexts[k], &items);
             svd_of(contexts[k], &items);
             invert(contexts[k], &items);
@@ -414,14 +414,14 @@ static void strided_views_hold_matrices_and_factors(const test_case *test)
     values.x = (const char *)values.x + size;
     vectors.x = (const char *)vectors.x + 5 * size;
     SETUP_OK(context, sphg_eigen(context, d, items.count, in, values, vectors));
-    for (int i = 0; i < items.count; i++) {
+    for (int i = 0; i < items.count; ++i) {
         const int mirror = items.count - 1 - i;
-        for (int k = 0; k < d; k++)
+        for (int k = 0; k < d; ++k)
             assert_true(setup_get(&record, i, 1 + k) == plain.values[d * mirror + k]);
-        for (int k = 0; k < d * d; k++)
+        for (int k = 0; k < d * d; ++k)
             assert_true(setup_get(&record, i, 5 + k) == plain.vectors[d * d * mirror + k]);
         const char *item = (const char *)record.data + i * step;
-        for (ptrdiff_t byte = (5 + d * d) * size; byte < 20 * size; byte++)
+        for (ptrdiff_t byte = (5 + d * d) * size; byte < 20 * size; ++byte)
             assert_int_equal(item[byte], (char)0xA5);
     }
 }

@@ -43,7 +43,7 @@ typedef struct world {
 
 static void fill(world *own, const setup_array *array, double low, double high)
 {
-    for (int k = 0; k < own->count * array->width; k++)
+    for (int k = 0; k < own->count * array->width; ++k)
         setup_put(array, k, random_between(&own->random, low, high));
 }
 
@@ -52,9 +52,9 @@ static void fill_lists(world *own)
 {
     const int length = own->count < LIST_MOST ? own->count : LIST_MOST;
     int64_t at = 0;
-    for (int i = 0; i < own->targets; i++) {
+    for (int i = 0; i < own->targets; ++i) {
         own->offsets[i] = at;
-        for (int k = 0; k < length; k++)
+        for (int k = 0; k < length; ++k)
             own->indices[at++] = (i + k) % own->count;
     }
     own->offsets[own->targets] = at;
@@ -140,7 +140,7 @@ static size_t bytes_of(const setup_array *array)
 
 static void clear_results(world *own)
 {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         memset(result_at(own, k)->data, 0, bytes_of(result_at(own, k)));
 }
 
@@ -155,7 +155,7 @@ static sphg_result evaluate_step(world *own, sphg_context *context, sphg_neighbo
 
 static void fails_as(world *own, fault what, sphg_result result, sphg_result expected)
 {
-    own->injected[what]++;
+    ++own->injected[what];
     TEST_REQUIRE(result == expected || result == SPHG_OK, "round %ld, %s: %s", own->rounds,
                  fault_names[what], sphg_last_message(own->context));
 }
@@ -214,7 +214,7 @@ static void try_with_argument(world *own)
     if (!argument_spoil(hostile, tested, a, random_index(&own->random, 8), &made))
         return;
     const sphg_result result = tested->call(hostile);
-    own->injected[ARGUMENT]++;
+    ++own->injected[ARGUMENT];
     argument_restore(&made);
     TEST_REQUIRE(
         made.expected == ARGUMENT_SKIPPED ||
@@ -256,7 +256,7 @@ static void require_bits_of_a_fresh_context(world *own)
 {
     sphg_context *fresh = NULL;
     sphg_neighbors *neighbors = NULL;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         memcpy(own->kept[k].data, result_at(own, k)->data, bytes_of(&own->kept[k]));
     clear_results(own);
     const sphg_config serial = {.isa = test_isa(), .threads = 1};
@@ -266,10 +266,10 @@ static void require_bits_of_a_fresh_context(world *own)
     SETUP_OK(fresh, evaluate(own, fresh, neighbors));
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(fresh);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         TEST_REQUIRE(setup_same_bits(&own->kept[k], result_at(own, k)),
                      "round %ld: other bits in result %d", own->rounds, k);
-    own->compared++;
+    ++own->compared;
 }
 
 static void open_context(world *own)
@@ -305,7 +305,7 @@ static void play_round(world *own, sphg_neighbors *neighbors)
     SETUP_OK(own->context, evaluate(own, own->context, neighbors));
     if (own->rounds % 5 == 0 && own->geometry.skin == 0)
         require_bits_of_a_fresh_context(own);
-    own->rounds++;
+    ++own->rounds;
 }
 
 /* [byte] resident; 0 where there is no such file. */
@@ -325,7 +325,7 @@ static void play(world *own)
     sphg_neighbors *neighbors = NULL;
     open_context(own);
     SETUP_OK(own->context, sphg_neighbors_create(own->context, &neighbors));
-    for (int k = 0; k < ROUNDS_PER_CONTEXT; k++)
+    for (int k = 0; k < ROUNDS_PER_CONTEXT; ++k)
         play_round(own, neighbors);
     sphg_neighbors_destroy(neighbors);
     close_context(own);
@@ -350,7 +350,7 @@ static void require_flat_memory(const world *own)
 {
     const int watched = !TEST_SANITIZED && seconds_wanted() >= WARM;
     long most[2] = {0, 0};
-    for (int k = 0; k < own->samples; k++)
+    for (int k = 0; k < own->samples; ++k)
         if (own->resident[k] > most[2 * k / SAMPLES])
             most[2 * k / SAMPLES] = own->resident[k];
     print_message("resident: %ld KiB in the first half at most, %ld KiB in the second%s\n",
@@ -373,7 +373,7 @@ static world *world_of(const test_case *test)
     own->gradient = setup_output(type, MOST, own->dimension * own->dimension);
     own->correction = setup_output(type, MOST, 16);
     own->rank = setup_output(SPHG_U8, MOST, 1);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         own->kept[k] = setup_output(result_at(own, k)->type, MOST, result_at(own, k)->width);
     own->offsets = test_memory((MOST + 1) * sizeof *own->offsets);
     own->indices = test_memory((size_t)MOST * LIST_MOST * sizeof *own->indices);
@@ -388,7 +388,7 @@ static void days_of_faults_change_neither_results_nor_memory(const test_case *te
         play(own);
         sample_memory(own, begin, seconds);
     }
-    for (int k = 0; k < FAULTS; k++)
+    for (int k = 0; k < FAULTS; ++k)
         print_message("%s %ld, ", fault_names[k], own->injected[k]);
     print_message("%ld rounds, %.3g particles evaluated, %ld compared\n", own->rounds,
                   own->evaluated, own->compared);

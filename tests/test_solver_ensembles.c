@@ -50,12 +50,12 @@ static void exact_values(int d, const double *a, quad *values)
 {
     oracle_matrix matrix = {{0}}, vectors;
     quad found[oracle_rows] = {0};
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         matrix[k / d][k % d] = (quad)a[k];
     oracle_eigen(d, matrix, found, vectors);
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         int place = 0;
-        for (int l = 0; l < d; l++)
+        for (int l = 0; l < d; ++l)
             place += found[l] > found[k] || (found[l] == found[k] && l < k);
         values[place] = found[k];
     }
@@ -64,13 +64,13 @@ static void exact_values(int d, const double *a, quad *values)
 static void fill(ensemble *own, spectrum set)
 {
     const int d = own->dimension;
-    for (int i = 0, next = 0; i < BATCH; i++) {
+    for (int i = 0, next = 0; i < BATCH; ++i) {
         double *a = own->numbers + 9 * i;
         spectra_matrix(set, d, own->is_double, &own->random, a);
-        for (int r = 0; r < d; r++)
-            for (int c = r; c < d; c++)
+        for (int r = 0; r < d; ++r)
+            for (int c = r; c < d; ++c)
                 setup_put(&own->matrices, next++, a[r * d + c]);
-        for (int k = 0; k < 9 && d == 3; k++)
+        for (int k = 0; k < 9 && d == 3; ++k)
             setup_put(&own->full, 9 * i + k, a[k]);
         if ((int)set < (int)SPECTRA_SYMMETRIC)
             exact_values(d, a, own->exact + 3 * i);
@@ -82,7 +82,7 @@ static void fill(ensemble *own, spectrum set)
 static long double size_of(const ensemble *own, const double *a)
 {
     long double sum = 0;
-    for (int k = 0; k < own->dimension * own->dimension; k++)
+    for (int k = 0; k < own->dimension * own->dimension; ++k)
         sum += (long double)a[k] * a[k];
     return sqrtl(sum);
 }
@@ -93,10 +93,10 @@ static double residual(const ensemble *own, const double *a, const double *u, co
 {
     const int d = own->dimension;
     long double sum = 0;
-    for (int r = 0; r < d; r++)
-        for (int c = 0; c < d; c++) {
+    for (int r = 0; r < d; ++r)
+        for (int c = 0; c < d; ++c) {
             long double rest = a[r * d + c];
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 rest -= (long double)u[r * d + k] * values[k] * v[c * d + k];
             sum += rest * rest;
         }
@@ -108,10 +108,10 @@ static double skew(const ensemble *own, const double *q)
 {
     const int d = own->dimension;
     long double sum = 0;
-    for (int j = 0; j < d; j++)
-        for (int k = 0; k < d; k++) {
+    for (int j = 0; j < d; ++j)
+        for (int k = 0; k < d; ++k) {
             long double dot = j == k ? -1 : 0;
-            for (int r = 0; r < d; r++)
+            for (int r = 0; r < d; ++r)
                 dot += (long double)q[r * d + j] * q[r * d + k];
             sum += dot * dot;
         }
@@ -128,7 +128,7 @@ static void within(const ensemble *own, double ratio, const char *where)
 
 static void numbers_of(const setup_array *array, int item, double *numbers)
 {
-    for (int k = 0; k < array->width; k++)
+    for (int k = 0; k < array->width; ++k)
         numbers[k] = setup_get(array, item, k);
 }
 
@@ -139,7 +139,7 @@ static void check_eigen(const ensemble *own, const char *where)
     const int d = own->dimension;
     SETUP_OK(own->context, sphg_eigen(own->context, d, BATCH, setup_view(&own->matrices),
                                       setup_view(&own->values), setup_view(&own->vectors)));
-    for (int i = 0; i < BATCH; i++) {
+    for (int i = 0; i < BATCH; ++i) {
         const double *a = own->numbers + 9 * i;
         double values[3], q[9];
         const quad *exact = own->exact + 3 * i;
@@ -148,7 +148,7 @@ static void check_eigen(const ensemble *own, const char *where)
         within(own, residual(own, a, q, values, q), where);
         within(own, skew(own, q), where);
         const long double scale = own->unit * size_of(own, a) + 2 * (long double)own->grain;
-        for (int k = 0; k < d && scale > 0; k++)
+        for (int k = 0; k < d && scale > 0; ++k)
             within(own, (double)(quad_abs(exact[k] - (quad)values[k]) / (quad)scale), where);
     }
 }
@@ -160,7 +160,7 @@ static void check_svd(const ensemble *own, const char *where)
     SETUP_OK(own->context,
              sphg_svd(own->context, BATCH, setup_view(&own->full), setup_view(&own->u),
                       setup_view(&own->sigma), setup_view(&own->v)));
-    for (int i = 0; i < BATCH; i++) {
+    for (int i = 0; i < BATCH; ++i) {
         double u[9], sigma[3], v[9];
         numbers_of(&own->u, i, u);
         numbers_of(&own->sigma, i, sigma);
@@ -186,11 +186,11 @@ static decision decide(const ensemble *own, const sphg_scheme *scheme, int i)
     const int d = own->dimension;
     decision made = {0, 0, 0};
     quad trace = 0;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         trace += values[k];
     const quad eps = quad_max((quad)scheme->threshold, 16 * (quad)own->unit * trace);
     const quad full = scheme->policy == SPHG_BLEND ? 4 * eps : eps;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         const quad gap = quad_abs(values[k] - full);
         made.rank += values[k] > full;
         made.is_close |= gap <= 64 * (quad)own->unit * (quad)size_of(own, own->numbers + 9 * i) +
@@ -214,7 +214,7 @@ static int64_t check_thresholds(ensemble *own, sphg_policy policy, const char *w
     SETUP_OK(own->context, sphg_invert_moments(own->context, &scheme, BATCH,
                                                setup_view(&own->matrices), sphg_absent(), &wanted));
     int touched = 0;
-    for (int i = 0; i < BATCH; i++) {
+    for (int i = 0; i < BATCH; ++i) {
         const decision expected = decide(own, &scheme, i);
         TEST_REQUIRE(expected.is_close || setup_get(&own->rank, i, 0) == expected.rank,
                      "%s, policy %d, eps %g, matrix %d: rank %g, not %d", where, (int)policy,
@@ -245,7 +245,7 @@ static void solvers_and_thresholds_are_right_on_any_spectrum(const test_case *te
     ensemble *own = ensemble_of(test, 701);
     int64_t touched = 0;
     const int batches = batches_of(test);
-    for (int k = 0; k < batches; k++) {
+    for (int k = 0; k < batches; ++k) {
         const spectrum set = (spectrum)(k % SPECTRA_COUNT);
         fill(own, set);
         if (test->dimension == 3)

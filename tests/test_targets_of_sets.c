@@ -18,7 +18,7 @@ typedef struct scene {
 static setup_array ones(const test_case *test, int count)
 {
     double *numbers = test_memory((size_t)count * sizeof *numbers);
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         numbers[k] = .01;
     return setup_numbers(test_field_type(test), count, 1, numbers);
 }
@@ -79,7 +79,7 @@ static void require_elsewhere(const scene *on, const sphg_neighbors *wall, int t
     const char *message = sphg_last_message(on->context);
     TEST_REQUIRE(result == SPHG_ERROR_SIZE, "%s", sphg_result_string(result));
     TEST_REQUIRE(strstr(message, test_text("target %d of sources[1]", target)), "%s", message);
-    for (int i = 0; i < TARGETS; i++)
+    for (int i = 0; i < TARGETS; ++i)
         TEST_REQUIRE(setup_is_canary(&on->result, i), "target %d was written", i);
 }
 
@@ -120,7 +120,7 @@ static void hosts_that_are_trusted_may_differ(const test_case *test)
 static void moves_are_noticed(const test_case *test)
 {
     scene on = scene_of(test, 0, 2);
-    for (int skin = 0; skin < 2; skin++) {
+    for (int skin = 0; skin < 2; ++skin) {
         setup_array at;
         sphg_geometry geometry = geometry_of(&on, &on.fluid, &at);
         geometry.skin = skin ? .1 : 0;

@@ -21,7 +21,7 @@ static setup_array numbers_of(const test_case *test, int width, double low, doub
                               random_state *random)
 {
     double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
-    for (int k = 0; k < COUNT * width; k++)
+    for (int k = 0; k < COUNT * width; ++k)
         numbers[k] = random_between(random, low, high);
     return setup_numbers(test_field_type(test), COUNT, width, numbers);
 }
@@ -172,11 +172,11 @@ static results serial_results(const comparison *own, int list_free, rows *pairs)
 static void results_do_not_depend_on_the_number_of_threads(const test_case *test)
 {
     const comparison own = comparison_of(test);
-    for (int list_free = 0; list_free < 2; list_free++) {
+    for (int list_free = 0; list_free < 2; ++list_free) {
         rows expected_pairs, pairs;
         const results expected = serial_results(&own, list_free, &expected_pairs);
         const int32_t threads[] = {3, 16, 0, 2, 4, 7, 8};
-        for (int k = 0; k < (TEST_SLOWED ? 2 : 7); k++) {
+        for (int k = 0; k < (TEST_SLOWED ? 2 : 7); ++k) {
             const sphg_config config = {.threads = threads[k], .isa = test_isa()};
             const results found = run_under(&own, &config, list_free, &pairs);
             const char *where = test_text("%d threads", threads[k]);
@@ -247,7 +247,7 @@ static void search_does_not_depend_on_threads(const test_case *test)
     found *serial = test_memory(sizeof *serial), *other = test_memory(sizeof *other);
     const int32_t threads[] = {3, 16, 2, 4, 7, 8};
     search_under(test, &(sphg_config){.threads = 1, .isa = test_isa()}, serial);
-    for (int k = 0; k < (TEST_SLOWED ? 2 : 6); k++) {
+    for (int k = 0; k < (TEST_SLOWED ? 2 : 6); ++k) {
         search_under(test, &(sphg_config){.threads = threads[k], .isa = test_isa()}, other);
         rows_require_equal(&other->pairs, &serial->pairs, test_text("%d threads", threads[k]));
         assert_memory_equal(other->order, serial->order, sizeof serial->order);
@@ -264,7 +264,7 @@ static void first_bad_position_is_named_for_any_executor(const test_case *test)
         particles.sources[k * test->dimension] = NAN;
     const sphg_geometry geometry = scene_geometry(&particles);
     const sphg_scheme scheme = setup_scheme(test, 2);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         fake_host host;
         fake_host_open(&host);
         sphg_config config = fake_host_config(&host, host.workers);
@@ -291,9 +291,9 @@ static void first_bad_index_is_named_for_any_executor(const test_case *test)
     rows pairs;
     serial_results(&own, 0, &pairs);
     for (int32_t target = 211; target < COUNT; target += 97)
-        for (int64_t k = pairs.offsets[target]; k < pairs.offsets[target + 1]; k++)
+        for (int64_t k = pairs.offsets[target]; k < pairs.offsets[target + 1]; ++k)
             pairs.indices[k] = COUNT + target;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         fake_host host;
         fake_host_open(&host);
         sphg_config config = fake_host_config(&host, host.workers);
@@ -334,7 +334,7 @@ static void *help(void *argument)
     const sphg_sources sources = sources_of(own->own, own->shared);
     sphg_context *context = NULL;
     own->result = sphg_context_create(SPHG_VERSION, &serial, &context);
-    for (int repeat = 0; repeat < 3 && own->result == SPHG_OK; repeat++) {
+    for (int repeat = 0; repeat < 3 && own->result == SPHG_OK; ++repeat) {
         own->found.next = 0;
         own->result = sweep(context, own->own, &sources, &own->subset, &own->found);
     }
@@ -347,11 +347,11 @@ enum { HELPERS = 4 };
 static void run_helpers(helper *helpers)
 {
     pthread_t threads[HELPERS];
-    for (int k = 0; k < HELPERS; k++)
+    for (int k = 0; k < HELPERS; ++k)
         assert_int_equal(pthread_create(&threads[k], NULL, help, &helpers[k]), 0);
-    for (int k = 0; k < HELPERS; k++)
+    for (int k = 0; k < HELPERS; ++k)
         pthread_join(threads[k], NULL);
-    for (int k = 0; k < HELPERS; k++)
+    for (int k = 0; k < HELPERS; ++k)
         assert_int_equal(helpers[k].result, SPHG_OK);
 }
 
@@ -359,7 +359,7 @@ static void run_helpers(helper *helpers)
 static void contexts_may_share_neighbours_and_split_the_targets(const test_case *test)
 {
     const comparison own = comparison_of(test);
-    for (int list_free = 0; list_free < 2; list_free++) {
+    for (int list_free = 0; list_free < 2; ++list_free) {
         sphg_context *context = setup_context_of(1);
         sphg_geometry geometry = scene_geometry(&own.particles);
         geometry.list_free = list_free;
@@ -368,7 +368,7 @@ static void contexts_may_share_neighbours_and_split_the_targets(const test_case 
         results whole = results_for(&own), split = results_for(&own);
         SETUP_OK(context, sweep(context, &own, &sources, NULL, &whole));
         helper helpers[HELPERS];
-        for (int k = 0; k < HELPERS; k++) {
+        for (int k = 0; k < HELPERS; ++k) {
             const sphg_subset part = {COUNT * k / HELPERS - (k % 2) * 13,
                                       COUNT * (k + 1) / HELPERS - ((k + 1) % 2) * 13, NULL, NULL};
             helpers[k] = (helper){&own, shared, part, split, SPHG_OK};
@@ -392,7 +392,7 @@ static void subsets_have_the_bits_of_the_whole(const test_case *test)
     results whole = results_for(&own), parts = results_for(&own);
     uint8_t *mask = test_memory(COUNT);
     int32_t *picked = test_memory(COUNT * sizeof *picked), chosen = 0;
-    for (int32_t i = 0; i < COUNT; i++) {
+    for (int32_t i = 0; i < COUNT; ++i) {
         const int32_t reverse = COUNT - 1 - i;
         mask[reverse] = reverse % 7 == 3 || (reverse > 500 && reverse < 900) ? 255 : 0;
         if (!mask[reverse])
@@ -401,7 +401,7 @@ static void subsets_have_the_bits_of_the_whole(const test_case *test)
     const sphg_subset masked = {0, COUNT, NULL, mask}, listed = {0, chosen, picked, NULL};
     SETUP_OK(context, sweep(context, &own, &sources, NULL, &whole));
     SETUP_OK(context, sweep(context, &own, &sources, &masked, &parts));
-    for (int32_t i = 0; i < COUNT; i++)
+    for (int32_t i = 0; i < COUNT; ++i)
         assert_int_equal(setup_is_canary(&parts.record, i) != 0, !mask[i]);
     parts.next = 0;
     SETUP_OK(context, sweep(context, &own, &sources, &listed, &parts));

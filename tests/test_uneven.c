@@ -22,15 +22,15 @@ static cloud uneven_cloud(int dimension, random_state *random)
     made.x = test_memory((size_t)(COUNT * dimension) * sizeof *made.x);
     double centre[3] = {0};
     int left = 0;
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         const int alone = !left && random_index(random, 2 * MOST / 3);
         if (!left) {
             left = alone ? 1 : 1 + random_index(random, MOST);
-            for (int c = 0; c < dimension; c++)
+            for (int c = 0; c < dimension; ++c)
                 centre[c] = random_between(random, 0, 24);
         }
-        left--;
-        for (int c = 0; c < dimension; c++)
+        --left;
+        for (int c = 0; c < dimension; ++c)
             made.x[i * dimension + c] = centre[c] + (alone ? 0 : random_between(random, -.8, .8));
     }
     return made;
@@ -45,7 +45,7 @@ static uneven uneven_of(const test_case *test, sphg_isa isa)
     made.scheme = setup_scheme(test, 1);
     made.points = uneven_cloud(test->dimension, &random);
     made.positions = setup_positions(test, &made.points);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         numbers[i] = random_between(&random, -1, 1);
         volumes[i] = random_between(&random, .5, 1.5);
     }
@@ -141,15 +141,15 @@ static void try_masks(const uneven *on, const sphg_neighbors *neighbors, const r
 {
     uint8_t masks[2][COUNT];
     random_state random = random_seeded(chance);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         masks[0][i] = random_index(&random, (int)chance) == 0;
         masks[1][i] = !masks[0][i];
     }
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         const sphg_subset subset = sphg_masked(masks[k], COUNT);
         const results found = evaluate(on, neighbors, &subset);
-        for (int i = 0; i < COUNT; i++)
-            for (int c = 0; c < found.gradient.width && masks[k][i]; c++)
+        for (int i = 0; i < COUNT; ++i)
+            for (int c = 0; c < found.gradient.width && masks[k][i]; ++c)
                 TEST_REQUIRE(!memcmp(&(double){setup_get(&found.gradient, i, c)},
                                      &(double){setup_get(&expected->gradient, i, c)},
                                      sizeof(double)),
@@ -182,7 +182,7 @@ static void lists_of_all_lengths_give_the_same_bits(const test_case *test)
 {
     results of_fused;
     int fused = 0;
-    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; isa++) {
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         if (!setup_context_on(isa))
             continue;
         const results found = try_instruction_set(test, isa);

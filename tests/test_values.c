@@ -56,7 +56,7 @@ static comparison graded_stage(const test_case *test)
     const int d = test->dimension;
     cloud points = cloud_jittered(d, d == 2 ? 9 : 5, .125, .2, &random);
     double *radii = test_memory((size_t)points.count * sizeof *radii);
-    for (int i = 0; i < points.count; i++)
+    for (int i = 0; i < points.count; ++i)
         radii[i] = .27 * exp(points.x[i * d]);
     return comparison_of_radii(test, "graded block", points, radii, 1);
 }
@@ -77,7 +77,7 @@ static void compare(const comparison *on, const sum *of)
 
 static void compare_all(const comparison *on)
 {
-    for (int way = 0; way < 6; way++) {
+    for (int way = 0; way < 6; ++way) {
         const sphg_shape shape = (sphg_shape)(1 + way % 4);
         const sum of = {shape, way % 3 ? SPHG_DIRECT : SPHG_DIFFERENCE,
                         comparison_random_field(on, shape, 3), way > 2 ? weights(on, 4) : NULL,
@@ -88,7 +88,7 @@ static void compare_all(const comparison *on)
 
 static void results_match_the_oracle(const test_case *test)
 {
-    for (int s = 0; s < scenes_hard_count; s++) {
+    for (int s = 0; s < scenes_hard_count; ++s) {
         const comparison on = comparison_of_scene(test, &scenes_hard[s]);
         compare_all(&on);
     }
@@ -107,19 +107,19 @@ static void shepard_keeps_constants(const test_case *test)
 {
     const comparison on = comparison_of_scene(test, &scenes_hard[5]);
     double *same = test_memory((size_t)on.points.count * sizeof *same);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         same[i] = 3;
-    for (int own = 0; own < 2; own++) {
+    for (int own = 0; own < 2; ++own) {
         const sum of = {SPHG_SCALAR, SPHG_DIRECT, same, own ? weights(&on, 5) : NULL, 1};
         const setup_array found = evaluate(&on, &of);
-        for (int i = 0; i < on.points.count; i++)
+        for (int i = 0; i < on.points.count; ++i)
             TEST_WITHIN(shepard_value,
                         fabs(setup_get(&found, i, 0) / 3 - 1) / test_unit_roundoff(test),
                         test_text("particle %d", i));
     }
     const sum of = {SPHG_SCALAR, SPHG_DIFFERENCE, same, NULL, 0};
     const setup_array still = evaluate(&on, &of);
-    for (int i = 0; i < on.points.count; i++)
+    for (int i = 0; i < on.points.count; ++i)
         assert_true(setup_get(&still, i, 0) == 0);
 }
 
@@ -129,7 +129,7 @@ static void nobody_gives_nothing(const test_case *test)
     const int d = test->dimension;
     const comparison on = block_of(test);
     cloud far = cloud_single(d);
-    for (int a = 0; a < d; a++)
+    for (int a = 0; a < d; ++a)
         far.x[a] = 77;
     const setup_array x = setup_positions(test, (cloud *)&on.points),
                       probe = setup_positions(test, &far);
@@ -194,7 +194,7 @@ static void every_path_gives_the_same(const test_case *test)
     const setup_array values = setup_numbers(type, n, d, numbers),
                       volumes = setup_numbers(type, n, 1, own),
                       x = setup_positions(test, (cloud *)&on.points);
-    for (int way = 0; way < 3; way++) {
+    for (int way = 0; way < 3; ++way) {
         const sum of = {SPHG_VECTOR, way ? SPHG_DIRECT : SPHG_DIFFERENCE, numbers,
                         way == 1 ? NULL : own, way > 0};
         const setup_array whole = evaluate(&on, &of);
@@ -206,13 +206,13 @@ static void every_path_gives_the_same(const test_case *test)
         TEST_REQUIRE(setup_same_bits(&whole, &found), "list-free, way %d", way);
         sphg_sources sources[2] = {comparison_sources(&on), comparison_sources(&on)};
         sphg_view at_sources[2], volume[2];
-        for (int s = 0; s < 2; s++) {
+        for (int s = 0; s < 2; ++s) {
             const ptrdiff_t first = s ? half : 0;
             sphg_view place = setup_view(&x), targets = setup_view(&x);
             at_sources[s] = setup_view(&values);
             volume[s] = setup_view(&volumes);
             sphg_view *const moved[] = {&place, &sources[s].volume, &at_sources[s], &volume[s]};
-            for (int v = 0; v < 4; v++)
+            for (int v = 0; v < 4; ++v)
                 moved[v]->x = (const char *)moved[v]->x + first * moved[v]->stride;
             /* the first set has the targets' first as sources: part of neither */
             sphg_geometry apart = sphg_targets_apart(targets, n, place, s ? n - half : half);
@@ -246,7 +246,7 @@ static void classic_differences_are_values_less_ones_own(const test_case *test)
     const sum of = {SPHG_SCALAR, SPHG_DIFFERENCE, numbers, NULL, 0},
               direct = {SPHG_SCALAR, SPHG_DIRECT, numbers, NULL, 0};
     const setup_array difference = evaluate(&on, &of), value = evaluate(&on, &direct);
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         const double error = setup_get(&difference, i, 0) + numbers[i] - setup_get(&value, i, 0);
         TEST_REQUIRE(fabs(error) < 2e3 * test_unit_roundoff(test), "particle %d: %g", i, error);
     }
@@ -277,8 +277,8 @@ static void contractions_are_those_of_the_jacobian(const test_case *test)
                       tensors = setup_numbers(type, n, d * d,
                                               comparison_random_field(&on, SPHG_TENSOR, 14));
     const sphg_view at_sources = setup_view(&values);
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; form++)
-        for (int order = 1; order <= 2; order++) {
+    for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form)
+        for (int order = 1; order <= 2; ++order) {
             const setup_array jacobian = setup_output(type, n, d * d),
                               found = setup_output(type, n, 1), alone = setup_output(type, n, 1);
             sphg_scheme scheme = on.scheme;
@@ -301,9 +301,9 @@ static void contractions_are_those_of_the_jacobian(const test_case *test)
             field.gradient = setup_view(&jacobian);
             SETUP_OK(on.context, sphg_evaluate(on.context, &scheme, &request));
             TEST_REQUIRE(setup_same_bits(&alone, &found), "alone, form %d", form);
-            for (int i = 0; i < n; i++) {
+            for (int i = 0; i < n; ++i) {
                 double sum_of = 0, size = 0;
-                for (int k = 0; k < d * d; k++) {
+                for (int k = 0; k < d * d; ++k) {
                     const double term = setup_get(&jacobian, i, k) * setup_get(&tensors, i, k);
                     sum_of += term;
                     size += fabs(term);

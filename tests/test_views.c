@@ -81,8 +81,8 @@ static unsigned char *address(const placed *own, int item, int component)
 static sphg_view laid_out(const setup_array *array, int height, layout kind)
 {
     const placed own = place(array->type, height, array->width / height, kind);
-    for (int i = 0; i < COUNT; i++)
-        for (int k = 0; k < array->width; k++)
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < array->width; ++k)
             memcpy(address(&own, i, k),
                    (const char *)array->data + (size_t)(i * array->width + k) * own.size, own.size);
     return own.view;
@@ -92,13 +92,13 @@ static sphg_view laid_out(const setup_array *array, int height, layout kind)
 static void require_placed(const placed *found, const placed *packed, const char *where)
 {
     const int width = found->height * found->columns;
-    for (int i = 0; i < COUNT; i++)
-        for (int k = 0; k < width; k++) {
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < width; ++k) {
             TEST_REQUIRE(memcmp(address(found, i, k), address(packed, i, k), found->size) == 0,
                          "%s: item %d, number %d", where, i, k);
             memset(address(found, i, k), CANARY, found->size);
         }
-    for (size_t k = 0; k < found->bytes; k++)
+    for (size_t k = 0; k < found->bytes; ++k)
         TEST_REQUIRE(found->memory[k] == CANARY, "%s: byte %zu is not part of the view", where, k);
 }
 
@@ -115,7 +115,7 @@ typedef struct comparison {
 static setup_array numbers_of(const test_case *test, int width, double low, random_state *random)
 {
     double *numbers = test_memory((size_t)(COUNT * width) * sizeof *numbers);
-    for (int k = 0; k < COUNT * width; k++)
+    for (int k = 0; k < COUNT * width; ++k)
         numbers[k] = random_between(random, low, 1);
     return setup_numbers(test_field_type(test), COUNT, width, numbers);
 }
@@ -190,10 +190,10 @@ static void layouts_hold_the_same_bits(const test_case *test)
 {
     const comparison own = comparison_of(test);
     const outputs packed = evaluate(&own, PACKED, PACKED);
-    for (int in = 0; in < LAYOUTS; in++)
-        for (int out = 0; out < LAYOUTS; out++) {
+    for (int in = 0; in < LAYOUTS; ++in)
+        for (int out = 0; out < LAYOUTS; ++out) {
             const outputs found = evaluate(&own, (layout)in, (layout)out);
-            for (int k = 0; k < OUTPUTS; k++)
+            for (int k = 0; k < OUTPUTS; ++k)
                 require_placed(
                     &found.of[k], &packed.of[k],
                     test_text("%s to %s, output %d", layout_names[in], layout_names[out], k));
@@ -205,7 +205,7 @@ static void layouts_hold_the_same_bits(const test_case *test)
 static setup_array repeated(const setup_array *first)
 {
     double numbers[COUNT * 9];
-    for (int k = 0; k < COUNT * first->width; k++)
+    for (int k = 0; k < COUNT * first->width; ++k)
         numbers[k] = setup_get(first, 0, k % first->width);
     return setup_numbers(first->type, COUNT, first->width, numbers);
 }
@@ -243,7 +243,7 @@ static void stride_zero_is_one_item_for_all(const test_case *test)
     const setup_array table = numbers_of(test, sphg_correction_width(&own.scheme), 0.5, &random);
     const setup_array volumes = repeated(&own.volume), stresses = repeated(&own.tensor);
     setup_array tables = setup_output(table.type, COUNT, table.width);
-    for (int i = 0; i < COUNT; i++)
+    for (int i = 0; i < COUNT; ++i)
         memcpy((char *)tables.data + (size_t)i * (size_t)setup_view(&table).stride, table.data,
                (size_t)setup_view(&table).stride);
     const setup_array once = force_of(&own, neighbors, single(&volumes), single(&volumes),
@@ -284,8 +284,8 @@ static void accumulation_adds_to_what_is_there(const test_case *test)
         setup_numbers(own.scalar.type, COUNT, width, setup_doubles(&own.tensor));
     jacobian_into(&own, neighbors, NULL, 0, &plain);
     jacobian_into(&own, neighbors, NULL, 1, &sum);
-    for (int i = 0; i < COUNT; i++)
-        for (int k = 0; k < width; k++) {
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < width; ++k) {
             const double before = setup_get(&own.tensor, i, k), added = setup_get(&plain, i, k);
             const double error = fabs(setup_get(&sum, i, k) - (before + added));
             TEST_WITHIN(one_addition, error / (unit * (fabs(before) + fabs(added))),
@@ -305,7 +305,7 @@ static void accumulation_leaves_unselected_targets_alone(const test_case *test)
     memset(whole.data, 0, (size_t)setup_view(&whole).stride * COUNT);
     memset(parts.data, 0, (size_t)setup_view(&parts).stride * 61);
     jacobian_into(&own, neighbors, &first, 1, &parts);
-    for (int i = 61; i < COUNT; i++)
+    for (int i = 61; i < COUNT; ++i)
         assert_true(setup_is_canary(&parts, i));
     memset(parts.data, 0, (size_t)setup_view(&parts).stride * COUNT);
     jacobian_into(&own, neighbors, &first, 1, &parts);
@@ -330,9 +330,9 @@ static void wide_positions_keep_their_differences(const test_case *test)
     const outputs shifted = evaluate(&own, PACKED, PACKED);
     const float *a = near.of[JACOBIAN].view.x, *b = shifted.of[JACOBIAN].view.x;
     float largest = 0;
-    for (int k = 0; k < COUNT * test->dimension * test->dimension; k++)
+    for (int k = 0; k < COUNT * test->dimension * test->dimension; ++k)
         largest = fmaxf(largest, fabsf(a[k]));
-    for (int k = 0; k < COUNT * test->dimension * test->dimension; k++)
+    for (int k = 0; k < COUNT * test->dimension * test->dimension; ++k)
         TEST_WITHIN(order_of_summation,
                     fabs((double)a[k] - (double)b[k]) / ((double)largest * 0x1p-24),
                     test_method_name(test->method));
@@ -356,7 +356,7 @@ static void many_fields_have_the_bits_of_each_alone(const test_case *test)
     sphg_view values[FIELDS];
     setup_array together[FIELDS], alone = setup_output(type, COUNT, test->dimension);
     sphg_field fields[FIELDS];
-    for (int k = 0; k < FIELDS; k++) {
+    for (int k = 0; k < FIELDS; ++k) {
         const setup_array numbers =
             setup_numbers(type, COUNT, 1, cloud_numbers(&points, -1, 1, &random));
         values[k] = setup_view(&numbers);
@@ -367,7 +367,7 @@ static void many_fields_have_the_bits_of_each_alone(const test_case *test)
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = fields, .field_count = FIELDS};
     SETUP_OK(context, sphg_evaluate(context, &scheme, &request));
-    for (int k = 0; k < FIELDS; k++) {
+    for (int k = 0; k < FIELDS; ++k) {
         SETUP_OK(context,
                  sphg_gradient(context, &scheme, &sources, NULL, values[k], setup_view(&alone)));
         TEST_REQUIRE(setup_same_bits(&together[k], &alone), "field %d", k);

@@ -13,7 +13,7 @@ static comparison uneven_stage(const test_case *test, const char *name, cloud po
     random_state random = random_seeded(seed);
     const comparison even = comparison_of(test, name, points, 2.25 * points.spacing);
     double *volume = test_memory((size_t)points.count * sizeof *volume);
-    for (int i = 0; i < points.count; i++) {
+    for (int i = 0; i < points.count; ++i) {
         const double share = pow(points.spacing, test->dimension);
         const double grown = i % 20 ? pow(10, random_between(&random, 0, decades)) : 1e12;
         const double given = share * grown;
@@ -34,7 +34,7 @@ static void smallest_moments_are_never_negative(const test_case *test)
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .lambda_min = setup_view(&lambda), .stats = &stats};
     SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
-    for (int i = 0; i < on.points.count; i++) {
+    for (int i = 0; i < on.points.count; ++i) {
         const double found = setup_get(&lambda, i, 0);
         TEST_REQUIRE(found >= 0 && !signbit(found), "lambda_min %g of particle %d", found, i);
     }
@@ -46,7 +46,7 @@ static void ranks_at(const comparison *even, double share, double *none, double 
 {
     const int count = even->points.count, d = even->points.dimension;
     double *volume = test_memory((size_t)count * sizeof *volume);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; ++i)
         volume[i] = share * pow(even->points.spacing, d);
     const comparison on = comparison_with_volumes(even, volume);
     const sphg_sources sources = comparison_sources(&on);
@@ -67,7 +67,7 @@ static void volumes_in_a_wrong_unit_take_the_rank(const test_case *test)
     const comparison even = comparison_of(test, "block", points, 2 * points.spacing);
     const double shares[] = {1000, 1, .5, .02, .001};
     double none, full;
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 5; ++k) {
         ranks_at(&even, shares[k], &none, &full);
         const int kept = shares[k] >= .5 || sphg_correction_width(&even.scheme) > 6;
         TEST_REQUIRE(kept ? full == 100 : none == 100, "volumes times %g: rank 0 %g %%, full %g %%",
@@ -101,7 +101,7 @@ static void every_form_matches_the_oracle(const test_case *test)
     const comparison stages[] = {
         uneven_stage(test, "uneven block", cloud_jittered(d, side, .125, .3, &random), 12, 73),
         uneven_stage(test, "uneven layers", cloud_sheets(d, side, .125, .01), 12, 74)};
-    for (int s = 0; s < 2; s++)
+    for (int s = 0; s < 2; ++s)
         for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy += SPHG_IDENTITY) {
             const comparison on = comparison_under(&stages[s], (sphg_policy)policy, 0);
             const setup_array table = comparison_table(&on);
@@ -119,10 +119,10 @@ static comparison layers_with(const test_case *test, double lambda, double thres
 {
     const int d = test->dimension, side = d == 2 ? 10 : 5;
     double gap = .125 * sqrt(threshold);
-    for (int round = 0;; round++) {
+    for (int round = 0;; ++round) {
         cloud points = cloud_sheets(d, side, .125, gap);
         double *volume = test_memory((size_t)points.count * sizeof *volume);
-        for (int i = 0; i < points.count; i++)
+        for (int i = 0; i < points.count; ++i)
             volume[i] = (double)(float)pow(.125, d);
         cloud_rotate(&points, random);
         const comparison even = comparison_of(test, "layers", points, .28);
@@ -143,19 +143,19 @@ static void forces_stay_within_their_bounds_where_the_blend_begins(const test_ca
     const double threshold = 1e-4;
     random_state random = random_seeded(76);
     int blended = 0;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         const comparison on = layers_with(test, threshold * (1 + 3 * above[k]), threshold, &random);
         const setup_array table = comparison_table(&on);
         const int half = on.points.count / 2;
         const oracle_point *middle = oracle_at(on.reference, half / 2);
         blended += middle->filter.lambda_min > threshold && middle->rank < test->dimension;
-        for (int shape = SPHG_SCALAR; shape <= SPHG_VECTOR; shape++) {
+        for (int shape = SPHG_SCALAR; shape <= SPHG_VECTOR; ++shape) {
             const comparison_field forces[] = {
                 {(sphg_shape)shape, SPHG_ADJOINT,
                  comparison_random_field(&on, (sphg_shape)shape, 6)},
                 {(sphg_shape)shape, SPHG_SYMMETRIC,
                  comparison_random_field(&on, (sphg_shape)shape, 7)}};
-            for (int f = 0; f < 2; f++) {
+            for (int f = 0; f < 2; ++f) {
                 const comparison_result found = comparison_apply(&on, &forces[f], &table);
                 comparison_compare(&on, &forces[f], &found, half / 2);
                 comparison_compare(&on, &forces[f], &found, half + half / 2);
@@ -174,14 +174,14 @@ static void targets_without_extent_match_the_oracle(const test_case *test)
     const cloud points = cloud_jittered(d, side, .125, .2, &random);
     const comparison even = comparison_of(test, "block", points, .28);
     double *volume = test_memory((size_t)points.count * sizeof *volume);
-    for (int i = 0; i < points.count; i++)
+    for (int i = 0; i < points.count; ++i)
         volume[i] = i % 3 ? even.scene.volume[i] : 0;
     const comparison filled = comparison_with_volumes(&even, volume);
-    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; policy++) {
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
         const comparison on = comparison_under(&filled, (sphg_policy)policy, 0);
         const setup_array table = comparison_table(&on);
         for (int i = 0; i < points.count; i += 3)
-            for (int k = 0; k < table.width && test->method == SPHG_MLS; k++)
+            for (int k = 0; k < table.width && test->method == SPHG_MLS; ++k)
                 TEST_REQUIRE(setup_get(&table, i, k) == 0, "C of particle %d is not 0", i);
         compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table, 24);
         compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table, 24);
@@ -197,7 +197,7 @@ enum { FEW = 7, KINDS = 5 };
 static cloud mirrored_cloud(int d, random_state *random)
 {
     cloud points = cloud_random(d, FEW, .5, random);
-    for (int k = 0; k < FEW * d; k++)
+    for (int k = 0; k < FEW * d; ++k)
         if (k / d % 2 == 0)
             points.x[k] = k < d ? 0 : -points.x[k - d];
     return points;
@@ -213,7 +213,7 @@ static cloud few_particles(int d, int kind, random_state *random)
                    : kind == 3 ? cloud_random(d, FEW, .5, random)
                                : mirrored_cloud(d, random);
     const double thick = kind == 4 ? 0 : .25 * pow(10, random_between(random, -6, -1));
-    for (int k = 0; k < points.count * d; k++)
+    for (int k = 0; k < points.count * d; ++k)
         points.x[k] += thick * random_between(random, -1, 1);
     cloud_rotate(&points, random);
     return points;
@@ -234,7 +234,7 @@ static void compare_first(const comparison *on, const setup_array *table)
 static void few_particles_stay_within_their_bounds(const test_case *test)
 {
     random_state random = random_seeded(80);
-    for (int k = 0; k < 2 * KINDS; k++) {
+    for (int k = 0; k < 2 * KINDS; ++k) {
         const comparison even =
             uneven_stage(test, "few particles", few_particles(test->dimension, k % KINDS, &random),
                          k % 3 * 6, random_bits(&random));

@@ -97,7 +97,7 @@ static void compute(const struct study *study, enum study_field field, sphg_meth
 {
     const sphg_scheme scheme = scheme_of(study, method);
     struct numbers velocities = numbers_create(study->volumes.type, study->count, 2);
-    for (int32_t i = 0; i < study->count; i++) {
+    for (int32_t i = 0; i < study->count; ++i) {
         double velocity[2];
         study_velocity(study, field, i, velocity);
         numbers_set(&velocities, i, 0, velocity[0]);
@@ -119,7 +119,7 @@ static void compute(const struct study *study, enum study_field field, sphg_meth
 static double gradient_error(const struct numbers *jacobians, int32_t i, const double expected[4])
 {
     double sum = 0;
-    for (int32_t k = 0; k < 4; k++) {
+    for (int32_t k = 0; k < 4; ++k) {
         const double difference = numbers_get(jacobians, i, k) - expected[k];
         sum += difference * difference;
     }
@@ -134,7 +134,7 @@ struct study_errors study_measure(const struct study *study, enum study_field fi
     compute(study, field, method, &jacobians, &curls);
     struct study_errors errors = {0};
     int32_t boundary_count = 0;
-    for (int32_t i = 0; i < study->count; i++) {
+    for (int32_t i = 0; i < study->count; ++i) {
         double expected[4];
         true_jacobian(study, field, i, expected);
         const double error = gradient_error(&jacobians, i, expected);

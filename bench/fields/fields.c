@@ -32,19 +32,19 @@ static void write_particles(const char *folder, const char *name, const struct s
                                               {NULL, "y", NULL, NULL},
                                               {NULL, "vx", NULL, NULL},
                                               {NULL, "vy", NULL, NULL}};
-    for (int k = 0; k < 2 * METHODS; k++)
+    for (int k = 0; k < 2 * METHODS; ++k)
         columns[4 + k].key = table_text("%s_error_%s", k < METHODS ? "gradient" : "curl",
                                         method_names[order[k % METHODS]]);
     struct table *table = table_create("", columns);
-    for (int32_t i = 0; i < study->count; i++) {
+    for (int32_t i = 0; i < study->count; ++i) {
         struct cell cells[4 + 2 * METHODS];
         double velocity[2];
         study_velocity(study, field, i, velocity);
-        for (int axis = 0; axis < 2; axis++) {
+        for (int axis = 0; axis < 2; ++axis) {
             cells[axis] = cell_number(numbers_get(&study->positions, i, axis));
             cells[2 + axis] = cell_number(velocity[axis]);
         }
-        for (int k = 0; k < 2 * METHODS; k++)
+        for (int k = 0; k < 2 * METHODS; ++k)
             cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->count + i]);
         table_add(table, cells, 4 + 2 * METHODS);
     }
@@ -57,7 +57,7 @@ static void measure_field(const char *folder, const struct study *study, enum st
 {
     const size_t count = (size_t)study->count;
     double *errors = allocate_or_exit(2 * METHODS * count, sizeof *errors);
-    for (int k = 0; k < METHODS; k++)
+    for (int k = 0; k < METHODS; ++k)
         results->errors[field][k][size] =
             study_measure(study, field, order[k], errors + (size_t)k * count,
                           errors + (size_t)(METHODS + k) * count);
@@ -70,11 +70,11 @@ static void measure_field(const char *folder, const struct study *study, enum st
 
 static void measure(const char *folder, struct lattice_results *results)
 {
-    for (int size = 0; size < SIZES; size++) {
+    for (int size = 0; size < SIZES; ++size) {
         struct study_setting setting = results->setting;
         setting.side <<= size;
         struct study study = study_open(&setting);
-        for (int field = 0; field < KINDS; field++)
+        for (int field = 0; field < KINDS; ++field)
             measure_field(folder, &study, (enum study_field)field, results, size);
         study_close(&study);
     }
@@ -92,9 +92,9 @@ static struct table *table_of_errors(const struct lattice_results *results)
                                             {"curl max", NULL, "%.3e", NULL},
                                             {0}};
     struct table *table = table_create("", columns);
-    for (int field = 0; field < KINDS; field++) {
+    for (int field = 0; field < KINDS; ++field) {
         table_section(table, study_field_formula((enum study_field)field));
-        for (int k = 0; k < METHODS; k++) {
+        for (int k = 0; k < METHODS; ++k) {
             const struct study_errors *e = &results->errors[field][k][0];
             TABLE_ROW(table, cell_text(method_names[order[k]]), cell_number(e->boundary_max),
                       cell_number(e->boundary_mean), cell_number(e->inside_max),
@@ -116,16 +116,16 @@ static struct table *table_of_convergence(const struct lattice_results *results)
     const char *const halves[] = {"boundary", "inside"};
     const int32_t side = results->setting.side;
     columns[0] = (struct column){"convergence, trigonometric, max", NULL, NULL, NULL};
-    for (int half = 0; half < 2; half++) {
+    for (int half = 0; half < 2; ++half) {
         columns[4 * half + 1].head = table_text("%s N = %d", halves[half], (int)side);
         columns[4 * half + 2].head = table_text("%d", 2 * (int)side);
         columns[4 * half + 3].head = table_text("%d", 4 * (int)side);
         columns[4 * half + 4] = (struct column){"order", NULL, "%.2f", NULL};
-        for (int size = 0; size < SIZES; size++)
+        for (int size = 0; size < SIZES; ++size)
             columns[4 * half + 1 + size].format = "%.3e";
     }
     struct table *table = table_create("", columns);
-    for (int k = 0; k < METHODS; k++) {
+    for (int k = 0; k < METHODS; ++k) {
         const struct study_errors *e = results->errors[FIELD_TRIGONOMETRIC][k];
         TABLE_ROW(table, cell_text(method_names[order[k]]), cell_number(e[0].boundary_max),
                   cell_number(e[1].boundary_max), cell_number(e[2].boundary_max),
@@ -162,7 +162,7 @@ static void write_convergence(const char *folder, const struct lattice_results r
                                             {NULL, "curl_max", NULL, NULL},
                                             {0}};
     struct table *table = table_create("", columns);
-    for (int n = 0; n < 2 * KINDS * METHODS * SIZES; n++) {
+    for (int n = 0; n < 2 * KINDS * METHODS * SIZES; ++n) {
         const int size = n % SIZES, k = n / SIZES % METHODS, field = n / SIZES / METHODS % KINDS;
         const struct lattice_results *lattice = &results[n / SIZES / METHODS / KINDS];
         const struct study_errors *e = &lattice->errors[field][k][size];
@@ -211,8 +211,8 @@ static bool draw(const char *folder, const struct lattice_results *results,
 
 static bool draw_all(const char *folder, const struct lattice_results results[2])
 {
-    for (int lattice = 0; lattice < 2; lattice++)
-        for (size_t k = 0; k < sizeof pictures / sizeof pictures[0]; k++)
+    for (int lattice = 0; lattice < 2; ++lattice)
+        for (size_t k = 0; k < sizeof pictures / sizeof pictures[0]; ++k)
             if (!draw(folder, &results[lattice], &pictures[k]))
                 return false;
     return true;
@@ -247,7 +247,7 @@ int command_fields(int argc, char **argv)
            "difference form, %s, H = %g d, d = 2 / N, %s, V_j = 1 / sum_k W_jk (j included)\n"
            "boundary: the two outermost layers\n",
            kernel_title(settings.kernel), settings.support, precision_names[settings.precision]);
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         measure(settings.output, &results[k]);
         print_lattice(&results[k]);
     }

@@ -16,7 +16,7 @@ static void report_results(const struct forces *forces)
         {"error", "error", "%.1e", NULL},     {0}};
     const struct settings *settings = &forces->settings;
     struct table *table = table_create("forces", columns);
-    for (int k = 0; k < FORCE_CASES; k++)
+    for (int k = 0; k < FORCE_CASES; ++k)
         TABLE_ROW(table, cell_text(force_cases[k].name),
                   cell_text(method_names[force_cases[k].method]),
                   cell_time(&forces->times[k][0], 1), cell_time(&forces->times[k][1], 1),

@@ -68,7 +68,7 @@ static void run(struct stage *stage, const struct force_case *one, int supply)
 static double divergence_error(const struct numbers *results)
 {
     double most = 0;
-    for (int32_t i = 0; i < results->count; i++)
+    for (int32_t i = 0; i < results->count; ++i)
         most = numbers_larger(most, fabs(numbers_get(results, i, 0) / 2 - 1));
     return most;
 }
@@ -77,9 +77,9 @@ static double divergence_error(const struct numbers *results)
 static double momentum_error(const struct numbers *results)
 {
     double most = 0;
-    for (int32_t c = 0; c < results->width; c++) {
+    for (int32_t c = 0; c < results->width; ++c) {
         double sum = 0, size = 0;
-        for (int32_t i = 0; i < results->count; i++) {
+        for (int32_t i = 0; i < results->count; ++i) {
             const double f = numbers_get(results, i, c);
             sum += f;
             size += fabs(f);
@@ -99,8 +99,8 @@ static double error_of(struct stage *stage, const struct force_case *one)
 
 static void fill_fields(struct stage *stage)
 {
-    for (int32_t i = 0; i < stage->particles.count; i++) {
-        for (int32_t c = 0; c < 6; c++) {
+    for (int32_t i = 0; i < stage->particles.count; ++i) {
+        for (int32_t c = 0; c < 6; ++c) {
             const double x = numbers_get(&stage->particles.positions, i, c % 3);
             numbers_set(&stage->tensors, i, c, 1 + cos((3 + c) * x));
         }
@@ -142,7 +142,7 @@ static struct stage open_stage(struct forces *forces)
                           .particles = particles_create(&source)};
     const int32_t count = forces->count = stage.particles.count;
     const sphg_type type = field_type(forces->settings.precision);
-    for (int method = 0; method < METHODS; method++)
+    for (int method = 0; method < METHODS; ++method)
         stage.scheme[method] =
             (sphg_scheme){.method = (sphg_method)method,
                           .dimension = 3,
@@ -153,25 +153,25 @@ static struct stage open_stage(struct forces *forces)
     stage.results[0] = numbers_create(type, count, 1);
     stage.results[1] = numbers_create(type, count, 3);
     fill_fields(&stage);
-    for (int supply = 0; supply < FORCE_SUPPLIES; supply++)
+    for (int supply = 0; supply < FORCE_SUPPLIES; ++supply)
         search(&stage, supply);
-    for (int k = 0; k < FORCE_CASES; k++)
+    for (int k = 0; k < FORCE_CASES; ++k)
         correct(&stage, force_cases[k].method);
     return stage;
 }
 
 static void close_stage(struct stage *stage)
 {
-    for (int supply = 0; supply < FORCE_SUPPLIES; supply++)
+    for (int supply = 0; supply < FORCE_SUPPLIES; ++supply)
         sphg_neighbors_destroy(stage->neighbors[supply]);
     sphg_context_destroy(stage->context);
     particles_destroy(&stage->particles);
     numbers_destroy(&stage->velocities);
     numbers_destroy(&stage->tensors);
     numbers_destroy(&stage->densities);
-    for (int method = 0; method < METHODS; method++)
+    for (int method = 0; method < METHODS; ++method)
         numbers_destroy(&stage->corrections[method]);
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         numbers_destroy(&stage->results[k]);
 }
 
@@ -180,8 +180,8 @@ static void close_stage(struct stage *stage)
 static void measure_round(struct stage *stage, bool is_first)
 {
     struct forces *forces = stage->forces;
-    for (int k = 0; k < FORCE_CASES; k++)
-        for (int supply = 0; supply < FORCE_SUPPLIES; supply++) {
+    for (int k = 0; k < FORCE_CASES; ++k)
+        for (int supply = 0; supply < FORCE_SUPPLIES; ++supply) {
             run(stage, &force_cases[k], supply);
             const struct moment start = now();
             run(stage, &force_cases[k], supply);
@@ -199,7 +199,7 @@ void forces_measure(struct forces *forces)
     const int32_t rounds = forces->settings.repetitions;
     forces->pairs =
         (double)library_info(stage.context, stage.neighbors[0]).pairs / stage.particles.count;
-    for (int32_t round = 0; round <= rounds; round++) {
+    for (int32_t round = 0; round <= rounds; ++round) {
         progress_show("forces: round %d of %d", round, rounds);
         measure_round(&stage, round == 0);
     }

@@ -15,7 +15,7 @@ static void create_points(struct frontier *frontier)
 {
     const int room = FRONTIER_METHODS * FRONTIER_KERNELS * FRONTIER_PRECISIONS * PATHS * 2;
     frontier->points = allocate_to_the_end((size_t)room, sizeof *frontier->points);
-    for (int k = 0; k < room; k++) {
+    for (int k = 0; k < room; ++k) {
         const struct frontier_point point = {
             .by_table = k % 2,
             .path = (enum frontier_path)(k / 2 % PATHS),
@@ -74,7 +74,7 @@ static struct table *create_table(void)
 static void add_fastest(struct table *table, const struct frontier *frontier, sphg_method method,
                         enum precision precision, enum frontier_side side)
 {
-    for (int k = 0; k < frontier->point_count; k++) {
+    for (int k = 0; k < frontier->point_count; ++k) {
         const struct frontier_point *point = &frontier->points[k];
         if (point->method == method && point->precision == precision &&
             frontier_side(point) == side) {
@@ -88,7 +88,7 @@ static void print_fastest(const struct frontier *frontier)
 {
     struct table *table = create_table();
     printf("\nfastest way of each method and precision, whatever its error\n");
-    for (int k = 0; k < FRONTIER_METHODS * FRONTIER_PRECISIONS * SIDES; k++)
+    for (int k = 0; k < FRONTIER_METHODS * FRONTIER_PRECISIONS * SIDES; ++k)
         add_fastest(table, frontier, (sphg_method)(k / SIDES / FRONTIER_PRECISIONS),
                     (enum precision)(k / SIDES % FRONTIER_PRECISIONS),
                     (enum frontier_side)(k % SIDES));
@@ -99,7 +99,7 @@ static void print_frontier(const struct frontier *frontier, enum frontier_field 
                            enum frontier_side side, const char *title)
 {
     struct table *table = create_table();
-    for (int k = 0; k < frontier->point_count; k++)
+    for (int k = 0; k < frontier->point_count; ++k)
         if (frontier->points[k].on_frontier[field] && frontier_side(&frontier->points[k]) == side)
             add_point(table, frontier, &frontier->points[k]);
     printf("\n%s\n", title);
@@ -123,9 +123,9 @@ static struct table *table_of_steps(const struct frontier *frontier)
     static const char *const fields[] = {"trigonometric", "linear"}, *const sides[] = {"search",
                                                                                        "host"};
     struct table *table = table_create("", columns);
-    for (int n = 0; n < FRONTIER_FIELDS * SIDES; n++) {
+    for (int n = 0; n < FRONTIER_FIELDS * SIDES; ++n) {
         int mark = 0;
-        for (int k = 0; k < frontier->point_count; k++) {
+        for (int k = 0; k < frontier->point_count; ++k) {
             const struct frontier_point *point = &frontier->points[k];
             if (!point->on_frontier[n / SIDES] || (int)frontier_side(point) != n % SIDES)
                 continue;
@@ -137,7 +137,7 @@ static struct table *table_of_steps(const struct frontier *frontier)
                 cell_number(frontier_error(point, (enum frontier_field)(n / SIDES))),
                 cell_text(method_names[point->method]), cell_text(kernel_title(point->kernel)),
                 cell_text(precision_names[point->precision]), path_of(point), option_of(point));
-            mark++;
+            ++mark;
         }
     }
     return table;
@@ -176,7 +176,7 @@ static void write_results(const struct frontier *frontier)
     static const char *const parts[] = {"frontier/frontier.gp", NULL};
     const struct settings *settings = &frontier->settings;
     struct table *all = create_table();
-    for (int k = 0; k < frontier->point_count; k++)
+    for (int k = 0; k < frontier->point_count; ++k)
         add_point(all, frontier, &frontier->points[k]);
     table_write_csv(all, settings->output, "frontier.csv");
     table_write_csv(table_of_steps(frontier), settings->output, "frontier_steps.csv");

@@ -25,14 +25,14 @@ struct scene {
 static void evaluate_field(enum frontier_field field, const double x[3], double v[3], double j[9])
 {
     const double k = 2 * 3.14159265358979323846 / wave_length;
-    for (int n = 0; n < 9; n++)
+    for (int n = 0; n < 9; ++n)
         j[n] = 0;
     if (field == FRONTIER_LINEAR) {
         v[0] = -x[1], v[1] = x[0], v[2] = 2 * x[2];
         j[1] = -1, j[3] = 1, j[8] = 2;
         return;
     }
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
         const int b = (a + 1) % 3;
         v[a] = sin(k * x[a]) * cos(k * x[b]);
         j[3 * a + a] = k * cos(k * x[a]) * cos(k * x[b]);
@@ -42,17 +42,17 @@ static void evaluate_field(enum frontier_field field, const double x[3], double 
 
 static void position_of(const struct scene *scene, int32_t i, double x[3])
 {
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         x[axis] = numbers_get(&scene->particles.positions, i, axis);
 }
 
 static void fill_field(struct scene *scene, enum frontier_field field)
 {
     double x[3], v[3], j[9];
-    for (int32_t i = 0; i < scene->particles.count; i++) {
+    for (int32_t i = 0; i < scene->particles.count; ++i) {
         position_of(scene, i, x);
         evaluate_field(field, x, v, j);
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             numbers_set(&scene->fields[field], i, axis, v[axis]);
     }
 }
@@ -97,11 +97,11 @@ static void measure_error(const struct scene *scene, struct frontier_point *poin
 {
     double x[3], v[3], expected[9], sum = 0, most = 0, squares = 0;
     run(scene, point, field);
-    for (int32_t i = 0; i < scene->particles.count; i++) {
+    for (int32_t i = 0; i < scene->particles.count; ++i) {
         double difference = 0;
         position_of(scene, i, x);
         evaluate_field(field, x, v, expected);
-        for (int32_t k = 0; k < 9; k++) {
+        for (int32_t k = 0; k < 9; ++k) {
             const double d = numbers_get(&scene->jacobians, i, k) - expected[k];
             difference += d * d;
             squares += expected[k] * expected[k];
@@ -144,11 +144,11 @@ static struct scene open_scene(const struct settings *settings, sphg_context *co
     const int32_t count = scene.particles.count;
     scene.corrections = numbers_create(type, count, sphg_correction_width(&widest));
     scene.jacobians = numbers_create(type, count, 9);
-    for (int field = 0; field < FRONTIER_FIELDS; field++) {
+    for (int field = 0; field < FRONTIER_FIELDS; ++field) {
         scene.fields[field] = numbers_create(type, count, 3);
         fill_field(&scene, (enum frontier_field)field);
     }
-    for (int path = 0; path < PATHS; path++)
+    for (int path = 0; path < PATHS; ++path)
         scene.neighbors[path] = library_neighbors(context);
     export_lists(&scene);
     return scene;
@@ -156,9 +156,9 @@ static struct scene open_scene(const struct settings *settings, sphg_context *co
 
 static void close_scene(struct scene *scene)
 {
-    for (int path = 0; path < PATHS; path++)
+    for (int path = 0; path < PATHS; ++path)
         sphg_neighbors_destroy(scene->neighbors[path]);
-    for (int field = 0; field < FRONTIER_FIELDS; field++)
+    for (int field = 0; field < FRONTIER_FIELDS; ++field)
         numbers_destroy(&scene->fields[field]);
     numbers_destroy(&scene->corrections);
     numbers_destroy(&scene->jacobians);
@@ -169,18 +169,18 @@ static void close_scene(struct scene *scene)
 
 static void measure_errors(struct frontier *frontier, const struct scene *scenes)
 {
-    for (int k = 0; k < frontier->point_count; k++) {
+    for (int k = 0; k < frontier->point_count; ++k) {
         struct frontier_point *point = &frontier->points[k];
         progress_show("errors: %d of %d", k + 1, frontier->point_count);
-        for (int field = 0; field < FRONTIER_FIELDS; field++)
+        for (int field = 0; field < FRONTIER_FIELDS; ++field)
             measure_error(&scenes[point->precision], point, (enum frontier_field)field);
     }
 }
 
 static void measure_times(struct frontier *frontier, const struct scene *scenes)
 {
-    for (int32_t round = 0; round < frontier->settings.repetitions; round++)
-        for (int k = 0; k < frontier->point_count; k++) {
+    for (int32_t round = 0; round < frontier->settings.repetitions; ++round)
+        for (int k = 0; k < frontier->point_count; ++k) {
             struct frontier_point *point = &frontier->points[k];
             if (k % 16 == 0)
                 progress_show("round %d of %d: %d of %d", round + 1, frontier->settings.repetitions,
@@ -217,7 +217,7 @@ static void find_frontier(struct frontier *frontier, enum frontier_field field,
 {
     const double smaller = field == FRONTIER_LINEAR ? 0.5 : 0.97;
     double least = INFINITY;
-    for (int k = 0; k < frontier->point_count; k++) {
+    for (int k = 0; k < frontier->point_count; ++k) {
         struct frontier_point *point = &frontier->points[k];
         const double error = frontier_error(point, field);
         if (frontier_side(point) != side || !(error < smaller * least))
@@ -231,7 +231,7 @@ void frontier_measure(struct frontier *frontier)
 {
     struct scene scenes[FRONTIER_PRECISIONS];
     sphg_context *context = library_open(frontier->settings.threads);
-    for (int precision = 0; precision < FRONTIER_PRECISIONS; precision++)
+    for (int precision = 0; precision < FRONTIER_PRECISIONS; ++precision)
         scenes[precision] = open_scene(&frontier->settings, context, (enum precision)precision);
     frontier->count = scenes[0].particles.count;
     frontier->pairs = (double)scenes[0].offsets[frontier->count] / frontier->count;
@@ -239,9 +239,9 @@ void frontier_measure(struct frontier *frontier)
     measure_times(frontier, scenes);
     progress_clear();
     qsort(frontier->points, (size_t)frontier->point_count, sizeof *frontier->points, compare_times);
-    for (int k = 0; k < FRONTIER_FIELDS * SIDES; k++)
+    for (int k = 0; k < FRONTIER_FIELDS * SIDES; ++k)
         find_frontier(frontier, (enum frontier_field)(k / SIDES), (enum frontier_side)(k % SIDES));
-    for (int precision = 0; precision < FRONTIER_PRECISIONS; precision++)
+    for (int precision = 0; precision < FRONTIER_PRECISIONS; ++precision)
         close_scene(&scenes[precision]);
     sphg_context_destroy(context);
 }

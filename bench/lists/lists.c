@@ -24,7 +24,7 @@ static struct table *table_of_supplies(const struct lists *lists, double ns_a_pa
                                             {NULL, "pairs", NULL, NULL},
                                             {0}};
     struct table *table = table_create("lists/sums", columns);
-    for (int supply = 0; supply < SUPPLIES; supply++) {
+    for (int supply = 0; supply < SUPPLIES; ++supply) {
         const struct samples *times = lists->supplied[supply];
         TABLE_ROW(table, cell_text(names[supply]), cell_time(&times[WORK_BUILD], ns_a_pair),
                   cell_time(&times[WORK_MATRICES], ns_a_pair),
@@ -42,7 +42,7 @@ static struct table *table_of_exports(const struct lists *lists, double ns_a_pai
                                             {"error", "error_max", "%.1e", NULL},
                                             {0}};
     struct table *table = table_create("lists/pairs", columns);
-    for (int k = 0; k < EXPORTS; k++)
+    for (int k = 0; k < EXPORTS; ++k)
         TABLE_ROW(table, cell_text(lists_exports[k].name),
                   cell_time(&lists->exported[k], ns_a_pair),
                   lists_exports[k].gradients ? cell_number(lists->exported_error[k]) : cell_none());

@@ -118,11 +118,11 @@ static double exported_error(const struct stage *stage, const struct lists_expor
     const int32_t begin = (count - 1) / block * block;
     struct numbers jacobian = numbers_create(SPHG_F64, 1, 9);
     double *sums = jacobian.data, most = 0;
-    for (int32_t i = begin; i < count; i++) {
-        for (int32_t k = 0; k < 9; k++)
+    for (int32_t i = begin; i < count; ++i) {
+        for (int32_t k = 0; k < 9; ++k)
             sums[k] = 0;
-        for (int64_t p = stage->out.offsets[i - begin]; p < stage->out.offsets[i - begin + 1]; p++)
-            for (int32_t k = 0; k < 9; k++)
+        for (int64_t p = stage->out.offsets[i - begin]; p < stage->out.offsets[i - begin + 1]; ++p)
+            for (int32_t k = 0; k < 9; ++k)
                 sums[k] += (numbers_get(&stage->field, stage->out.indices[p], k / 3) -
                             numbers_get(&stage->field, i, k / 3)) *
                            numbers_get(&stage->gradients, (int32_t)p, k % 3);
@@ -151,7 +151,7 @@ static void take_lists(struct stage *stage)
         .offsets = stage->offsets, .indices = stage->indices, .capacity = info.pairs};
     library_check(stage->context, sphg_pair_gradients(stage->context, &stage->scheme, &sources,
                                                       NULL, sphg_absent(), &pairs));
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; ++i) {
         stage->rows[i] = stage->indices + stage->offsets[i];
         stage->lengths[i] = (int32_t)(stage->offsets[i + 1] - stage->offsets[i]);
     }
@@ -173,14 +173,14 @@ static struct stage open_stage(struct lists *lists)
     stage.corrections = numbers_create(type, count, sphg_correction_width(&stage.scheme));
     stage.jacobians = numbers_create(type, count, 9);
     linear_field_fill(&stage.particles.positions, &stage.field);
-    for (int supply = 0; supply < SUPPLIES; supply++)
+    for (int supply = 0; supply < SUPPLIES; ++supply)
         stage.neighbors[supply] = library_neighbors(stage.context);
     return stage;
 }
 
 static void close_stage(struct stage *stage)
 {
-    for (int supply = 0; supply < SUPPLIES; supply++)
+    for (int supply = 0; supply < SUPPLIES; ++supply)
         sphg_neighbors_destroy(stage->neighbors[supply]);
     sphg_context_destroy(stage->context);
     particles_destroy(&stage->particles);
@@ -200,8 +200,8 @@ static void close_stage(struct stage *stage)
 static void measure_round(struct stage *stage, bool is_first)
 {
     struct lists *lists = stage->lists;
-    for (int supply = 0; supply < SUPPLIES; supply++) {
-        for (int work = 0; work < LISTS_WORKS; work++) {
+    for (int supply = 0; supply < SUPPLIES; ++supply) {
+        for (int work = 0; work < LISTS_WORKS; ++work) {
             const struct moment start = now();
             run(stage, (enum lists_supply)supply, (enum lists_work)work);
             if (!is_first)
@@ -210,7 +210,7 @@ static void measure_round(struct stage *stage, bool is_first)
         if (is_first)
             lists->supplied_error[supply] = linear_field_worst(&stage->jacobians, NULL);
     }
-    for (int k = 0; k < EXPORTS; k++) {
+    for (int k = 0; k < EXPORTS; ++k) {
         const struct moment start = now();
         export_pairs(stage, &lists_exports[k]);
         if (!is_first)
@@ -230,7 +230,7 @@ void lists_measure(struct lists *lists)
         command_line_refuse("--particles: more pairs than fit into an index");
     stage.gradients =
         numbers_create(field_type(lists->settings.precision), (int32_t)lists->pairs, 3);
-    for (int32_t round = 0; round <= rounds; round++) {
+    for (int32_t round = 0; round <= rounds; ++round) {
         progress_show("lists: round %d of %d", round, rounds);
         measure_round(&stage, round == 0);
     }

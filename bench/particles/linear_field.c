@@ -11,7 +11,7 @@ const char *linear_field_formula(int32_t dimension)
 
 void linear_field_fill(const struct numbers *positions, struct numbers *field)
 {
-    for (int32_t i = 0; i < positions->count; i++) {
+    for (int32_t i = 0; i < positions->count; ++i) {
         numbers_set(field, i, 0, -numbers_get(positions, i, 1));
         numbers_set(field, i, 1, numbers_get(positions, i, 0));
         if (positions->width == 3)
@@ -23,7 +23,7 @@ double linear_field_error(const struct numbers *jacobians, int32_t item)
 {
     const double *expected = jacobians->width == 9 ? volume : plane;
     double difference = 0, size = 0;
-    for (int32_t k = 0; k < jacobians->width; k++) {
+    for (int32_t k = 0; k < jacobians->width; ++k) {
         const double d = numbers_get(jacobians, item, k) - expected[k];
         difference += d * d;
         size += expected[k] * expected[k];
@@ -35,7 +35,7 @@ double linear_field_worst(const struct numbers *jacobians, const uint8_t *ranks)
 {
     const int32_t full = jacobians->width == 9 ? 3 : 2;
     double most = -1;
-    for (int32_t i = 0; i < jacobians->count; i++)
+    for (int32_t i = 0; i < jacobians->count; ++i)
         if (!ranks || ranks[i] == full)
             most = numbers_larger(most, linear_field_error(jacobians, i));
     return most < 0 ? (double)NAN : most;

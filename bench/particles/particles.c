@@ -27,7 +27,7 @@ static struct particles create_lattice(const struct particle_source *source)
     struct particles particles = {.dimension = 3, .volume_origin = "spacing^3"};
     create_tables(&particles, source->precision, lattice_count(&lattice));
     lattice_fill(&lattice, &particles.positions);
-    for (int32_t i = 0; i < particles.count; i++)
+    for (int32_t i = 0; i < particles.count; ++i)
         numbers_set(&particles.volumes, i, 0, lattice_spacing * lattice_spacing * lattice_spacing);
     return particles;
 }
@@ -80,7 +80,7 @@ static double volume_of(const struct particle_source *source, const struct csv *
 
 static bool is_constant(const struct csv *csv, int axis)
 {
-    for (int32_t i = 1; i < csv->row_count; i++)
+    for (int32_t i = 1; i < csv->row_count; ++i)
         if (csv->values[i][QUANTITY_X + axis] != csv->values[0][QUANTITY_X + axis])
             return false;
     return true;
@@ -91,11 +91,11 @@ static bool is_constant(const struct csv *csv, int axis)
 static void choose_axes(struct particles *particles, const struct csv *csv, int axes[3])
 {
     int missing = 0, flat = 0, last = -1;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const bool absent = csv->columns[QUANTITY_X + axis] < 0;
         missing += absent;
         if (absent || is_constant(csv, axis)) {
-            flat++;
+            ++flat;
             last = axis;
         }
     }
@@ -106,7 +106,7 @@ static void choose_axes(struct particles *particles, const struct csv *csv, int 
         snprintf(particles->flat, sizeof particles->flat, "2D: all %c are %g", "xyz"[last],
                  csv -> values[0][QUANTITY_X + last]);
     int count = 0;
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         if (particles->dimension == 3 || axis != last)
             axes[count++] = axis;
 }
@@ -115,7 +115,7 @@ static void describe_columns(struct particles *particles, const struct csv *csv)
 {
     size_t length = 0;
     const size_t size = sizeof particles->columns;
-    for (int quantity = 0; quantity < QUANTITIES && length < size; quantity++) {
+    for (int quantity = 0; quantity < QUANTITIES && length < size; ++quantity) {
         char name[32];
         if (csv->columns[quantity] >= 0)
             length += (size_t)snprintf(particles->columns + length, size - length, "%s%s",
@@ -127,8 +127,8 @@ static void describe_columns(struct particles *particles, const struct csv *csv)
 static void read_vectors(struct numbers *vectors, const struct csv *csv, enum quantity first,
                          const int axes[3])
 {
-    for (int32_t i = 0; i < vectors->count; i++)
-        for (int32_t k = 0; k < vectors->width; k++)
+    for (int32_t i = 0; i < vectors->count; ++i)
+        for (int32_t k = 0; k < vectors->width; ++k)
             store(vectors, i, k, csv->values[i][(int)first + axes[k]], csv);
 }
 
@@ -139,7 +139,7 @@ static void read_volumes(struct particles *particles, const struct particle_sour
         numbers_destroy(&particles->volumes);
         return;
     }
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         store(&particles->volumes, i, 0, volume_of(source, csv, i), csv);
 }
 

@@ -32,13 +32,13 @@ int64_t peer_search(const double (*positions)[3], int32_t count, double radius, 
                     int32_t *indices, int64_t room)
 {
     std::vector<point> points;
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < count; ++i)
         points.emplace_back(kernel::Point_3(positions[i][0], positions[i][1], positions[i][2]), i);
     CGAL::Kd_tree<traits> tree(points.begin(), points.end());
     tree.build();
     std::vector<point> found;
     int64_t pairs = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         offsets[i] = pairs;
         found.clear();
         tree.search(std::back_inserter(found),

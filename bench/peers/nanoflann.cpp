@@ -47,7 +47,7 @@ int64_t peer_search(const double (*positions)[3], int32_t count, double radius, 
     const nanoflann::SearchParams unsorted(32, 0, false);
     std::vector<std::pair<std::uint32_t, double>> found;
     int64_t pairs = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         offsets[i] = pairs;
         index.radiusSearch(positions[i], radius * radius, found, unsorted);
         for (const auto &one : found)

@@ -46,7 +46,7 @@ static int order_of_indices(const void *left, const void *right)
 static int32_t different_rows(int32_t count, const struct lists *ours, struct lists *theirs)
 {
     int32_t different = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         const int64_t begin = ours->offsets[i], length = ours->offsets[i + 1] - begin;
         int32_t *row = theirs->indices + theirs->offsets[i];
         const bool as_long = theirs->offsets[i + 1] - theirs->offsets[i] == length;
@@ -73,7 +73,7 @@ static void compare(sphg_context *context, int32_t particles, bool shuffled)
     struct samples our_times = {0}, their_times = {0};
     sphg_neighbors *neighbors = library_neighbors(context);
     lattice_fill(&lattice, &positions);
-    for (int round = 0; round < ROUNDS; round++) {
+    for (int round = 0; round < ROUNDS; ++round) {
         struct moment start = now();
         search_ours(context, neighbors, &positions, radius, &ours, room);
         samples_add(&our_times, since(start));
@@ -99,9 +99,9 @@ int main(int argc, char **argv)
     const double wanted = argc > 1 ? strtod(argv[1], NULL) : 100000;
     int32_t side = 2;
     while ((side + 0.5) * (side + 0.5) * (side + 0.5) < wanted)
-        side++;
+        ++side;
     sphg_context *context = library_open(1);
-    for (int shuffled = 0; shuffled < 2; shuffled++)
+    for (int shuffled = 0; shuffled < 2; ++shuffled)
         compare(context, side, shuffled);
     sphg_context_destroy(context);
     return EXIT_SUCCESS;

@@ -46,7 +46,7 @@ bool plot_draw(const char *directory, const char *script, const char *assignment
 {
     FILE *file = plot_file(directory, script);
     fputs(assignments, file);
-    for (; *parts; parts++)
+    for (; *parts; ++parts)
         copy_part(file, *parts);
     plot_close(file, script);
     return gnuplot_run(directory, script);

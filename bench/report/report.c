@@ -84,7 +84,7 @@ static void add_measured(cJSON *entry, double real, double cpu, const char *unit
     cJSON_AddNumberToObject(entry, "real_time", real);
     cJSON_AddNumberToObject(entry, "cpu_time", cpu);
     cJSON_AddStringToObject(entry, "time_unit", unit);
-    for (int k = 0; k < counters->count; k++)
+    for (int k = 0; k < counters->count; ++k)
         cJSON_AddNumberToObject(entry, counters->list[k].name, counters->list[k].value);
 }
 
@@ -116,10 +116,10 @@ static void add_aggregate(struct report *report, const char *name, const struct 
 static void add_benchmark(struct report *report, const char *name, const struct samples *samples,
                           const struct counters *counters)
 {
-    for (int32_t index = 0; index < samples->count; index++)
+    for (int32_t index = 0; index < samples->count; ++index)
         add_repetition(report, name, samples, index, counters);
     if (samples->count == 1) {
-        report->families++;
+        ++report->families;
         return;
     }
     const struct spread wall = samples_wall(samples), cpu = samples_cpu(samples);
@@ -130,9 +130,9 @@ static void add_benchmark(struct report *report, const char *name, const struct 
     const double cpus[] = {cpu.mean,      cpu.median,
                            cpu.deviation, cpu.mean > 0 ? cpu.deviation / cpu.mean : 0,
                            cpu.min,       cpu.max};
-    for (size_t k = 0; k < sizeof cpus / sizeof cpus[0]; k++)
+    for (size_t k = 0; k < sizeof cpus / sizeof cpus[0]; ++k)
         add_aggregate(report, name, samples, &aggregates[k], cpus[k], counters);
-    report->families++;
+    ++report->families;
 }
 
 static void add_counter(struct counters *counters, const char *name, double value)
@@ -147,7 +147,7 @@ static void describe_row(const struct table *table, int32_t row, char *name, siz
     const struct column *columns = table_columns(table);
     const struct cell *cells = table_row(table, row);
     size_t length = (size_t)snprintf(name, size, "%s", table_name(table));
-    for (int c = 0; columns[c].head || columns[c].key; c++) {
+    for (int c = 0; columns[c].head || columns[c].key; ++c) {
         if (!columns[c].key)
             continue;
         if (cells[c].kind == CELL_TEXT && length < size)
@@ -160,12 +160,12 @@ static void describe_row(const struct table *table, int32_t row, char *name, siz
 void report_table(struct report *report, const struct table *table)
 {
     const struct column *columns = table_columns(table);
-    for (int32_t row = 0; row < table_rows(table); row++) {
+    for (int32_t row = 0; row < table_rows(table); ++row) {
         const struct cell *cells = table_row(table, row);
         char first[192], name[224];
         struct counters common = {0};
         describe_row(table, row, first, sizeof first, &common);
-        for (int c = 0; columns[c].head || columns[c].key; c++) {
+        for (int c = 0; columns[c].head || columns[c].key; ++c) {
             if (cells[c].kind != CELL_TIME || !columns[c].key)
                 continue;
             struct counters counters = common;

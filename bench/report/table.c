@@ -29,7 +29,7 @@ struct table *table_create(const char *name, const struct column *columns)
     struct table *table = allocate_to_the_end(1, sizeof *table);
     *table = (struct table){.name = name, .columns = columns};
     while (columns[table->column_count].head || columns[table->column_count].key)
-        table->column_count++;
+        ++table->column_count;
     if (table->column_count > TABLE_COLUMNS_MOST)
         abort();
     return table;
@@ -151,7 +151,7 @@ static int larger(int a, int b)
 /* Texts stand to the left, numbers to the right. */
 static bool is_text(const struct table *table, int32_t c)
 {
-    for (int32_t r = 0; r < table->row_count; r++)
+    for (int32_t r = 0; r < table->row_count; ++r)
         if (table_row(table, r)[c].kind != CELL_NONE)
             return table_row(table, r)[c].kind == CELL_TEXT;
     return true;
@@ -161,10 +161,10 @@ static int width_of(const struct table *table, int32_t c)
 {
     char text[CELL_SIZE];
     int width = (int)strlen(table->columns[c].head);
-    for (int32_t k = 0; c == 0 && k < table->section_count; k++)
+    for (int32_t k = 0; c == 0 && k < table->section_count; ++k)
         if (table->sections[k].title)
             width = larger(width, (int)strlen(table->sections[k].title));
-    for (int32_t r = 0; r < table->row_count; r++) {
+    for (int32_t r = 0; r < table->row_count; ++r) {
         format_cell(text, &table->columns[c], &table_row(table, r)[c]);
         width = larger(width, (int)strlen(text));
     }
@@ -192,7 +192,7 @@ static void print_heads(const struct table *table, const int *widths, const char
 {
     struct line line = {0};
     printf("\n");
-    for (int32_t c = 0; c < table->column_count; c++)
+    for (int32_t c = 0; c < table->column_count; ++c)
         if (table->columns[c].head) {
             print_in(&line, title ? title : table->columns[c].head, widths[c], is_text(table, c));
             title = NULL;
@@ -204,19 +204,19 @@ void table_print(const struct table *table)
 {
     int widths[TABLE_COLUMNS_MOST] = {0};
     int32_t next = 0;
-    for (int32_t c = 0; c < table->column_count; c++)
+    for (int32_t c = 0; c < table->column_count; ++c)
         if (table->columns[c].head)
             widths[c] = width_of(table, c);
     if (table->section_count == 0 || table->sections[0].row > 0)
         print_heads(table, widths, NULL);
-    for (int32_t r = 0; r < table->row_count; r++) {
+    for (int32_t r = 0; r < table->row_count; ++r) {
         struct line line = {0};
-        for (; next < table->section_count && table->sections[next].row == r; next++)
+        for (; next < table->section_count && table->sections[next].row == r; ++next)
             if (table->sections[next].title)
                 print_heads(table, widths, table->sections[next].title);
             else
                 printf("\n");
-        for (int32_t c = 0; c < table->column_count; c++) {
+        for (int32_t c = 0; c < table->column_count; ++c) {
             char text[CELL_SIZE];
             if (!table->columns[c].head)
                 continue;
@@ -233,7 +233,7 @@ enum { TURNED_LABEL = 20, TURNED_WIDTH = 13 };
 
 static bool has_values(const struct table *table, int32_t c)
 {
-    for (int32_t r = 0; r < table->row_count; r++)
+    for (int32_t r = 0; r < table->row_count; ++r)
         if (table_row(table, r)[c].kind != CELL_NONE)
             return true;
     return false;
@@ -255,7 +255,7 @@ static void split_spread(char text[CELL_SIZE], bool range)
 static void print_turned_line(const struct table *table, int32_t c, bool range)
 {
     printf("  %-*s", TURNED_LABEL, range ? "  min-max" : table->columns[c].head);
-    for (int32_t r = 0; r < table->row_count; r++) {
+    for (int32_t r = 0; r < table->row_count; ++r) {
         char text[CELL_SIZE];
         format_cell(text, &table->columns[c], &table_row(table, r)[c]);
         split_spread(text, range);
@@ -266,7 +266,7 @@ static void print_turned_line(const struct table *table, int32_t c, bool range)
 
 void table_print_turned(const struct table *table)
 {
-    for (int32_t c = 0; c < table->column_count; c++) {
+    for (int32_t c = 0; c < table->column_count; ++c) {
         if (!table->columns[c].head)
             continue;
         if (!*table->columns[c].head && !table->columns[c].key) {
@@ -276,7 +276,7 @@ void table_print_turned(const struct table *table)
         if (!has_values(table, c))
             continue;
         print_turned_line(table, c, false);
-        for (int32_t r = 0; r < table->row_count; r++)
+        for (int32_t r = 0; r < table->row_count; ++r)
             if (table_row(table, r)[c].kind == CELL_TIME) {
                 print_turned_line(table, c, true);
                 break;
@@ -288,7 +288,7 @@ void table_print_turned(const struct table *table)
 
 static bool is_time(const struct table *table, int32_t c)
 {
-    for (int32_t r = 0; r < table->row_count; r++)
+    for (int32_t r = 0; r < table->row_count; ++r)
         if (table_row(table, r)[c].kind == CELL_TIME)
             return true;
     return false;
@@ -298,7 +298,7 @@ static void write_heads(FILE *file, const struct table *table)
 {
     static const char *const ends[] = {"", "_least", "_most"};
     const char *comma = "";
-    for (int32_t c = 0; c < table->column_count; c++) {
+    for (int32_t c = 0; c < table->column_count; ++c) {
         const struct column *column = &table->columns[c];
         if (!column->key)
             continue;
@@ -332,9 +332,9 @@ void table_write_csv(const struct table *table, const char *folder, const char *
     FILE *file = plot_file(folder, name);
     fprintf(file, "# %s, %s\n", machine_cpu(), machine_date());
     write_heads(file, table);
-    for (int32_t r = 0; r < table->row_count; r++) {
+    for (int32_t r = 0; r < table->row_count; ++r) {
         const char *comma = "";
-        for (int32_t c = 0; c < table->column_count; c++)
+        for (int32_t c = 0; c < table->column_count; ++c)
             if (table->columns[c].key) {
                 fputs(comma, file);
                 comma = ",";

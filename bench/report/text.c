@@ -9,7 +9,7 @@ const char *text_grouped(int64_t value, char text[TEXT_SIZE])
     char digits[TEXT_SIZE];
     const int length = snprintf(digits, sizeof digits, "%lld", (long long)value);
     int out = 0;
-    for (int k = 0; k < length; k++) {
+    for (int k = 0; k < length; ++k) {
         if (k > 0 && (length - k) % 3 == 0)
             text[out++] = ' ';
         text[out++] = digits[k];

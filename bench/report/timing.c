@@ -46,7 +46,7 @@ static int compare_numbers(const void *left, const void *right)
 static double standard_deviation(const double *values, int32_t count, double mean)
 {
     double sum = 0;
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         sum += (values[k] - mean) * (values[k] - mean);
     return count > 1 ? sqrt(sum / (count - 1)) : 0;
 }
@@ -64,7 +64,7 @@ static struct spread spread_of(double *values, int32_t count)
         return (struct spread){NAN, NAN, NAN, NAN, NAN};
     const double median = median_of(values, count);
     double sum = 0;
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         sum += values[k];
     struct spread spread = {
         .median = median, .mean = sum / count, .min = values[0], .max = values[count - 1]};
@@ -75,7 +75,7 @@ static struct spread spread_of(double *values, int32_t count)
 static struct spread spread_of_clock(const struct samples *samples, int cpu)
 {
     double *values = allocate_or_exit((size_t)samples->count, sizeof *values);
-    for (int32_t k = 0; k < samples->count; k++)
+    for (int32_t k = 0; k < samples->count; ++k)
         values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
     const struct spread spread = spread_of(values, samples->count);
     free(values);

@@ -30,7 +30,7 @@ static struct table *table_of_cases(const struct scaling *scaling)
                                             {NULL, "not_finite", NULL, NULL},
                                             {0}};
     struct table *table = table_create("scaling", columns);
-    for (int k = 0; k < scaling->case_count; k++) {
+    for (int k = 0; k < scaling->case_count; ++k) {
         const struct scaling_case *one = &scaling->cases[k];
         const double ns = 1e6 / one->count;
         if (k == 0 || strcmp(one->group, one[-1].group) != 0)
@@ -59,13 +59,13 @@ static struct table *table_of_speed_ups(const struct scaling *scaling)
                                             {0}};
     struct table *table = table_create("", columns);
     const struct scaling_case *single = NULL;
-    for (int k = 0; k < scaling->case_count; k++) {
+    for (int k = 0; k < scaling->case_count; ++k) {
         const struct scaling_case *one = &scaling->cases[k];
         struct cell cells[SCALING_WORKS + 2] = {cell_text(one->label)};
         if (strcmp(one->group, "threads") != 0)
             continue;
         single = single ? single : one;
-        for (int work = 0; work < SCALING_WORKS; work++) {
+        for (int work = 0; work < SCALING_WORKS; ++work) {
             const double speed_up =
                 samples_median(&single->time[work]) / samples_median(&one->time[work]);
             cells[work + 1] =
@@ -107,7 +107,7 @@ static void report_results(const struct scaling *scaling)
     text_print_if_busy(&scaling->cases[0].time[SCALING_FUSED], settings->threads);
     table_print(cases);
     table_print(table_of_speed_ups(scaling));
-    for (int k = 0; k < scaling->case_count; k++)
+    for (int k = 0; k < scaling->case_count; ++k)
         if (scaling->cases[k].not_finite > 0)
             printf("\nNOT FINITE: %lld numbers of %s, %s\n",
                    (long long)scaling->cases[k].not_finite, scaling->cases[k].group,

@@ -22,7 +22,7 @@ static struct scaling_case *add(struct scaling *scaling, const char *group)
 static void add_sizes(struct scaling *scaling)
 {
     static const double factors[] = {0.1, 0.3, 1, 3, 10, 30};
-    for (int k = 0; k < (scaling->full ? 6 : 5); k++) {
+    for (int k = 0; k < (scaling->full ? 6 : 5); ++k) {
         const double particles = factors[k] * scaling->settings.particles;
         char count[TEXT_SIZE];
         if (particles < 1 || particles > 1e9)
@@ -48,7 +48,7 @@ static void add_neighbours(struct scaling *scaling, int32_t dimension, const cha
 {
     /* In 3D some 29, 57 and 100 neighbours, in 2D 12, 29 and 57. */
     static const double supports[2][3] = {{2, 3.1, 4.3}, {2, 2.45, 2.95}};
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         struct scaling_case *one = add(scaling, group);
         one->cloud.dimension = dimension;
         one->cloud.support = supports[dimension - 2][k];
@@ -58,7 +58,7 @@ static void add_neighbours(struct scaling *scaling, int32_t dimension, const cha
 
 static void add_orders(struct scaling *scaling)
 {
-    for (int shuffled = 0; shuffled < 2; shuffled++) {
+    for (int shuffled = 0; shuffled < 2; ++shuffled) {
         struct scaling_case *one = add(scaling, "order");
         one->cloud.shuffled = shuffled;
         one->label = shuffled ? "shuffled" : "coherent";
@@ -69,7 +69,7 @@ static void add_clouds(struct scaling *scaling)
 {
     static const char *const names[] = {"lattice",     "jittered", "jittered, rotated",
                                         "thin sheets", "spray",    "jittered, far away"};
-    for (int shape = CLOUD_LATTICE; shape <= CLOUD_FAR; shape++) {
+    for (int shape = CLOUD_LATTICE; shape <= CLOUD_FAR; ++shape) {
         struct scaling_case *one = add(scaling, "cloud");
         one->cloud.shape = (enum cloud_shape)shape;
         one->label = names[shape];
@@ -79,7 +79,7 @@ static void add_clouds(struct scaling *scaling)
 static void add_radii(struct scaling *scaling)
 {
     static const double ratios[] = {1, 2, 8, 64};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; ++k) {
         struct scaling_case *one = add(scaling, "radii");
         one->cloud.shape = CLOUD_GRADED;
         one->cloud.ratio = ratios[k];

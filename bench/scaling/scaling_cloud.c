@@ -9,9 +9,9 @@
 static void rotate(struct numbers *positions, double middle)
 {
     const double a = 0.5, b = 0.3, c = 0.7;
-    for (int32_t i = 0; i < positions->count; i++) {
+    for (int32_t i = 0; i < positions->count; ++i) {
         double x[3] = {0, 0, 0};
-        for (int32_t axis = 0; axis < positions->width; axis++)
+        for (int32_t axis = 0; axis < positions->width; ++axis)
             x[axis] = numbers_get(positions, i, axis) - middle;
         if (positions->width == 3) {
             const double y = cos(a) * x[1] - sin(a) * x[2], z = sin(a) * x[1] + cos(a) * x[2];
@@ -20,7 +20,7 @@ static void rotate(struct numbers *positions, double middle)
         }
         const double turned[3] = {cos(c) * x[0] - sin(c) * x[1], sin(c) * x[0] + cos(c) * x[1],
                                   x[2]};
-        for (int32_t axis = 0; axis < positions->width; axis++)
+        for (int32_t axis = 0; axis < positions->width; ++axis)
             numbers_set(positions, i, axis, middle + turned[axis]);
     }
 }
@@ -30,7 +30,7 @@ static void part_layers(struct numbers *positions, int32_t side, double support)
 {
     const int32_t layer_size = positions->width == 3 ? side * side : side;
     const int32_t axis = positions->width - 1;
-    for (int32_t i = 0; i < positions->count; i++) {
+    for (int32_t i = 0; i < positions->count; ++i) {
         const double more = (3 * support - 1) * lattice_spacing * (i / layer_size);
         numbers_set(positions, i, axis, numbers_get(positions, i, axis) + more);
     }
@@ -42,7 +42,7 @@ static void scatter(struct numbers *positions, int32_t side, double support)
     const double pi = 3.14159265358979323846;
     const double radius = support * lattice_spacing;
     const double width = positions->width == 3 ? radius * cbrt(4 * pi / 9) : radius * sqrt(pi / 3);
-    for (int32_t i = 0; i < positions->count; i++) {
+    for (int32_t i = 0; i < positions->count; ++i) {
         int32_t rest = i;
         for (int32_t axis = 0; axis < positions->width; axis++, rest /= side)
             numbers_set(positions, i, axis,
@@ -100,7 +100,7 @@ static double graded_count(const struct cloud_setting *setting, double length)
 static double graded_length(const struct cloud_setting *setting)
 {
     double low = lattice_spacing, high = setting->ratio * lattice_spacing * setting->particles;
-    for (int k = 0; k < 60; k++) {
+    for (int k = 0; k < 60; ++k) {
         const double middle = sqrt(low * high);
         if (graded_count(setting, middle) < setting->particles)
             low = middle;
@@ -116,10 +116,10 @@ static void add_layer(const struct cloud_setting *setting, double x, double leng
     const double spacing = spacing_at(setting, x, length);
     const int32_t side = side_of_layer(spacing, length);
     const double width = length / side;
-    for (int32_t k = 0; k < side * side; k++) {
+    for (int32_t k = 0; k < side * side; ++k) {
         const int32_t i = (*next)++;
         const double place[3] = {x, width * (k % side), width * (k / side)};
-        for (int32_t axis = 0; axis < 3; axis++)
+        for (int32_t axis = 0; axis < 3; ++axis)
             numbers_set(&cloud->positions, i, axis,
                         place[axis] + setting->jitter * spacing *
                                           (2 * lattice_random(3 * (int64_t)i + axis) - 1));

@@ -96,12 +96,12 @@ static void measure_error(struct scene *scene)
     struct scaling_case *one = scene->one;
     uint8_t *ranks = allocate_or_exit((size_t)one->count, 1);
     int32_t deficient = 0;
-    for (int work = 0; work < SCALING_WORKS; work++)
+    for (int work = 0; work < SCALING_WORKS; ++work)
         run(scene, (enum scaling_work)work, ranks);
     const sphg_neighbors_info info = library_info(scene->context, scene->neighbors);
     one->pairs = (double)info.pairs / one->count;
     one->bytes = (double)info.bytes / one->count;
-    for (int32_t i = 0; i < one->count; i++) {
+    for (int32_t i = 0; i < one->count; ++i) {
         one->not_finite += !isfinite(linear_field_error(&scene->jacobians, i));
         deficient += ranks[i] < scene->positions.width;
     }
@@ -116,30 +116,30 @@ static int end_of_group(const struct scaling *scaling, int begin)
     int end = begin;
     while (end < scaling->case_count &&
            strcmp(scaling->cases[end].group, scaling->cases[begin].group) == 0)
-        end++;
+        ++end;
     return end;
 }
 
 static void measure_group(struct scaling *scaling, int begin, int end)
 {
     struct scene *scenes = allocate_or_exit((size_t)(end - begin), sizeof *scenes);
-    for (int k = begin; k < end; k++) {
+    for (int k = begin; k < end; ++k) {
         progress_show("%s: preparing %s", scaling->cases[k].group, scaling->cases[k].label);
         scenes[k - begin] = open_scene(&scaling->cases[k]);
         measure_error(&scenes[k - begin]);
     }
-    for (int32_t round = 0; round < scaling->settings.repetitions; round++)
-        for (int k = begin; k < end; k++) {
+    for (int32_t round = 0; round < scaling->settings.repetitions; ++round)
+        for (int k = begin; k < end; ++k) {
             struct scaling_case *one = &scaling->cases[k];
             progress_show("%s: round %d of %d: %s", one->group, round + 1,
                           scaling->settings.repetitions, one->label);
-            for (int work = 0; work < SCALING_WORKS; work++) {
+            for (int work = 0; work < SCALING_WORKS; ++work) {
                 const struct moment start = now();
                 run(&scenes[k - begin], (enum scaling_work)work, NULL);
                 samples_add(&one->time[work], since(start));
             }
         }
-    for (int k = 0; k < end - begin; k++)
+    for (int k = 0; k < end - begin; ++k)
         close_scene(&scenes[k]);
     free(scenes);
 }

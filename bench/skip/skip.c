@@ -49,12 +49,12 @@ static void measure(struct skip *skip)
     skip->pairs = (double)stage.solid.info.pairs / skip->count;
     skip->plane_pairs = (double)stage.plane.info.pairs / stage.plane.positions.count;
     keep_matrices(&stage);
-    for (stage.positions_are_moved = 0; stage.positions_are_moved < 2; stage.positions_are_moved++)
-        for (int k = 0; k < skip_row_count; k++)
+    for (stage.positions_are_moved = 0; stage.positions_are_moved < 2; ++stage.positions_are_moved)
+        for (int k = 0; k < skip_row_count; ++k)
             compare_row(&stage, &skip_rows[k], &skip->results[k]);
-    for (int32_t round = 0; round < skip->settings.repetitions; round++) {
+    for (int32_t round = 0; round < skip->settings.repetitions; ++round) {
         stage.positions_are_moved = round % 2;
-        for (int k = 0; k < skip_row_count; k++) {
+        for (int k = 0; k < skip_row_count; ++k) {
             progress_show("round %d of %d: %s", round + 1, skip->settings.repetitions,
                           skip_rows[k].what);
             time_row(&stage, &skip_rows[k], &skip->results[k]);
@@ -86,7 +86,7 @@ static struct table *table_of(const struct skip *skip)
                                             {NULL, "deviation", NULL, NULL},
                                             {0}};
     struct table *table = table_create("skip", columns);
-    for (int k = 0; k < skip_row_count; k++) {
+    for (int k = 0; k < skip_row_count; ++k) {
         const struct skip_row *row = &skip_rows[k];
         const struct skip_result *result = &skip->results[k];
         if (k > 0 && strcmp(row->group, skip_rows[k - 1].group) != 0)

@@ -108,7 +108,7 @@ static void fields_one_by_one(struct skip_stage *stage, struct outputs *outputs,
 {
     (void)parameter;
     const sphg_sources sources = sources_of(stage, stage->solid.kept);
-    for (int f = 0; f < SKIP_FIELDS; f++)
+    for (int f = 0; f < SKIP_FIELDS; ++f)
         jacobian_of(stage, &stage->solid, &sources, NULL, outputs, f);
 }
 
@@ -118,7 +118,7 @@ static void fields_one_by_one_by_table(struct skip_stage *stage, struct outputs 
     (void)parameter;
     sphg_sources sources = sources_of(stage, stage->solid.kept);
     sources.correction = numbers_view(&stage->corrections);
-    for (int f = 0; f < SKIP_FIELDS; f++)
+    for (int f = 0; f < SKIP_FIELDS; ++f)
         jacobian_of(stage, &stage->solid, &sources, NULL, outputs, f);
 }
 
@@ -130,7 +130,7 @@ static void fields_in_one_call(struct skip_stage *stage, struct outputs *outputs
         sources.correction = numbers_view(&stage->corrections);
     sphg_view at_sources[SKIP_FIELDS];
     sphg_field fields[SKIP_FIELDS];
-    for (int f = 0; f < SKIP_FIELDS; f++) {
+    for (int f = 0; f < SKIP_FIELDS; ++f) {
         at_sources[f] = numbers_view(&stage->solid.fields[f]);
         fields[f] = (sphg_field){.shape = SPHG_VECTOR,
                                  .at_sources = &at_sources[f],

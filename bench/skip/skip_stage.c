@@ -11,7 +11,7 @@ static const double shares[SKIP_PATTERNS / 2] = {0.75, 0.5, 0.1, 0.01};
 static double off_centre(const struct numbers *positions, int32_t i, double middle)
 {
     double most = 0;
-    for (int32_t axis = 0; axis < positions->width; axis++)
+    for (int32_t axis = 0; axis < positions->width; ++axis)
         most = fmax(most, fabs(numbers_get(positions, i, axis) - middle));
     return most / (middle + 0.5 * lattice_spacing);
 }
@@ -23,7 +23,7 @@ static struct pattern create_pattern(const struct numbers *positions, double mid
     struct pattern pattern = {.share = share, .clustered = clustered};
     pattern.mask = allocate_or_exit(count, sizeof *pattern.mask);
     pattern.indices = allocate_or_exit(count, sizeof *pattern.indices);
-    for (int32_t i = 0; i < positions->count; i++) {
+    for (int32_t i = 0; i < positions->count; ++i) {
         pattern.mask[i] =
             clustered ? off_centre(positions, i, middle) < cbrt(share) : lattice_random(i) < share;
         if (pattern.mask[i])
@@ -35,10 +35,10 @@ static struct pattern create_pattern(const struct numbers *positions, double mid
 static void fill_fields(struct cloud *cloud, int32_t dimension)
 {
     const double wave = 2 * 3.14159265358979323846 / (32 * lattice_spacing);
-    for (int32_t f = 0; f < SKIP_FIELDS; f++) {
+    for (int32_t f = 0; f < SKIP_FIELDS; ++f) {
         cloud->fields[f] = numbers_create(SPHG_F32, cloud->positions.count, dimension);
-        for (int32_t i = 0; i < cloud->positions.count; i++)
-            for (int32_t axis = 0; axis < dimension; axis++) {
+        for (int32_t i = 0; i < cloud->positions.count; ++i)
+            for (int32_t axis = 0; axis < dimension; ++axis) {
                 const double x = numbers_get(&cloud->positions, i, (axis + f) % dimension);
                 numbers_set(&cloud->fields[f], i, axis, sin(wave * x + f));
             }
@@ -52,7 +52,7 @@ static struct outputs create_outputs(const struct cloud *cloud, int32_t dimensio
         .corrections = numbers_create(SPHG_F32, count, sphg_correction_width(&cloud->scheme)),
         .divergence = numbers_create(SPHG_F32, count, 1),
         .curl = numbers_create(SPHG_F32, count, dimension == 3 ? 3 : 1)};
-    for (int f = 0; f < SKIP_FIELDS; f++)
+    for (int f = 0; f < SKIP_FIELDS; ++f)
         outputs.jacobians[f] = numbers_create(SPHG_F32, count, dimension * dimension);
     return outputs;
 }
@@ -62,15 +62,15 @@ static void destroy_outputs(struct outputs *outputs)
     numbers_destroy(&outputs->corrections);
     numbers_destroy(&outputs->divergence);
     numbers_destroy(&outputs->curl);
-    for (int f = 0; f < SKIP_FIELDS; f++)
+    for (int f = 0; f < SKIP_FIELDS; ++f)
         numbers_destroy(&outputs->jacobians[f]);
 }
 
 /* Each coordinate by at most a quarter of the skin: less than half of it in any direction. */
 static void move(struct cloud *cloud, double skin)
 {
-    for (int32_t i = 0; i < cloud->positions.count; i++)
-        for (int32_t axis = 0; axis < cloud->positions.width; axis++) {
+    for (int32_t i = 0; i < cloud->positions.count; ++i)
+        for (int32_t axis = 0; axis < cloud->positions.width; ++axis) {
             const double shift = 0.25 * skin * (2 * lattice_random(3 * (int64_t)i + axis) - 1);
             numbers_set(&cloud->moved, i, axis, numbers_get(&cloud->positions, i, axis) + shift);
         }
@@ -119,7 +119,7 @@ static void destroy_cloud(struct cloud *cloud)
     sphg_neighbors_destroy(cloud->rebuilt);
     numbers_destroy(&cloud->positions);
     numbers_destroy(&cloud->moved);
-    for (int f = 0; f < SKIP_FIELDS; f++)
+    for (int f = 0; f < SKIP_FIELDS; ++f)
         numbers_destroy(&cloud->fields[f]);
     destroy_outputs(&cloud->full);
     destroy_outputs(&cloud->part);
@@ -149,11 +149,11 @@ struct skip_stage skip_stage_create(const struct settings *settings)
         numbers_create(SPHG_F32, solid_count > plane_count ? solid_count : plane_count, 1);
     stage.volume = numbers_create(SPHG_F32, 1, 1);
     const double volume = lattice_spacing * lattice_spacing * lattice_spacing;
-    for (int32_t i = 0; i < stage.volumes.count; i++)
+    for (int32_t i = 0; i < stage.volumes.count; ++i)
         numbers_set(&stage.volumes, i, 0, volume);
     numbers_set(&stage.volume, 0, 0, volume);
     stage.corrections = numbers_create(SPHG_F32, solid_count, 6);
-    for (int k = 0; k < SKIP_PATTERNS; k++)
+    for (int k = 0; k < SKIP_PATTERNS; ++k)
         stage.patterns[k] = create_pattern(
             &stage.solid.positions, 0.5 * (side - 1) * lattice_spacing, shares[k / 2], k % 2);
     return stage;
@@ -161,7 +161,7 @@ struct skip_stage skip_stage_create(const struct settings *settings)
 
 void skip_stage_destroy(struct skip_stage *stage)
 {
-    for (int k = 0; k < SKIP_PATTERNS; k++) {
+    for (int k = 0; k < SKIP_PATTERNS; ++k) {
         free(stage->patterns[k].mask);
         free(stage->patterns[k].indices);
     }

@@ -10,7 +10,7 @@
 static void find_paths(struct solver *solver)
 {
     int found = 0;
-    for (int path = 0; path < LIBRARY_PATHS; path++) {
+    for (int path = 0; path < LIBRARY_PATHS; ++path) {
         sphg_context *context = library_open_path(1, path);
         solver->available[path] = context && (solver->path < 0 || solver->path == path);
         found += solver->available[path];
@@ -24,9 +24,9 @@ static void list_groups(struct solver *solver)
 {
     static const sphg_type types[] = {SPHG_F32, SPHG_F64};
     const int32_t counts[] = {SOLVER_SMALL, solver->matrices};
-    for (int size = 0; size < 2; size++)
-        for (int type = 0; type < 2; type++)
-            for (int32_t d = 3; d >= 2; d--)
+    for (int size = 0; size < 2; ++size)
+        for (int type = 0; type < 2; ++type)
+            for (int32_t d = 3; d >= 2; --d)
                 if (counts[size] > 0 && (solver->precision < 0 || solver->precision == type))
                     solver->groups[solver->group_count++] =
                         (struct solver_group){types[type], d, counts[size], {{{{0}}, {0}, {0}}}};
@@ -36,7 +36,7 @@ static void list_groups(struct solver *solver)
 static double most(const double *values, const bool *available)
 {
     double largest = 0;
-    for (int path = 0; path < LIBRARY_PATHS; path++)
+    for (int path = 0; path < LIBRARY_PATHS; ++path)
         if (available[path])
             largest = numbers_larger(largest, values[path]);
     return largest;
@@ -58,7 +58,7 @@ static void add_case(struct table *table, const struct solver *solver,
     cells[count++] = cell_text(works[one->work]);
     cells[count++] = cell_text(one->what);
     cells[count++] = copied ? cell_time(&result->times[0], ns_a_matrix) : cell_none();
-    for (int path = 0; path < LIBRARY_PATHS; path++)
+    for (int path = 0; path < LIBRARY_PATHS; ++path)
         if (solver->available[path])
             cells[count++] = copied ? cell_none() : cell_time(&result->times[path], ns_a_matrix);
     cells[count++] = one->spectrum == SOLVER_MOMENTS
@@ -78,7 +78,7 @@ static struct table *table_of(const struct solver *solver)
         {NULL, "matrices", NULL, NULL},  {"", "work", NULL, NULL},
         {"", "what", NULL, NULL},        {"memcpy", "memcpy", format, unit}};
     int count = 6;
-    for (int path = 0; path < LIBRARY_PATHS; path++)
+    for (int path = 0; path < LIBRARY_PATHS; ++path)
         if (solver->available[path])
             columns[count++] =
                 (struct column){library_path_name(path), library_path_name(path), format, unit};
@@ -86,13 +86,13 @@ static struct table *table_of(const struct solver *solver)
     columns[count++] = (struct column){"off by", "deviation", "%.1e", NULL};
     columns[count] = (struct column){0};
     struct table *table = table_create("solver", columns);
-    for (int g = 0; g < solver->group_count; g++) {
+    for (int g = 0; g < solver->group_count; ++g) {
         const struct solver_group *group = &solver->groups[g];
         char text[TEXT_SIZE];
         table_section(table, table_text("%dD, %s, %s", (int)group->dimension,
                                         group->type == SPHG_F64 ? "f64" : "f32",
                                         text_grouped(group->count, text)));
-        for (int k = 0; k < SOLVER_CASES; k++)
+        for (int k = 0; k < SOLVER_CASES; ++k)
             if (solver_has(group, k))
                 add_case(table, solver, group, k);
     }

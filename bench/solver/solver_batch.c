@@ -56,12 +56,12 @@ static double random_of(struct draw *draw)
 /* Turns by any angle in each coordinate plane. */
 static void rotation(struct draw *draw, int32_t d, double q[3][3])
 {
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         q[k / 3][k % 3] = k % 4 == 0;
-    for (int32_t a = 0; a < d; a++)
-        for (int32_t b = a + 1; b < d; b++) {
+    for (int32_t a = 0; a < d; ++a)
+        for (int32_t b = a + 1; b < d; ++b) {
             const double angle = 2 * 3.14159265358979323846 * random_of(draw);
-            for (int32_t k = 0; k < d; k++) {
+            for (int32_t k = 0; k < d; ++k) {
                 const double x = q[k][a], y = q[k][b];
                 q[k][a] = cos(angle) * x - sin(angle) * y;
                 q[k][b] = sin(angle) * x + cos(angle) * y;
@@ -73,10 +73,10 @@ static void rotation(struct draw *draw, int32_t d, double q[3][3])
 static void compose(int32_t d, double p[3][3], const double values[3], double q[3][3],
                     double a[3][3])
 {
-    for (int32_t r = 0; r < d; r++)
-        for (int32_t c = 0; c < d; c++) {
+    for (int32_t r = 0; r < d; ++r)
+        for (int32_t c = 0; c < d; ++c) {
             a[r][c] = 0;
-            for (int32_t k = 0; k < d; k++)
+            for (int32_t k = 0; k < d; ++k)
                 a[r][c] += p[r][k] * values[k] * q[c][k];
         }
 }
@@ -84,7 +84,7 @@ static void compose(int32_t d, double p[3][3], const double values[3], double q[
 /* Eigenvalues: around 1 inside, one direction below the threshold's reach, 4 eps, at a surface. */
 static void moments(struct draw *draw, int32_t d, double share, double values[3])
 {
-    for (int32_t k = 0; k < d; k++)
+    for (int32_t k = 0; k < d; ++k)
         values[k] = 0.5 + 0.7 * random_of(draw);
     if (random_of(draw) < share)
         values[d - 1] = 0.039 * pow(1e-3, random_of(draw));
@@ -99,12 +99,12 @@ static void matrix(const struct solver_case *one, struct draw *draw, int32_t d, 
     rotation(draw, d, q);
     if (one->spectrum == SOLVER_MOMENTS)
         moments(draw, d, one->share, values);
-    for (int32_t k = 0; one->spectrum == SOLVER_GRADED && k < d; k++)
+    for (int32_t k = 0; one->spectrum == SOLVER_GRADED && k < d; ++k)
         values[k] = pow(1e-3, k) * (0.5 + random_of(draw));
     const bool identity = symmetric && one->spectrum == SOLVER_NEAR;
     compose(d, p, values, symmetric ? p : q, a);
-    for (int32_t r = 0; r < d; r++)
-        for (int32_t c = 0; c < d; c++) {
+    for (int32_t r = 0; r < d; ++r)
+        for (int32_t c = 0; c < d; ++c) {
             const double noise = 2 * random_of(draw) - 1;
             if (one->spectrum == SOLVER_RANDOM)
                 a[r][c] = noise;
@@ -116,8 +116,8 @@ static void matrix(const struct solver_case *one, struct draw *draw, int32_t d, 
 static void store(struct numbers *batch, int32_t item, bool symmetric, int32_t d, double a[3][3])
 {
     int32_t n = 0;
-    for (int32_t r = 0; r < d; r++)
-        for (int32_t c = symmetric ? r : 0; c < d; c++)
+    for (int32_t r = 0; r < d; ++r)
+        for (int32_t c = symmetric ? r : 0; c < d; ++c)
             numbers_set(batch, item, n++, a[r][c]);
 }
 
@@ -128,7 +128,7 @@ struct numbers solver_batch(const struct solver_case *one, sphg_type type, int32
     const int32_t width = solver_widths_of(one->work, dimension).in;
     struct numbers batch = numbers_create(type, count, width);
     const size_t size = (size_t)width * (type == SPHG_F64 ? sizeof(double) : sizeof(float));
-    for (int32_t i = 0; i < count && i < DIFFERENT; i++) {
+    for (int32_t i = 0; i < count && i < DIFFERENT; ++i) {
         struct draw draw = {(int64_t)DRAWN * i};
         double a[3][3];
         matrix(one, &draw, dimension, a);

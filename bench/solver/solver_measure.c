@@ -21,25 +21,25 @@ struct scene {
 static struct scene open_scene(const struct solver *solver, struct solver_group *group)
 {
     struct scene scene = {.group = group, .threads = solver->settings.threads};
-    for (int path = 0; path < LIBRARY_PATHS; path++)
+    for (int path = 0; path < LIBRARY_PATHS; ++path)
         if (solver->available[path])
             scene.contexts[path] = library_open_path(scene.threads, path);
-    for (int k = 0; k < SOLVER_CASES; k++)
+    for (int k = 0; k < SOLVER_CASES; ++k)
         if (solver_has(group, k))
             scene.batches[k] =
                 solver_batch(&solver_cases[k], group->type, group->dimension, group->count);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         scene.results[k] = numbers_create(group->type, group->count, 9);
     return scene;
 }
 
 static void close_scene(struct scene *scene)
 {
-    for (int path = 0; path < LIBRARY_PATHS; path++)
+    for (int path = 0; path < LIBRARY_PATHS; ++path)
         sphg_context_destroy(scene->contexts[path]);
-    for (int k = 0; k < SOLVER_CASES; k++)
+    for (int k = 0; k < SOLVER_CASES; ++k)
         numbers_destroy(&scene->batches[k]);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         numbers_destroy(&scene->results[k]);
 }
 
@@ -73,7 +73,7 @@ static void copy_share(void *data, int32_t begin, int32_t end)
     const struct copy *copy = data;
     const enum solver_work work = solver_cases[copy->k].work;
     for (int32_t first = begin; first < end; first += PIECE)
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; ++k) {
             const struct numbers out = result_of(copy->scene, work, k);
             const int32_t last = end - first < PIECE ? end : first + PIECE;
             size_t in_size, out_size;
@@ -103,7 +103,7 @@ static void run_case(const struct scene *scene, int k, int path)
     sphg_context *context = scene->contexts[path];
     const sphg_view matrices = numbers_view(&scene->batches[k]);
     sphg_view out[3];
-    for (int r = 0; r < 3; r++) {
+    for (int r = 0; r < 3; ++r) {
         const struct numbers result = result_of(scene, one->work, r);
         out[r] = numbers_view(&result);
     }
@@ -123,7 +123,7 @@ static void time_case(const struct scene *scene, int k, int path)
 {
     const int32_t calls = scene->calls[k][path];
     const struct moment start = now();
-    for (int32_t call = 0; call < calls; call++)
+    for (int32_t call = 0; call < calls; ++call)
         run_case(scene, k, path);
     const struct moment all = since(start);
     samples_add(&scene->group->results[k].times[path],
@@ -137,9 +137,9 @@ static void matrix_of(const struct numbers *table, int32_t item, int32_t d, doub
 {
     const bool symmetric = table->width < d * d;
     int32_t n = 0;
-    for (int32_t r = 0; r < d; r++)
-        for (int32_t c = symmetric ? r : 0; c < d; c++) {
-            a[r][c] = numbers_get(table, item, n++);
+    for (int32_t r = 0; r < d; ++r)
+        for (int32_t c = symmetric ? r : 0; c < d; ++c) {
+            a[r][c] = numbers_get(table, item, ++n);
             if (symmetric)
                 a[c][r] = a[r][c];
         }
@@ -150,7 +150,7 @@ static double entry_of(int32_t d, double p[3][3], const double values[3], double
                        bool transposed, int32_t r, int32_t c)
 {
     double sum = 0;
-    for (int32_t k = 0; k < d; k++)
+    for (int32_t k = 0; k < d; ++k)
         sum += p[r][k] * values[k] * (transposed ? q[c][k] : q[k][c]);
     return sum;
 }
@@ -170,10 +170,10 @@ static double deviation_of(const struct scene *scene, int k, int32_t item)
         memcpy(q, a, sizeof q);
     else
         matrix_of(work == SOLVER_EIGEN ? &second : &third, item, d, q);
-    for (int32_t r = 0; r < d && !inverse; r++)
+    for (int32_t r = 0; r < d && !inverse; ++r)
         values[r] = numbers_get(work == SOLVER_EIGEN ? &first : &second, item, r);
-    for (int32_t r = 0; r < d; r++)
-        for (int32_t c = 0; c < d; c++) {
+    for (int32_t r = 0; r < d; ++r)
+        for (int32_t c = 0; c < d; ++c) {
             const double wanted = inverse ? r == c : a[r][c];
             const double off = fabs(entry_of(d, p, values, q, !inverse, r, c) - wanted);
             if (!(off < (double)INFINITY))
@@ -192,7 +192,7 @@ static void check_case(struct scene *scene, int k, int path)
     struct solver_result *result = &scene->group->results[k];
     const int32_t count = scene->group->count;
     sphg_stats stats = {.decomposed = 0};
-    for (int r = 0; r < 3; r++)
+    for (int r = 0; r < 3; ++r)
         memset(scene->results[r].data, 0xff,
                (size_t)count * (size_t)numbers_view(&scene->results[r]).stride);
     run_case(scene, k, path);
@@ -201,7 +201,7 @@ static void check_case(struct scene *scene, int k, int path)
     result->decomposed[path] = (double)stats.decomposed / count;
     result->deviation[path] = 0;
     if (one->spectrum != SOLVER_COPIED && one->share == 0)
-        for (int32_t i = 0; i < count && i < SOLVER_SMALL; i++)
+        for (int32_t i = 0; i < count && i < SOLVER_SMALL; ++i)
             result->deviation[path] = fmax(result->deviation[path], deviation_of(scene, k, i));
 }
 
@@ -226,8 +226,8 @@ static bool is_measured(const struct scene *scene, int k, int path)
 
 static void for_all(struct scene *scene, void (*action)(struct scene *, int, int))
 {
-    for (int k = 0; k < SOLVER_CASES; k++)
-        for (int path = 0; path < LIBRARY_PATHS; path++)
+    for (int k = 0; k < SOLVER_CASES; ++k)
+        for (int path = 0; path < LIBRARY_PATHS; ++path)
             if (is_measured(scene, k, path))
                 action(scene, k, path);
 }
@@ -246,12 +246,12 @@ static void measure(struct scene *scene, int k, int path)
 void solver_measure(struct solver *solver)
 {
     const int32_t rounds = solver->settings.repetitions;
-    for (int g = 0; g < solver->group_count; g++) {
+    for (int g = 0; g < solver->group_count; ++g) {
         struct solver_group *group = &solver->groups[g];
         progress_show("group %d of %d: warm-up", g + 1, solver->group_count);
         struct scene scene = open_scene(solver, group);
         for_all(&scene, prepare);
-        for (int32_t round = 0; round < rounds; round++) {
+        for (int32_t round = 0; round < rounds; ++round) {
             progress_show("group %d of %d: round %d of %d", g + 1, solver->group_count, round + 1,
                           rounds);
             for_all(&scene, measure);

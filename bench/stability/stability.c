@@ -24,7 +24,7 @@ struct summary {
 static void add_to_summary(struct summary *sum, const struct stability_case *one)
 {
     double *ratio = &sum->ratio[one->precision];
-    sum->cases++;
+    ++sum->cases;
     sum->targets += one->targets;
     sum->compared += one->compared;
     sum->undecided += one->undecided;
@@ -41,7 +41,7 @@ static void add_to_summary(struct summary *sum, const struct stability_case *one
 static struct summary summarise(const struct stability *stability, int sweep, int method)
 {
     struct summary sum = {.rank_least = 3, .fallback_least = 1};
-    for (int k = 0; k < stability->case_count; k++) {
+    for (int k = 0; k < stability->case_count; ++k) {
         const struct stability_case *one = &stability->cases[k];
         if ((int)one->sweep == sweep && (int)one->method == method)
             add_to_summary(&sum, one);
@@ -76,8 +76,8 @@ static void print_summaries(const struct stability *stability)
         {"wrong", NULL, NULL, NULL},      {"bits", NULL, NULL, NULL},
         {"not finite", NULL, NULL, NULL}, {0}};
     struct table *table = table_create("", columns);
-    for (int sweep = stability->first; sweep <= stability->last; sweep++)
-        for (int method = 0; method < STABILITY_METHODS; method++) {
+    for (int sweep = stability->first; sweep <= stability->last; ++sweep)
+        for (int method = 0; method < STABILITY_METHODS; ++method) {
             const struct summary sum = summarise(stability, sweep, method);
             if (sum.cases > 0)
                 add_summary(table, sweep_names[sweep], method_names[method], &sum);
@@ -93,7 +93,7 @@ static const struct stability_case *beside(const struct stability *stability,
                                            const struct stability_case *one,
                                            enum precision precision)
 {
-    for (int k = 0; k < stability->case_count; k++) {
+    for (int k = 0; k < stability->case_count; ++k) {
         const struct stability_case *other = &stability->cases[k];
         if (other->precision == precision && other->method == one->method &&
             other->policy == one->policy && other->at == one->at)
@@ -117,7 +117,7 @@ static void print_places(const struct stability *stability)
            "shares in percent;\n           linear: mean error of a linear field, noise: largest "
            "|J| H of a random field; exact: the\n           largest error of a linear field at "
            "full rank, bound: the largest error of a random field\n           over its bound\n");
-    for (int k = 0; k < stability->case_count; k++) {
+    for (int k = 0; k < stability->case_count; ++k) {
         const struct stability_case *one = &stability->cases[k];
         const struct stability_case *wide = beside(stability, one, PRECISION_F64);
         if (one->precision == PRECISION_F32)
@@ -169,10 +169,10 @@ static struct table *table_of_cases(const struct stability *stability)
                                        "" /* the time */};
     enum { KEYS = sizeof keys / sizeof keys[0] };
     static struct column columns[KEYS + 1];
-    for (int k = 0; k < KEYS; k++)
+    for (int k = 0; k < KEYS; ++k)
         columns[k].key = keys[k];
     struct table *table = table_create("stability", columns);
-    for (int k = 0; k < stability->case_count; k++) {
+    for (int k = 0; k < stability->case_count; ++k) {
         struct stability_case *one = &stability->cases[k];
         one->once = (struct samples){&one->time, 1, 1};
         TABLE_ROW(
@@ -200,7 +200,7 @@ static bool draw(const struct stability *stability)
     const struct settings *settings = &stability->settings;
     const char *given =
         table_text("support = '%g'\nmachine = \"%s\"\n", settings->support, machine_cpu());
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const char *script = table_text("stability_%s.gp", scripts[k]);
         const char *const parts[] = {"stability/stability_common.gp",
                                      table_text("stability/%s", script), NULL};

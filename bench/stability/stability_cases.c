@@ -25,7 +25,7 @@ struct places {
 static struct places powers(double first, double factor, int count)
 {
     struct places places = {.count = count};
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         places.at[k] = first * pow(10, k * log10(factor));
     return places;
 }
@@ -33,7 +33,7 @@ static struct places powers(double first, double factor, int count)
 static struct places equal_steps(double first, double step, int count)
 {
     struct places places = {.count = count};
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         places.at[k] = first + step * k;
     return places;
 }
@@ -64,7 +64,7 @@ static struct places scales(double support, enum precision precision)
     const int range = (precision == PRECISION_F64 ? -DBL_MIN_EXP : -FLT_MIN_EXP) + 1;
     const double least = -floor(range / 3.0), most = floor(range / 3.0 - log2(support));
     struct places places = equal_steps(least, (most - least) / 16, 17);
-    for (int k = 0; k < places.count; k++)
+    for (int k = 0; k < places.count; ++k)
         places.at[k] = round(places.at[k]);
     return places;
 }
@@ -97,7 +97,7 @@ static struct places places_of(const struct settings *settings, const struct sta
 static struct places thinned(const struct places *all, int keep)
 {
     struct places places = {.count = keep};
-    for (int k = 0; k < keep; k++)
+    for (int k = 0; k < keep; ++k)
         places.at[k] = all->at[k * (all->count - 1) / (keep - 1)];
     return places;
 }
@@ -125,7 +125,7 @@ static void add_places(struct stability *stability, struct stability_case *one)
     if (stability->quick)
         places = thinned(&places, 4);
     const int last = is_walk(one->sweep) ? places.count - 1 : places.count;
-    for (int k = 0; k < last; k++) {
+    for (int k = 0; k < last; ++k) {
         one->at = one->end = places.at[k];
         if (is_walk(one->sweep))
             one->end = places.at[k + 1];
@@ -145,10 +145,10 @@ static bool makes_sense(const struct stability_case *one)
 void stability_create_cases(struct stability *stability)
 {
     stability->cases = allocate_to_the_end(CASES_MOST, sizeof *stability->cases);
-    for (int sweep = stability->first; sweep <= stability->last; sweep++)
-        for (int policy = 0; policy < STABILITY_POLICIES; policy++)
-            for (int method = 0; method < STABILITY_METHODS; method++)
-                for (int precision = 0; precision < STABILITY_PRECISIONS; precision++) {
+    for (int sweep = stability->first; sweep <= stability->last; ++sweep)
+        for (int policy = 0; policy < STABILITY_POLICIES; ++policy)
+            for (int method = 0; method < STABILITY_METHODS; ++method)
+                for (int precision = 0; precision < STABILITY_PRECISIONS; ++precision) {
                     struct stability_case one = {.sweep = (enum stability_sweep)sweep,
                                                  .kernel = stability->settings.kernel,
                                                  .policy = (sphg_policy)policy,

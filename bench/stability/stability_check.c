@@ -96,7 +96,7 @@ static int check_merging(const struct stability_case *one)
 int stability_check(const struct stability *stability)
 {
     int broken = 0;
-    for (int k = 0; k < stability->case_count; k++) {
+    for (int k = 0; k < stability->case_count; ++k) {
         const struct stability_case *one = &stability->cases[k];
         const struct stability_case *next = k + 1 < stability->case_count ? one + 1 : NULL;
         broken += check_numbers(one, stability->compared > 0) + check_neighbours(one) +

@@ -29,7 +29,7 @@ static void add(struct stability_cloud *cloud, double x, double y, double z)
 static void add_moved(struct stability_cloud *cloud, const double place[3], double reach)
 {
     double moved[3];
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         moved[axis] = place[axis] + draw(cloud, -reach, reach);
     add(cloud, moved[0], moved[1], moved[2]);
 }
@@ -38,7 +38,7 @@ static void add_moved(struct stability_cloud *cloud, const double place[3], doub
 static void add_block(struct stability_cloud *cloud, int32_t side, double jitter)
 {
     make_room(cloud, side * side * side);
-    for (int32_t i = 0; i < side * side * side; i++) {
+    for (int32_t i = 0; i < side * side * side; ++i) {
         const double place[3] = {i % side, i / side % side, (double)(i / side / side)};
         add_moved(cloud, place, jitter);
     }
@@ -50,7 +50,7 @@ static void add_slab(struct stability_cloud *cloud, int32_t length, int32_t widt
                      double thickness, double end_thickness, double below)
 {
     make_room(cloud, 3 * length * width);
-    for (int32_t i = 0; i < 3 * length * width; i++) {
+    for (int32_t i = 0; i < 3 * length * width; ++i) {
         const int32_t layer = i / (length * width), column = i % length;
         const double place[3] = {column + layer / 3.0, i / length % width + layer * 2 / 3.0,
                                  layer - 1.0};
@@ -65,7 +65,7 @@ static void add_slab(struct stability_cloud *cloud, int32_t length, int32_t widt
 static void add_layers(struct stability_cloud *cloud, int32_t side, double jitter, double gap)
 {
     make_room(cloud, 2 * side * side);
-    for (int32_t i = 0; i < 2 * side * side; i++) {
+    for (int32_t i = 0; i < 2 * side * side; ++i) {
         const double layer = i / (side * side);
         const double place[3] = {i % side + layer / 2, i / side % side + layer / 2, 0};
         add_moved(cloud, place, jitter);
@@ -78,7 +78,7 @@ static void add_in_ball(struct stability_cloud *cloud, const double middle[3], d
     double offset[3], square;
     do {
         square = 0;
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             offset[axis] = draw(cloud, -1, 1);
             square += offset[axis] * offset[axis];
         }
@@ -93,18 +93,18 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
                       int32_t places)
 {
     make_room(cloud, balls * (neighbours * (places > 0 ? places : 1) + 1));
-    for (int32_t pass = 0; pass < 2; pass++)
-        for (int32_t ball = 0; ball < balls; ball++) {
+    for (int32_t pass = 0; pass < 2; ++pass)
+        for (int32_t ball = 0; ball < balls; ++ball) {
             const double apart = 4 * cloud->support;
             const double middle[3] = {apart * (ball % 4), apart * (ball / 4 % 4),
                                       apart * (ball / 16)};
             if (pass == 0)
                 add(cloud, middle[0], middle[1], middle[2]);
-            for (int32_t k = 0; pass == 1 && k < (places > 0 ? places : neighbours); k++)
+            for (int32_t k = 0; pass == 1 && k < (places > 0 ? places : neighbours); ++k)
                 add_in_ball(cloud, middle, 0.9999 * cloud->support);
-            for (int32_t k = 0; pass == 1 && k < places * (neighbours - 1); k++)
+            for (int32_t k = 0; pass == 1 && k < places * (neighbours - 1); ++k)
                 memcpy(cloud->x[cloud->count], cloud->x[cloud->count - places], sizeof *cloud->x),
-                    cloud->count++;
+                    ++cloud->count;
         }
     cloud->target_count = balls;
 }
@@ -112,12 +112,12 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
 /* Onto axes that are none of the coordinates': an orthogonal matrix of ninths. */
 static void turn(struct stability_cloud *cloud)
 {
-    for (int32_t i = 0; i < cloud->count; i++) {
+    for (int32_t i = 0; i < cloud->count; ++i) {
         double *x = cloud->x[i];
         const double turned[3] = {(x[0] + 8 * x[1] - 4 * x[2]) / 9,
                                   (-4 * x[0] + 4 * x[1] + 7 * x[2]) / 9,
                                   (8 * x[0] + x[1] + 4 * x[2]) / 9};
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             x[axis] = turned[axis];
     }
 }
@@ -127,7 +127,7 @@ static void fill_volumes(struct stability_cloud *cloud, enum stability_sweep swe
 {
     const double ball = 4 * 3.14159265358979323846 / 3 * pow(cloud->support, 3);
     cloud->volume = allocate_or_exit((size_t)cloud->count, sizeof *cloud->volume);
-    for (int32_t i = 0; i < cloud->count; i++) {
+    for (int32_t i = 0; i < cloud->count; ++i) {
         cloud->volume[i] = 1;
         if (sweep == SWEEP_NEIGHBOURS)
             cloud->volume[i] = ball / (at + 1);
@@ -184,7 +184,7 @@ struct stability_cloud stability_cloud_create(const struct stability *stability,
     if (sweep != SWEEP_JITTER) /* a lattice without jitter has its shells at the same distance */
         turn(&cloud);
     fill_volumes(&cloud, sweep, at);
-    for (int axis = 0; axis < 3 && sweep == SWEEP_OFFSET; axis++)
+    for (int axis = 0; axis < 3 && sweep == SWEEP_OFFSET; ++axis)
         cloud.shift[axis] = at * cloud.support * direction[axis];
     return cloud;
 }

@@ -44,7 +44,7 @@ static void measure_scales(const struct bench *bench)
 {
     struct stability_case *one = bench->one;
     struct trial base = run_at(bench, 0, 0);
-    for (int32_t k = 0; k <= one->steps; k++) {
+    for (int32_t k = 0; k <= one->steps; ++k) {
         const int exponent = (int)lround(one->at + (one->end - one->at) * k / one->steps);
         struct trial trial = run_at(bench, 0, exponent);
         one->other_bits += trial_other_bits(&trial, &base, exponent);
@@ -61,7 +61,7 @@ static void bisect(const struct bench *bench, double near, double far)
 {
     struct stability_case *one = bench->one;
     struct trial here = run_at(bench, near, 0), there = run_at(bench, far, 0);
-    for (int k = 0; k < HALVINGS; k++) {
+    for (int k = 0; k < HALVINGS; ++k) {
         const double middle = (near + far) / 2;
         struct trial between = run_at(bench, middle, 0);
         const bool first = trial_jump(&here, &between) > trial_jump(&between, &there);
@@ -85,7 +85,7 @@ static void measure_merging(const struct bench *bench)
     double largest = 0;
     int32_t largest_at = 1;
     compare(bench, &trial);
-    for (int32_t k = 1; k <= one->steps; k++) {
+    for (int32_t k = 1; k <= one->steps; ++k) {
         struct trial next = run_at(bench, one->at + k * step, 0);
         const double jump = trial_jump(&trial, &next);
         if (jump > largest)
@@ -139,7 +139,7 @@ static void take_cases(void *data, int32_t begin, int32_t end)
         bench.one = &stability->cases[index];
         if (begin == 0)
             report(stability, index);
-        for (bench.round = 0; bench.round < stability->settings.repetitions; bench.round++)
+        for (bench.round = 0; bench.round < stability->settings.repetitions; ++bench.round)
             measure_case(&bench);
     }
     sphg_context_destroy(bench.context);

@@ -37,8 +37,8 @@ static double *doubles_of(const struct numbers *numbers)
 {
     double *doubles =
         oracle_memory((size_t)numbers->count * (size_t)numbers->width * sizeof *doubles);
-    for (int32_t i = 0; i < numbers->count; i++)
-        for (int32_t k = 0; k < numbers->width; k++)
+    for (int32_t i = 0; i < numbers->count; ++i)
+        for (int32_t k = 0; k < numbers->width; ++k)
             doubles[i * numbers->width + k] = numbers_get(numbers, i, k);
     return doubles;
 }
@@ -59,7 +59,7 @@ static oracle_scene scene_of(const struct trial *trial)
 static int32_t find_smallest(const struct trial *trial, const uint8_t *taken)
 {
     int32_t smallest = -1;
-    for (int32_t i = 0; i < trial->target_count; i++)
+    for (int32_t i = 0; i < trial->target_count; ++i)
         if (!taken[i] && (smallest < 0 || numbers_get(&trial->lambda_min, i, 0) <
                                               numbers_get(&trial->lambda_min, smallest, 0)))
             smallest = i;
@@ -72,9 +72,9 @@ static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
     const int32_t count = trial->target_count, most = wanted < count ? wanted : count;
     uint8_t *taken = allocate_or_exit((size_t)count, 1);
     const int32_t even = trial->corrected ? (most + 1) / 2 : most;
-    for (int32_t k = 0; k < even; k++)
+    for (int32_t k = 0; k < even; ++k)
         taken[(int64_t)k * count / even] = 1;
-    for (int32_t k = even; k < most; k++)
+    for (int32_t k = even; k < most; ++k)
         taken[find_smallest(trial, taken)] = 1;
     return taken;
 }
@@ -85,7 +85,7 @@ static void note_ratio(const struct trial *trial, const oracle_result *exact, in
                        struct stability_case *one)
 {
     double found[9];
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         found[k] = numbers_get(&trial->jacobians[TRIAL_RANDOM], i, k);
     const double ratio = oracle_ratio(9, found, exact->gradient, exact->bound);
     double *worst = exact->touched ? &one->ratio_touched : &one->ratio_full;
@@ -95,7 +95,7 @@ static void note_ratio(const struct trial *trial, const oracle_result *exact, in
 static void note_condition(const oracle_point *point, struct stability_case *one)
 {
     quad least = point->filter.lambda[0], most = least;
-    for (int k = 1; k < 3; k++) {
+    for (int k = 1; k < 3; ++k) {
         least = point->filter.lambda[k] < least ? point->filter.lambda[k] : least;
         most = quad_max(most, point->filter.lambda[k]);
     }
@@ -109,9 +109,9 @@ static void compare_target(const struct trial *trial, const oracle_scene *scene,
 {
     const oracle_result exact = oracle_apply(reference, field, i);
     const oracle_point *point = oracle_at(reference, i);
-    one->compared++;
+    ++one->compared;
     if (exact.undecided)
-        one->undecided++;
+        ++one->undecided;
     else
         note_ratio(trial, &exact, i, one);
     if (!trial->corrected)
@@ -128,7 +128,7 @@ void reference_compare(const struct trial *trial, int32_t wanted, struct stabili
                                 .form = SPHG_DIFFERENCE,
                                 .at_sources = doubles_of(&trial->fields[TRIAL_RANDOM])};
     uint8_t *taken = choose_targets(trial, wanted);
-    for (int32_t i = 0; i < trial->target_count; i++)
+    for (int32_t i = 0; i < trial->target_count; ++i)
         if (taken[i])
             compare_target(trial, &scene, reference, &field, i, one);
     free(taken);

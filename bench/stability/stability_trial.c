@@ -8,11 +8,11 @@
 
 static void fill(struct trial *trial, const struct stability_cloud *cloud, int exponent)
 {
-    for (int32_t i = 0; i < trial->count; i++) {
+    for (int32_t i = 0; i < trial->count; ++i) {
         const double *x = cloud->x[i];
         const double carried[3] = {-x[1], x[0], 2 * x[2]};
         numbers_set(&trial->volumes, i, 0, ldexp(cloud->volume[i], 3 * exponent));
-        for (int axis = 0; axis < 3; axis++) {
+        for (int axis = 0; axis < 3; ++axis) {
             const double place = cloud->x[i][axis] + cloud->shift[axis];
             numbers_set(&trial->positions, i, axis, ldexp(place, exponent));
             numbers_set(&trial->fields[TRIAL_LINEAR], i, axis, ldexp(carried[axis], exponent));
@@ -42,7 +42,7 @@ struct trial trial_create(sphg_context *context, const struct stability_case *on
     trial.corrections = numbers_create(type, targets, width);
     trial.lambda_min = numbers_create(type, targets, 1);
     trial.ranks = allocate_or_exit((size_t)targets, 1);
-    for (int field = 0; field < TRIAL_FIELDS; field++) {
+    for (int field = 0; field < TRIAL_FIELDS; ++field) {
         trial.fields[field] = numbers_create(type, trial.count, 3);
         trial.jacobians[field] = numbers_create(type, targets, 9);
     }
@@ -59,7 +59,7 @@ void trial_destroy(struct trial *trial)
     numbers_destroy(&trial->corrections);
     numbers_destroy(&trial->lambda_min);
     free(trial->ranks);
-    for (int field = 0; field < TRIAL_FIELDS; field++) {
+    for (int field = 0; field < TRIAL_FIELDS; ++field) {
         numbers_destroy(&trial->fields[field]);
         numbers_destroy(&trial->jacobians[field]);
     }
@@ -80,7 +80,7 @@ static void evaluate(struct trial *trial)
                                   .volume = numbers_view(&trial->volumes)};
     sphg_view at_sources[TRIAL_FIELDS];
     sphg_field fields[TRIAL_FIELDS];
-    for (int field = 0; field < TRIAL_FIELDS; field++) {
+    for (int field = 0; field < TRIAL_FIELDS; ++field) {
         at_sources[field] = numbers_view(&trial->fields[field]);
         fields[field] = (sphg_field){.shape = SPHG_VECTOR,
                                      .at_sources = &at_sources[field],
@@ -102,8 +102,8 @@ static void evaluate(struct trial *trial)
 static int64_t count_not_finite(const struct numbers *numbers)
 {
     int64_t count = 0;
-    for (int32_t i = 0; i < numbers->count; i++)
-        for (int32_t k = 0; k < numbers->width; k++)
+    for (int32_t i = 0; i < numbers->count; ++i)
+        for (int32_t k = 0; k < numbers->width; ++k)
             count += !isfinite(numbers_get(numbers, i, k));
     return count;
 }
@@ -111,14 +111,14 @@ static int64_t count_not_finite(const struct numbers *numbers)
 static double norm_of(const struct numbers *tensors, int32_t i)
 {
     double square = 0;
-    for (int32_t k = 0; k < tensors->width; k++)
+    for (int32_t k = 0; k < tensors->width; ++k)
         square += numbers_get(tensors, i, k) * numbers_get(tensors, i, k);
     return sqrt(square);
 }
 
 static void tally_ranks(const struct trial *trial, struct stability_case *one)
 {
-    for (int32_t rank = 0; rank < 4; rank++) {
+    for (int32_t rank = 0; rank < 4; ++rank) {
         one->rank_sum += rank * trial->stats.rank[rank];
         if (trial->stats.rank[rank] > 0 && rank < one->rank_least)
             one->rank_least = rank;
@@ -130,7 +130,7 @@ static void tally_ranks(const struct trial *trial, struct stability_case *one)
 
 static void tally_results(const struct trial *trial, struct stability_case *one)
 {
-    for (int32_t i = 0; i < trial->target_count; i++) {
+    for (int32_t i = 0; i < trial->target_count; ++i) {
         const double error = linear_field_error(&trial->jacobians[TRIAL_LINEAR], i);
         one->linear_sum += error;
         if (!trial->corrected || trial->ranks[i] == 3)
@@ -143,7 +143,7 @@ static void tally_results(const struct trial *trial, struct stability_case *one)
 static void tally(const struct trial *trial, struct stability_case *one)
 {
     one->targets += trial->target_count;
-    for (int field = 0; field < TRIAL_FIELDS; field++)
+    for (int field = 0; field < TRIAL_FIELDS; ++field)
         one->not_finite += count_not_finite(&trial->jacobians[field]);
     one->not_finite += count_not_finite(&trial->corrections);
     one->not_finite += count_not_finite(&trial->lambda_min);
@@ -170,9 +170,9 @@ static double largest_change(const struct numbers *a, const struct numbers *b)
 {
     static const double weights[6] = {1, 2, 2, 1, 2, 1};
     double largest = 0;
-    for (int32_t i = 0; i < a->count; i++) {
+    for (int32_t i = 0; i < a->count; ++i) {
         double square = 0;
-        for (int32_t k = 0; k < a->width; k++) {
+        for (int32_t k = 0; k < a->width; ++k) {
             const double change = numbers_get(a, i, k) - numbers_get(b, i, k);
             square += change * change * (a->width == 6 ? weights[k] : 1);
         }
@@ -207,7 +207,7 @@ double trial_correction_jump(const struct trial *trial, const struct trial *othe
 
 static bool is_scaled(const struct numbers *a, const struct numbers *b, int32_t i, int exponent)
 {
-    for (int32_t k = 0; k < a->width; k++)
+    for (int32_t k = 0; k < a->width; ++k)
         if (ldexp(numbers_get(a, i, k), exponent) != numbers_get(b, i, k))
             return false;
     return true;
@@ -216,7 +216,7 @@ static bool is_scaled(const struct numbers *a, const struct numbers *b, int32_t 
 int64_t trial_other_bits(const struct trial *trial, const struct trial *base, int exponent)
 {
     int64_t count = 0;
-    for (int32_t i = 0; i < trial->target_count; i++)
+    for (int32_t i = 0; i < trial->target_count; ++i)
         count +=
             !(is_scaled(&trial->jacobians[TRIAL_RANDOM], &base->jacobians[TRIAL_RANDOM], i,
                         exponent) &&

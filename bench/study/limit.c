@@ -16,7 +16,7 @@ static const char *const stage_names[] = {"sums", "results"}, *const work_names[
 static int fastest_of(const struct limit_times *times, int finished)
 {
     int best = 0;
-    for (int k = 1; k < LIMIT_ARRANGEMENTS; k++)
+    for (int k = 1; k < LIMIT_ARRANGEMENTS; ++k)
         if (samples_median(&times->arrangements[finished][k]) <
             samples_median(&times->arrangements[finished][best]))
             best = k;
@@ -62,13 +62,13 @@ static void print_times(const struct limit *limit)
     TABLE_ROW(table, cell_text(table_text("library, %s", library_isa())),
               cell_time(&limit->library[0], 1), cell_time(&limit->library[1], 1),
               cell_time(&limit->library[2], 1));
-    for (int finished = 0; finished < 2; finished++) {
+    for (int finished = 0; finished < 2; ++finished) {
         table_section(table, finished ? "limit: reduced, inverted, formed" : "limit: sums alone");
         table_section(shares, table_text("share of the limit, %s [%%]", stage_names[finished]));
-        for (int set = 0; set < limit->set_count; set++) {
+        for (int set = 0; set < limit->set_count; ++set) {
             struct cell cells[LIMIT_WORKS + 1] = {cell_text(limit->sets[set]->name)},
                                             percent[LIMIT_WORKS + 1] = {cells[0]};
-            for (int work = 0; work < LIMIT_WORKS; work++) {
+            for (int work = 0; work < LIMIT_WORKS; ++work) {
                 const struct samples *fastest = limit_of(limit, set, work, finished);
                 cells[work + 1] = cell_time(fastest, 1);
                 percent[work + 1] = cell_number(share_of(limit, fastest, work));
@@ -88,8 +88,8 @@ static void print_arrangements(const struct limit *limit)
                                             {"", NULL, NULL, NULL},
                                             {0}};
     struct table *table = table_create("", columns);
-    for (int set = 0; set < limit->set_count; set++)
-        for (int work = 0; work < LIMIT_WORKS; work++)
+    for (int set = 0; set < limit->set_count; ++set)
+        for (int work = 0; work < LIMIT_WORKS; ++work)
             TABLE_ROW(table, cell_text(limit->sets[set]->name), cell_text(work_names[work]),
                       cell_text(describe_arrangement(fastest_of(&limit->times[set][work], 0))));
     table_print(table);
@@ -97,9 +97,9 @@ static void print_arrangements(const struct limit *limit)
 
 static void print_packed(const struct limit *limit)
 {
-    for (int set = 0; set < limit->set_count; set++) {
+    for (int set = 0; set < limit->set_count; ++set) {
         double worst = 0;
-        for (int work = 0; work < LIMIT_WORKS; work++)
+        for (int work = 0; work < LIMIT_WORKS; ++work)
             worst = numbers_larger(worst, limit->times[set][work].deviation);
         printf("%-11s%s: %.1f pairs in %d vectors a target, %.0f kB, off double by %.1e\n",
                set ? "" : "packed", limit->sets[set]->name, limit->packed_pairs[set],
@@ -138,7 +138,7 @@ static struct table *table_of_probe(const struct limit *limit)
                                             {"off by", "matrix_deviation", "%.1e", NULL},
                                             {0}};
     struct table *table = table_create("probe", columns);
-    for (int work = 0; work < PROBE_WORKS; work++)
+    for (int work = 0; work < PROBE_WORKS; ++work)
         TABLE_ROW(table, cell_text(work_names[work]), cell_time(&limit->probe[work], 1),
                   cell_number(limit->probe_error), cell_number(limit->probe_deviation));
     return table;
@@ -155,7 +155,7 @@ static struct table *table_of_arrangements(const struct limit *limit)
         {NULL, "is_limit", NULL, NULL}, {NULL, "percent_of_library", NULL, NULL},
         {NULL, "vectors", NULL, NULL},  {0}};
     struct table *table = table_create("limit", columns);
-    for (int n = 0; n < LIMIT_WORKS * 2 * limit->set_count * LIMIT_ARRANGEMENTS; n++) {
+    for (int n = 0; n < LIMIT_WORKS * 2 * limit->set_count * LIMIT_ARRANGEMENTS; ++n) {
         const int k = n % LIMIT_ARRANGEMENTS, set = n / LIMIT_ARRANGEMENTS % limit->set_count;
         const int stage = n / LIMIT_ARRANGEMENTS / limit->set_count % 2;
         const int work = n / LIMIT_ARRANGEMENTS / limit->set_count / 2;
@@ -168,7 +168,7 @@ static struct table *table_of_arrangements(const struct limit *limit)
                   cell_number(share_of(limit, samples, work)),
                   cell_number((double)limit->slots[set] / limit->sets[set]->lanes));
     }
-    for (int work = 0; work < LIMIT_WORKS; work++)
+    for (int work = 0; work < LIMIT_WORKS; ++work)
         TABLE_ROW(table, cell_text(work_names[work]), cell_text("library"), cell_none(),
                   cell_none(), cell_time(&limit->library[work], 1), cell_none(), cell_none(),
                   cell_none(), cell_none());

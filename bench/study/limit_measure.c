@@ -64,7 +64,7 @@ struct assignment {
 static void run_packed_share(void *data, int32_t begin, int32_t end)
 {
     const struct assignment *assignment = data;
-    for (int32_t thread = begin; thread < end; thread++)
+    for (int32_t thread = begin; thread < end; ++thread)
         assignment->set->run(&assignment->packed[thread].data, assignment->work,
                              assignment->arrangement, assignment->finished, assignment->targets);
 }
@@ -88,10 +88,10 @@ static void pack(struct bench *bench)
 {
     struct limit *limit = bench->limit;
     const double pairs = (double)limit->neighbors.pairs / limit->count;
-    for (int set = 0; set < limit->set_count; set++) {
+    for (int set = 0; set < limit->set_count; ++set) {
         const size_t threads = (size_t)limit->settings.threads;
         bench->packed[set] = allocate_or_exit(threads, sizeof *bench->packed[set]);
-        for (size_t thread = 0; thread < threads; thread++)
+        for (size_t thread = 0; thread < threads; ++thread)
             bench->packed[set][thread] = packed_create(limit->sets[set], limit->settings.support,
                                                        limit->settings.jitter, pairs);
         limit->packed_pairs[set] = bench->packed[set][0].pairs;
@@ -104,11 +104,11 @@ static void pack(struct bench *bench)
 static void check_arrangements(struct bench *bench)
 {
     struct limit *limit = bench->limit;
-    for (int set = 0; set < limit->set_count; set++)
-        for (int work = 0; work < LIMIT_WORKS; work++)
-            for (int k = 0; k < LIMIT_ARRANGEMENTS; k++) {
+    for (int set = 0; set < limit->set_count; ++set)
+        for (int work = 0; work < LIMIT_WORKS; ++work)
+            for (int k = 0; k < LIMIT_ARRANGEMENTS; ++k) {
                 const struct packed *packed = &bench->packed[set][0];
-                for (int32_t n = 0; n < LIMIT_TARGETS * LIMIT_SUMS; n++)
+                for (int32_t n = 0; n < LIMIT_TARGETS * LIMIT_SUMS; ++n)
                     packed->data.results[n] = 0;
                 limit->sets[set]->run(&packed->data, (enum limit_work)work, k, true, LIMIT_TARGETS);
                 const double deviation = packed_deviation(packed, (enum limit_work)work);
@@ -120,8 +120,8 @@ static void check_arrangements(struct bench *bench)
 static void time_arrangements(struct bench *bench, int set, enum limit_work work)
 {
     struct limit_times *times = &bench->limit->times[set][work];
-    for (int k = 0; k < LIMIT_ARRANGEMENTS; k++)
-        for (int finished = 0; finished < 2; finished++)
+    for (int k = 0; k < LIMIT_ARRANGEMENTS; ++k)
+        for (int finished = 0; finished < 2; ++finished)
             samples_add(&times->arrangements[finished][k],
                         time_packed(bench, set, work, k, finished));
 }
@@ -129,16 +129,16 @@ static void time_arrangements(struct bench *bench, int set, enum limit_work work
 static void run_round(struct bench *bench)
 {
     struct limit *limit = bench->limit;
-    for (int work = 0; work < PROBE_WORKS; work++) {
+    for (int work = 0; work < PROBE_WORKS; ++work) {
         const struct moment start = now();
         probe_run(bench->probe, (enum probe_work)work, limit->settings.threads);
         samples_add(&limit->probe[work], since(start));
     }
-    for (int work = 0; work < LIMIT_WORKS && !limit->probe_only; work++) {
+    for (int work = 0; work < LIMIT_WORKS && !limit->probe_only; ++work) {
         const struct moment start = now();
         run_library(bench, (enum limit_work)work);
         samples_add(&limit->library[work], since(start));
-        for (int set = 0; set < limit->set_count; set++)
+        for (int set = 0; set < limit->set_count; ++set)
             time_arrangements(bench, set, (enum limit_work)work);
     }
 }
@@ -153,14 +153,14 @@ static void open_library_side(struct bench *bench, int32_t side)
     bench->limit->set_count = limit_sets(bench->limit->sets, LIMIT_SETS_MOST);
     pack(bench);
     check_arrangements(bench);
-    for (int work = 0; work < LIMIT_WORKS; work++)
+    for (int work = 0; work < LIMIT_WORKS; ++work)
         run_library(bench, (enum limit_work)work);
 }
 
 static void close_library_side(struct bench *bench)
 {
-    for (int set = 0; set < bench->limit->set_count; set++) {
-        for (int32_t thread = 0; thread < bench->limit->settings.threads; thread++)
+    for (int set = 0; set < bench->limit->set_count; ++set) {
+        for (int32_t thread = 0; thread < bench->limit->settings.threads; ++thread)
             packed_destroy(&bench->packed[set][thread]);
         free(bench->packed[set]);
     }
@@ -179,13 +179,13 @@ void limit_measure(struct limit *limit)
     limit->count = side * side * side;
     bench.probe = probe_create(bench.context, side, settings->support, settings->jitter);
     limit->probe_pairs = probe_pairs(bench.probe);
-    for (int work = 0; work < PROBE_WORKS; work++)
+    for (int work = 0; work < PROBE_WORKS; ++work)
         probe_run(bench.probe, (enum probe_work)work, settings->threads);
     limit->probe_error = probe_error(bench.probe);
     limit->probe_deviation = probe_matrix_deviation(bench.probe, bench.context);
     if (!limit->probe_only)
         open_library_side(&bench, side);
-    for (int32_t repetition = 0; repetition < settings->repetitions; repetition++) {
+    for (int32_t repetition = 0; repetition < settings->repetitions; ++repetition) {
         progress_show("round %d of %d", repetition + 1, settings->repetitions);
         run_round(&bench);
     }

@@ -28,7 +28,7 @@ static void lay_out(struct packed *packed, int32_t slots)
         fprintf(stderr, "sphgrad-bench: out of memory\n");
         exit(EXIT_FAILURE);
     }
-    for (size_t k = 0; k < total; k++)
+    for (size_t k = 0; k < total; ++k)
         packed->memory[k] = 0;
     float *next = packed->memory;
     packed->data = (struct limit_data){.slots = slots,
@@ -46,7 +46,7 @@ static void lay_out(struct packed *packed, int32_t slots)
 /* v = (-y, x, 2z) */
 static void describe(const struct numbers *positions, int32_t particle, double numbers[LIMIT_OWN])
 {
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         numbers[axis] = numbers_get(positions, particle, axis);
     numbers[3] = -numbers[1];
     numbers[4] = numbers[0];
@@ -56,7 +56,7 @@ static void describe(const struct numbers *positions, int32_t particle, double n
 static void set_own(struct packed *packed, int32_t target, const double numbers[LIMIT_OWN])
 {
     const int32_t group = target / packed->lanes, lane = target % packed->lanes;
-    for (int32_t k = 0; k < LIMIT_OWN; k++) {
+    for (int32_t k = 0; k < LIMIT_OWN; ++k) {
         packed->data.own[target * LIMIT_OWN + k] = (float)numbers[k];
         packed->data.own_by_lane[(group * LIMIT_OWN + k) * packed->lanes + lane] =
             (float)numbers[k];
@@ -70,7 +70,7 @@ static void set_pair(struct packed *packed, int32_t target, int32_t slot, double
     const int32_t group = target / lanes, lane = target % lanes;
     const double components[LIMIT_COMPONENTS] = {numbers[0], numbers[1], numbers[2], volume,
                                                  numbers[3], numbers[4], numbers[5]};
-    for (int32_t k = 0; k < LIMIT_COMPONENTS; k++) {
+    for (int32_t k = 0; k < LIMIT_COMPONENTS; ++k) {
         packed->data.by_target[(target * LIMIT_COMPONENTS + k) * slots + slot] =
             (float)components[k];
         packed->data.by_lane[((group * slots + slot) * LIMIT_COMPONENTS + k) * lanes + lane] =
@@ -93,12 +93,12 @@ static int32_t pack_target(struct packed *packed, const struct numbers *position
     int32_t count = 0;
     describe(positions, particle, own);
     set_own(packed, target, own);
-    for (int32_t j = 0; j < positions->count && count < packed->data.slots; j++) {
+    for (int32_t j = 0; j < positions->count && count < packed->data.slots; ++j) {
         describe(positions, j, other);
         if (j != particle && distance(own, other) < 1)
             set_pair(packed, target, count++, volume, other);
     }
-    for (int32_t slot = count; slot < packed->data.slots; slot++)
+    for (int32_t slot = count; slot < packed->data.slots; ++slot)
         set_pair(packed, target, slot, 0, own);
     return count;
 }
@@ -121,17 +121,17 @@ static void add_reference(const float *p, int32_t slots, const double own[LIMIT_
                           double sums[LIMIT_SUMS])
 {
     double x[3], field[3];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         x[k] = own[k] - (double)p[k * slots];
         field[k] = own[3 + k] - (double)p[(4 + k) * slots];
     }
     const double q = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     const double g = weight(q) * (double)p[3 * slots];
-    for (int a = 0, k = 0; a < 3; a++)
-        for (int b = a; b < 3; b++)
+    for (int a = 0, k = 0; a < 3; ++a)
+        for (int b = a; b < 3; ++b)
             sums[k++] += g * x[a] * x[b];
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
             sums[6 + 3 * a + b] += g * field[a] * x[b];
 }
 
@@ -141,7 +141,7 @@ static void invert(const double a[6], double c[6])
                                  a[1] * a[4] - a[2] * a[3], a[0] * a[5] - a[2] * a[2],
                                  a[1] * a[2] - a[0] * a[4], a[0] * a[3] - a[1] * a[1]};
     const double determinant = a[0] * cofactors[0] + a[1] * cofactors[1] + a[2] * cofactors[2];
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         c[k] = cofactors[k] / determinant;
 }
 
@@ -150,18 +150,18 @@ static void make_reference(struct packed *packed, int32_t target)
     const int32_t slots = packed->data.slots, lanes = packed->lanes;
     double own[LIMIT_OWN], sums[LIMIT_SUMS] = {0};
     double *reference = packed->reference + target * LIMIT_SUMS;
-    for (int k = 0; k < LIMIT_OWN; k++)
+    for (int k = 0; k < LIMIT_OWN; ++k)
         own[k] = (double)packed->data.own[target * LIMIT_OWN + k];
-    for (int32_t slot = 0; slot < slots; slot++)
+    for (int32_t slot = 0; slot < slots; ++slot)
         add_reference(packed->data.by_target + target * LIMIT_COMPONENTS * slots + slot, slots, own,
                       sums);
     invert(sums, reference);
     static const int full[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-            for (int k = 0; k < 3; k++)
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
+            for (int k = 0; k < 3; ++k)
                 reference[6 + 3 * a + b] += sums[6 + 3 * a + k] * reference[full[k][b]];
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         packed->data.corrections[(target / lanes * 6 + k) * lanes + target % lanes] =
             (float)reference[k];
 }
@@ -179,7 +179,7 @@ struct packed packed_create(const struct limit_set *set, double support, double 
     lattice_fill(&lattice, &positions);
     lay_out(&packed, (int32_t)ceil(mean_pairs / set->lanes) * set->lanes);
     packed.reference = allocate_or_exit(LIMIT_TARGETS * LIMIT_SUMS, sizeof(double));
-    for (int32_t target = 0; target < LIMIT_TARGETS; target++) {
+    for (int32_t target = 0; target < LIMIT_TARGETS; ++target) {
         total +=
             pack_target(&packed, &positions, middle_particle(margin, side, target), target, volume);
         make_reference(&packed, target);
@@ -202,7 +202,7 @@ static double relative_difference(const struct packed *packed, int32_t target, i
     const double *reference = packed->reference + target * LIMIT_SUMS;
     const float *results = packed->data.results + target / lanes * LIMIT_SUMS * lanes;
     double difference = 0, size = 0;
-    for (int k = first; k < first + count; k++) {
+    for (int k = first; k < first + count; ++k) {
         const double d = (double)results[k * lanes + target % lanes] - reference[k];
         difference += d * d;
         size += reference[k] * reference[k];
@@ -213,7 +213,7 @@ static double relative_difference(const struct packed *packed, int32_t target, i
 double packed_deviation(const struct packed *packed, enum limit_work work)
 {
     double most = 0;
-    for (int32_t target = 0; target < LIMIT_TARGETS; target++) {
+    for (int32_t target = 0; target < LIMIT_TARGETS; ++target) {
         const double c = work == LIMIT_GRADIENT ? 0 : relative_difference(packed, target, 0, 6);
         const double j = work == LIMIT_MATRICES ? 0 : relative_difference(packed, target, 6, 9);
         most = c <= most ? most : c; /* NaN stays */

@@ -65,7 +65,7 @@ INLINE struct sums sum_pairs(struct pairs pairs, const vec own[LIMIT_OWN], enum 
                              bool by_newton)
 {
     struct sums sums = {0};
-    for (int32_t k = 0; k < pairs.steps; k++)
+    for (int32_t k = 0; k < pairs.steps; ++k)
         add_pair(&sums, pairs, own, k, weight_of(pairs, own, k, by_newton), work);
     return sums;
 }
@@ -73,7 +73,7 @@ INLINE struct sums sum_pairs(struct pairs pairs, const vec own[LIMIT_OWN], enum 
 INLINE void store_weights(struct pairs pairs, const vec own[LIMIT_OWN], bool by_newton,
                           float *weights)
 {
-    for (int32_t k = 0; k < pairs.steps; k++)
+    for (int32_t k = 0; k < pairs.steps; ++k)
         store(weights + k * LANES, weight_of(pairs, own, k, by_newton));
 }
 
@@ -84,10 +84,10 @@ INLINE struct sums sum_weighted(struct pairs pairs, const vec own[LIMIT_OWN], en
 {
     struct sums sums = {0};
     if (work != LIMIT_GRADIENT)
-        for (int32_t k = 0; k < pairs.steps; k++)
+        for (int32_t k = 0; k < pairs.steps; ++k)
             add_pair(&sums, pairs, own, k, load(weights + k * LANES), LIMIT_MATRICES);
     if (work != LIMIT_MATRICES)
-        for (int32_t k = 0; k < pairs.steps; k++)
+        for (int32_t k = 0; k < pairs.steps; ++k)
             add_pair(&sums, pairs, own, k, load(weights + k * LANES), LIMIT_GRADIENT);
     return sums;
 }
@@ -129,13 +129,13 @@ INLINE int end_of_sums(enum limit_work work)
 INLINE void fetch_sums(const float *stored, enum limit_work work, bool lanes_are_targets,
                        vec sums[LIMIT_SUMS])
 {
-    for (int k = first_sum(work); k < end_of_sums(work); k++) {
+    for (int k = first_sum(work); k < end_of_sums(work); ++k) {
         if (lanes_are_targets) {
             sums[k] = load(stored + k * LANES);
             continue;
         }
         vec parts[LANES];
-        for (int target = 0; target < LANES; target++)
+        for (int target = 0; target < LANES; ++target)
             parts[target] = load(stored + (target * LIMIT_SUMS + k) * LANES);
         sums[k] = sum_lanes(parts);
     }
@@ -149,16 +149,16 @@ INLINE void finish(const struct limit_data *data, int32_t group, enum limit_work
     fetch_sums(data->sums, work, lanes_are_targets, sums);
     if (work != LIMIT_GRADIENT) {
         invert_symmetric(sums, correction);
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < 6; ++k)
             store(results + k * LANES, correction[k]);
     } else {
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < 6; ++k)
             correction[k] = load(data->corrections + (group * 6 + k) * LANES);
     }
     if (work == LIMIT_MATRICES)
         return;
     apply_symmetric(sums + 6, correction, jacobian);
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         store(results + (6 + k) * LANES, jacobian[k]);
 }
 
@@ -177,7 +177,7 @@ INLINE struct pairs pairs_of_target(const struct limit_data *data, int32_t slots
 INLINE void load_own(const struct limit_data *data, bool lanes_are_targets, int32_t unit,
                      vec own[LIMIT_OWN])
 {
-    for (int k = 0; k < LIMIT_OWN; k++)
+    for (int k = 0; k < LIMIT_OWN; ++k)
         own[k] = lanes_are_targets ? load(data->own_by_lane + (unit * LIMIT_OWN + k) * LANES)
                                    : splat(data->own[unit * LIMIT_OWN + k]);
 }
@@ -190,13 +190,13 @@ INLINE void run_group(const struct limit_data *data, int32_t slots, int32_t grou
     const int32_t units = grouped ? 1 : LANES, first = grouped ? group : group * LANES;
     vec own[LIMIT_OWN];
     if (how.in_passes)
-        for (int32_t u = 0; u < units; u++) {
+        for (int32_t u = 0; u < units; ++u) {
             load_own(data, grouped, first + u, own);
             const struct pairs pairs = grouped ? pairs_of_group(data, slots, first)
                                                : pairs_of_target(data, slots, first + u);
             store_weights(pairs, own, how.by_newton, data->weights + u * slots);
         }
-    for (int32_t u = 0; u < units; u++) {
+    for (int32_t u = 0; u < units; ++u) {
         load_own(data, grouped, first + u, own);
         const struct pairs pairs =
             grouped ? pairs_of_group(data, slots, first) : pairs_of_target(data, slots, first + u);

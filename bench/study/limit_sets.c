@@ -19,7 +19,7 @@ int limit_sets(const struct limit_set *sets[], int room)
     int count = 0;
     while (count < runs && count < room) {
         sets[count] = known[count];
-        count++;
+        ++count;
     }
     return count;
 }

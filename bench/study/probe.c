@@ -36,7 +36,7 @@ static void *allocate_lines(int64_t count, int64_t size)
 static int32_t cell_of(const struct numbers *positions, int32_t i, int32_t cells)
 {
     int32_t cell = 0;
-    for (int32_t axis = 2; axis >= 0; axis--)
+    for (int32_t axis = 2; axis >= 0; --axis)
         cell = cell * cells + (int32_t)(numbers_get(positions, i, axis) + 1);
     return cell;
 }
@@ -45,13 +45,13 @@ static void sort(struct probe *probe, const struct numbers *positions, int32_t c
 {
     int32_t *first =
         allocate_or_exit((size_t)cells * (size_t)cells * (size_t)cells + 1, sizeof *first);
-    for (int32_t i = 0; i < probe->count; i++)
+    for (int32_t i = 0; i < probe->count; ++i)
         first[cell_of(positions, i, cells) + 1]++;
-    for (int32_t cell = 0; cell < cells * cells * cells; cell++)
+    for (int32_t cell = 0; cell < cells * cells * cells; ++cell)
         first[cell + 1] += first[cell];
-    for (int32_t i = 0; i < probe->count; i++) {
+    for (int32_t i = 0; i < probe->count; ++i) {
         float *row = probe->positions[first[cell_of(positions, i, cells)]++];
-        for (int32_t axis = 0; axis < 3; axis++)
+        for (int32_t axis = 0; axis < 3; ++axis)
             row[axis] = (float)numbers_get(positions, i, axis);
         row[3] = (float)volume;
     }
@@ -60,7 +60,7 @@ static void sort(struct probe *probe, const struct numbers *positions, int32_t c
 
 static void set_fields(struct probe *probe)
 {
-    for (int32_t i = 0; i < probe->count; i++) {
+    for (int32_t i = 0; i < probe->count; ++i) {
         const float *x = probe->positions[i];
         float *field = probe->fields[i];
         field[0] = -x[1], field[1] = x[0], field[2] = 2 * x[2], field[3] = 0;
@@ -89,7 +89,7 @@ static void find_lists(struct probe *probe, sphg_context *context)
     library_check(context, sphg_pair_gradients(context, &probe_scheme, &sources, NULL,
                                                sphg_absent(), &pairs));
     probe->indices = allocate_lines(pairs.count + PADDING, sizeof *probe->indices);
-    for (int32_t k = 0; k < PADDING; k++)
+    for (int32_t k = 0; k < PADDING; ++k)
         probe->indices[pairs.count + k] = 0;
     pairs.indices = probe->indices;
     pairs.capacity = pairs.count;
@@ -180,7 +180,7 @@ static double matrix_deviation(const struct probe *probe, const float *expected,
     const int32_t lanes = lanes_of(probe);
     const float *found = probe->corrections + (int64_t)(i / lanes) * 6 * lanes + i % lanes;
     double difference = 0, size = 0;
-    for (int k = 0; k < 6; k++) { /* xx xy xz yy yz zz: what is off the diagonal stands twice */
+    for (int k = 0; k < 6; ++k) { /* xx xy xz yy yz zz: what is off the diagonal stands twice */
         const double times = k == 1 || k == 2 || k == 4 ? 2 : 1;
         const double off = (double)found[k * lanes] - (double)expected[k];
         difference += times * off * off;
@@ -200,7 +200,7 @@ double probe_matrix_deviation(const struct probe *probe, sphg_context *context)
     library_check(context, sphg_correction(context, &probe_scheme, &sources, NULL,
                                            sphg_view_f32(corrections[0], sizeof *corrections),
                                            sphg_view_u8(ranks, 1)));
-    for (int32_t i = 0; i < probe->count; i++) {
+    for (int32_t i = 0; i < probe->count; ++i) {
         const double deviation = ranks[i] == 3 ? matrix_deviation(probe, corrections[i], i) : 0;
         most = numbers_larger(most, deviation);
     }
@@ -215,10 +215,10 @@ double probe_error(const struct probe *probe)
     static const double expected[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
     const int32_t lanes = lanes_of(probe);
     double most = 0;
-    for (int32_t i = 0; i < probe->count; i++) {
+    for (int32_t i = 0; i < probe->count; ++i) {
         const float *jacobian = probe->jacobians + (int64_t)(i / lanes) * 9 * lanes + i % lanes;
         double squares = 0;
-        for (int k = 0; k < 9; k++) {
+        for (int k = 0; k < 9; ++k) {
             const double d = (double)jacobian[k * lanes] - expected[k];
             squares += d * d / 6;
         }

@@ -58,7 +58,7 @@ INLINE vec weigh(const struct probe_arrays *arrays, const int32_t *indices, int6
     load_columns(arrays->positions, indices, columns);
     const mask lanes = *(const mask *)(const void *)numbers;
     const mask counts = lanes < (int32_t)(left < LANES ? left : LANES);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         x[axis] = own[axis] - columns[axis];
     const vec q2 = x[0] * x[0] + (x[1] * x[1] + (x[2] * x[2] + 1e-12f));
     return spline_weight(q2, 1) * (vec)(counts & (mask)columns[3]);
@@ -89,16 +89,16 @@ void PROBE_MATRICES_PASS(const struct probe_arrays *arrays, int32_t begin, int32
 {
     for (int32_t first = begin; first < end; first += LANES) {
         vec parts[6][LANES], sums[6], correction[6];
-        for (int lane = 0; lane < LANES; lane++) {
+        for (int lane = 0; lane < LANES; ++lane) {
             vec own_sums[6];
             sum_moments(arrays, first + lane < count ? first + lane : count - 1, own_sums);
-            for (int k = 0; k < 6; k++)
+            for (int k = 0; k < 6; ++k)
                 parts[k][lane] = own_sums[k];
         }
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < 6; ++k)
             sums[k] = sum_lanes(parts[k]);
         invert_symmetric(sums, correction);
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < 6; ++k)
             store(arrays->corrections + (int64_t)first * 6 + k * LANES, correction[k]);
     }
 }
@@ -109,15 +109,15 @@ INLINE void sum_field(const struct probe_arrays *arrays, int32_t i, vec sums[9])
     const vec own[3] = {splat(p[0]), splat(p[1]), splat(p[2])},
               own_field[3] = {splat(f[0]), splat(f[1]), splat(f[2])};
     const int64_t end = arrays->offsets[i + 1];
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9; ++k)
         sums[k] = (vec){0};
     for (int64_t k = arrays->offsets[i]; k < end; k += LANES) {
         vec x[3], field[4];
         const vec g = weigh(arrays, arrays->indices + k, end - k, own, x);
         load_columns(arrays->fields, arrays->indices + k, field);
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
             const vec weighted = g * (own_field[a] - field[a]);
-            for (int b = 0; b < 3; b++)
+            for (int b = 0; b < 3; ++b)
                 sums[3 * a + b] += weighted * x[b];
         }
     }
@@ -128,18 +128,18 @@ void PROBE_GRADIENT_PASS(const struct probe_arrays *arrays, int32_t begin, int32
 {
     for (int32_t first = begin; first < end; first += LANES) {
         vec parts[9][LANES], sums[9], correction[6], jacobian[9];
-        for (int lane = 0; lane < LANES; lane++) {
+        for (int lane = 0; lane < LANES; ++lane) {
             vec own_sums[9];
             sum_field(arrays, first + lane < count ? first + lane : count - 1, own_sums);
-            for (int k = 0; k < 9; k++)
+            for (int k = 0; k < 9; ++k)
                 parts[k][lane] = own_sums[k];
         }
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 9; ++k)
             sums[k] = sum_lanes(parts[k]);
-        for (int k = 0; k < 6; k++)
+        for (int k = 0; k < 6; ++k)
             correction[k] = load(arrays->corrections + (int64_t)first * 6 + k * LANES);
         apply_symmetric(sums, correction, jacobian);
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 9; ++k)
             store(arrays->jacobians + (int64_t)first * 9 + k * LANES, jacobian[k]);
     }
 }

@@ -88,7 +88,7 @@ int command_table1(int argc, char **argv)
 {
     struct table1 table = {
         .settings = {.particles = 1000000, .threads = machine_threads(), .repetitions = 9}};
-    for (int k = 0; k < TABLE1_METHODS; k++)
+    for (int k = 0; k < TABLE1_METHODS; ++k)
         table.methods[k] = paper[k];
     read_options(&table, argc, argv);
     table.particles = particles_create(&table.source);

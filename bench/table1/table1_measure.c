@@ -92,8 +92,8 @@ static void compute_fused(struct bench *bench, sphg_method method, const struct 
 static int64_t count_not_finite(const struct numbers *numbers)
 {
     int64_t count = 0;
-    for (int32_t i = 0; i < numbers->count; i++)
-        for (int32_t k = 0; k < numbers->width; k++)
+    for (int32_t i = 0; i < numbers->count; ++i)
+        for (int32_t k = 0; k < numbers->width; ++k)
             count += !isfinite(numbers_get(numbers, i, k));
     return count;
 }
@@ -133,7 +133,7 @@ static void warm_up(struct bench *bench)
     struct numbers linear_field =
         numbers_create(particles->velocities.type, particles->count, particles->dimension);
     linear_field_fill(&particles->positions, &linear_field);
-    for (int k = 0; k < TABLE1_METHODS; k++) {
+    for (int k = 0; k < TABLE1_METHODS; ++k) {
         struct table1_method *one = &bench->table->methods[k];
         progress_show("warm-up: %s", method_names[one->method]);
         measure_errors(bench, one, &linear_field);
@@ -163,7 +163,7 @@ static void time_method(struct bench *bench, struct table1_method *one, int kept
     bench->with_weights = kept;
     if (kept)
         compute_matrix(bench, one->method);
-    for (int work = 0; work < TABLE1_WORKS; work++) {
+    for (int work = 0; work < TABLE1_WORKS; ++work) {
         if (one->method == SPHG_PLAIN && work != TABLE1_GRADIENT)
             continue;
         const struct moment start = now();
@@ -181,13 +181,13 @@ static void prepare_probe(struct bench *bench)
     bench->probe =
         probe_create(bench->context, settings_side(count < most ? count : most, 3), 2, 0.2);
     bench->table->probe_count = probe_count(bench->probe);
-    for (int work = 0; work < PROBE_WORKS; work++)
+    for (int work = 0; work < PROBE_WORKS; ++work)
         probe_run(bench->probe, (enum probe_work)work, bench->table->settings.threads);
 }
 
 static void time_probe(struct bench *bench)
 {
-    for (int work = 0; work < PROBE_WORKS; work++) {
+    for (int work = 0; work < PROBE_WORKS; ++work) {
         const struct moment start = now();
         probe_run(bench->probe, (enum probe_work)work, bench->table->settings.threads);
         samples_add(&bench->table->probe[work], since(start));
@@ -197,14 +197,14 @@ static void time_probe(struct bench *bench)
 static void repeat(struct bench *bench)
 {
     struct table1 *table = bench->table;
-    for (int32_t repetition = 0; repetition < table->settings.repetitions; repetition++) {
+    for (int32_t repetition = 0; repetition < table->settings.repetitions; ++repetition) {
         progress_show("repetition %d of %d", repetition + 1, table->settings.repetitions);
         const struct moment start = now();
         search(bench, bench->neighbors, 0);
         samples_add(&table->search, since(start));
-        for (int k = 0; k < TABLE1_METHODS; k++)
+        for (int k = 0; k < TABLE1_METHODS; ++k)
             time_method(bench, &table->methods[k], 0);
-        for (int k = 0; k < TABLE1_METHODS; k++)
+        for (int k = 0; k < TABLE1_METHODS; ++k)
             if (table1_keeps_weights(&table->methods[k]))
                 time_method(bench, &table->methods[k], 1);
         time_probe(bench);
@@ -215,7 +215,7 @@ static void repeat(struct bench *bench)
 static double median_ratio(const struct numbers *given, const struct numbers *expected)
 {
     double *ratios = allocate_or_exit((size_t)given->count, sizeof *ratios);
-    for (int32_t i = 0; i < given->count; i++)
+    for (int32_t i = 0; i < given->count; ++i)
         ratios[i] = numbers_get(given, i, 0) / numbers_get(expected, i, 0);
     const double median = median_of(ratios, given->count);
     free(ratios);

@@ -101,7 +101,7 @@ static void print_probe(const struct table1 *table)
 
 static bool some_are_deficient(const struct table1 *table)
 {
-    for (int k = 0; k < TABLE1_METHODS; k++)
+    for (int k = 0; k < TABLE1_METHODS; ++k)
         if (table->methods[k].method != SPHG_PLAIN &&
             table->methods[k].stats.rank[table->particles.dimension] != table->particles.count)
             return true;
@@ -158,16 +158,16 @@ static void add_method(struct table *rows, const struct table1 *table,
     const bool corrected = one->method != SPHG_PLAIN;
     int count = 0;
     cells[count++] = cell_text(method_names[one->method]);
-    for (int k = 0; k < 2 * TABLE1_WORKS; k++)
+    for (int k = 0; k < 2 * TABLE1_WORKS; ++k)
         cells[count++] = cell_time(&one->times[k / TABLE1_WORKS][k % TABLE1_WORKS], 1);
     cells[count++] = cell_none();
-    for (int work = 0; work < TABLE1_WORKS; work++)
+    for (int work = 0; work < TABLE1_WORKS; ++work)
         cells[count++] = cell_per_pair(table, &one->times[0][work]);
     cells[count++] = cell_none();
     cells[count++] = cell_error(one->gradient_error);
     cells[count++] = corrected ? cell_error(one->fused_error) : cell_none();
     cells[count++] = table1_keeps_weights(one) ? cell_error(one->kept_error) : cell_none();
-    for (int rank = 0; rank < 4; rank++)
+    for (int rank = 0; rank < 4; ++rank)
         cells[count++] = corrected && show_ranks && rank <= table->particles.dimension
                              ? cell_count(one->stats.rank[rank])
                              : cell_none();
@@ -201,7 +201,7 @@ static void print_suspect(const struct table1 *table)
 static void print_footer(const struct table1 *table, bool deficient)
 {
     int64_t not_finite = 0;
-    for (int k = 0; k < TABLE1_METHODS; k++)
+    for (int k = 0; k < TABLE1_METHODS; ++k)
         not_finite += table->methods[k].not_finite;
     printf("\nerror: max |J_i - J|_F / |J|_F on %s over all particles%s rank %d%s\n",
            linear_field_formula(table->particles.dimension), deficient ? " of" : ", all of",
@@ -253,7 +253,7 @@ void table1_report(const struct table1 *table)
 {
     const bool deficient = some_are_deficient(table);
     struct table *rows = table_create("table1", columns);
-    for (int k = 0; k < TABLE1_METHODS; k++)
+    for (int k = 0; k < TABLE1_METHODS; ++k)
         add_method(rows, table, &table->methods[k], deficient || table->source.input);
     print_set_up(table);
     print_search(table);

@@ -31,7 +31,7 @@ static void name_particles(void *data, int global_size, int local_size, ZOLTAN_I
     (void)weights;
     (void)weight;
     const int count = ((const struct places *)data)->count;
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         global[k * global_size] = local[k * local_size] = (ZOLTAN_ID_TYPE)k;
     *error = ZOLTAN_OK;
 }
@@ -41,8 +41,8 @@ static void tell_places(void *data, int global_size, int local_size, int count,
 {
     (void)global_size;
     (void)global;
-    for (int k = 0; k < count; k++)
-        for (int a = 0; a < axes; a++)
+    for (int k = 0; k < count; ++k)
+        for (int a = 0; a < axes; ++a)
             x[k * axes + a] = place_of(data, (int)local[k * local_size])[a];
     *error = ZOLTAN_OK;
 }
@@ -99,12 +99,12 @@ void cut_by_bisection(MPI_Comm ranks, const struct places *places, struct box *b
     MPI_Comm_size(ranks, &rank_count);
     struct Zoltan_Struct *zoltan = asked(ranks, places);
     cut(zoltan);
-    for (int rank = 0; rank < rank_count; rank++) {
+    for (int rank = 0; rank < rank_count; ++rank) {
         struct box *b = &boxes[rank];
         int axes;
         need(Zoltan_RCB_Box(zoltan, rank, &axes, &b->low[0], &b->low[1], &b->low[2], &b->high[0],
                             &b->high[1], &b->high[2]));
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
             b->low[a] = open_end(b->low[a]);
             b->high[a] = open_end(b->high[a]);
         }

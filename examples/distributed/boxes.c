@@ -4,7 +4,7 @@
 
 bool box_holds(const struct box *box, const double *x)
 {
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3; ++a)
         if (!(x[a] >= box->low[a] && x[a] < box->high[a]))
             return false;
     return true;
@@ -21,7 +21,7 @@ bool boxes_are_near(const struct box *box, const struct box *other, double reach
     double square = 0;
     if (is_empty(box) || is_empty(other))
         return false;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
         const double gap =
             fmax(fmax(box->low[a] - other->high[a], other->low[a] - box->high[a]), 0);
         square += gap * gap;
@@ -34,7 +34,7 @@ bool box_is_near(const struct box *box, const double *x, double reach)
     double square = 0;
     if (is_empty(box))
         return false;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
         const double gap = fmax(fmax(box->low[a] - x[a], x[a] - box->high[a]), 0);
         square += gap * gap;
     }

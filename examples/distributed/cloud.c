@@ -23,12 +23,12 @@ static struct cloud_particle particle_of(int name, int side)
 {
     const double place[3] = {name % side, name / side % side, name / side / side};
     struct cloud_particle p = {.volume = 1 + .1 * scattered(name, 3), .density = 1, .name = name};
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
         p.x[a] = place[a] + .2 * scattered(name, a);
         p.density += slope[a] * p.x[a];
     }
     p.pressure = 1 + .5 * sin(p.x[0] + 2 * p.x[2]);
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6; ++k)
         p.stress[k] = cos(p.x[1] + k) + scattered(name, 4 + k);
     return p;
 }
@@ -63,7 +63,7 @@ struct sums {
 static void add(struct sums *sums, const double *force, double weight, const double *v,
                 double expected)
 {
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3; ++a)
         sums->force[a] += weight * force[a];
     sums->size_of_force += weight * sqrt(dot(force, force));
     sums->work += weight * dot(force, v);
@@ -90,7 +90,7 @@ static void add_symmetric(struct sums *sums, const struct cloud_particle *p, con
 struct cloud_errors cloud_judge(const struct cloud_forces *forces, int side, enum cloud_form form)
 {
     struct sums sums = {.work = 0};
-    for (int name = 0; name < side * side * side; name++) {
+    for (int name = 0; name < side * side * side; ++name) {
         const struct cloud_particle p = particle_of(name, side);
         (form == CLOUD_ADJOINT ? add_adjoint : add_symmetric)(&sums, &p, forces[name].of[form]);
     }
@@ -103,7 +103,7 @@ struct cloud_errors cloud_judge(const struct cloud_forces *forces, int side, enu
 
 static void widen(double *largest, const double *number, const double *other)
 {
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
         const double distance = fabs(number[a] - (other ? other[a] : 0));
         if (!(distance <= *largest)) /* NaN stays */
             *largest = distance;
@@ -114,7 +114,7 @@ double cloud_difference(const struct cloud_forces *a, const struct cloud_forces 
                         enum cloud_form form)
 {
     double difference = 0, size = 0;
-    for (int k = 0; k < side * side * side; k++) {
+    for (int k = 0; k < side * side * side; ++k) {
         widen(&difference, a[k].of[form], b[k].of[form]);
         widen(&size, b[k].of[form], NULL);
     }

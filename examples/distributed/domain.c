@@ -15,8 +15,8 @@ void domain_make(struct domain *domain, MPI_Comm ranks, const void *items, size_
     if (count)
         memcpy(domain->items, items, (size_t)count * size);
     domain->boxes = resized(NULL, (size_t)domain->rank_count, sizeof *domain->boxes);
-    for (int rank = 0; rank < domain->rank_count; rank++) /* all space is the first one's */
-        for (int a = 0; a < 3; a++) {
+    for (int rank = 0; rank < domain->rank_count; ++rank) /* all space is the first one's */
+        for (int a = 0; a < 3; ++a) {
             domain->boxes[rank].low[a] = rank ? INFINITY : -INFINITY;
             domain->boxes[rank].high[a] = INFINITY;
         }
@@ -44,8 +44,8 @@ static const double *position(const struct domain *domain, int k)
 
 static void refuse_bad_places(const struct domain *domain)
 {
-    for (int k = 0; k < domain->own; k++)
-        for (int a = 0; a < 3; a++)
+    for (int k = 0; k < domain->own; ++k)
+        for (int a = 0; a < 3; ++a)
             if (!isfinite(position(domain, k)[a]))
                 stop("the position of a particle is not a finite number");
 }
@@ -67,7 +67,7 @@ static int owner_of(const struct domain *domain, const double *x)
 {
     if (box_holds(&domain->boxes[domain->rank], x))
         return domain->rank;
-    for (int rank = 0; rank < domain->rank_count; rank++)
+    for (int rank = 0; rank < domain->rank_count; ++rank)
         if (box_holds(&domain->boxes[rank], x))
             return rank;
     stop("the boxes do not fill space");
@@ -77,7 +77,7 @@ static int owner_of(const struct domain *domain, const double *x)
 static void send_home(struct domain *domain)
 {
     domain->parcels.count = 0;
-    for (int k = 0; k < domain->own; k++) {
+    for (int k = 0; k < domain->own; ++k) {
         const int owner = owner_of(domain, position(domain, k));
         domain->moved += owner != domain->rank;
         add_parcel(&domain->parcels, k, owner);
@@ -102,7 +102,7 @@ static void find_near_boxes(struct domain *domain, double reach)
     const struct box *mine = &domain->boxes[domain->rank];
     domain->near = resized(domain->near, (size_t)domain->rank_count, sizeof *domain->near);
     domain->near_count = 0;
-    for (int rank = 0; rank < domain->rank_count; rank++)
+    for (int rank = 0; rank < domain->rank_count; ++rank)
         if (rank != domain->rank && boxes_are_near(mine, &domain->boxes[rank], reach))
             domain->near[domain->near_count++] = rank;
 }
@@ -115,10 +115,10 @@ static void address(struct domain *domain, double reach)
     domain->inner = resized(domain->inner, (size_t)domain->own, sizeof(int32_t));
     domain->outer = resized(domain->outer, (size_t)domain->own, sizeof(int32_t));
     domain->inner_count = domain->outer_count = 0;
-    for (int k = 0; k < domain->own; k++) {
+    for (int k = 0; k < domain->own; ++k) {
         const int before = parcels->count;
         const double *x = position(domain, k);
-        for (int n = 0; n < domain->near_count; n++)
+        for (int n = 0; n < domain->near_count; ++n)
             if (box_is_near(&domain->boxes[domain->near[n]], x, reach))
                 add_parcel(parcels, k, domain->near[n]);
         if (parcels->count > before)

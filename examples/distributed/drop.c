@@ -20,7 +20,7 @@ static void need(const struct drop *drop, sphg_result result)
 
 void drop_middle(const struct drop *drop, double middle[3])
 {
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3; ++a)
         middle[a] = drop_velocity[a] * drop->time;
 }
 
@@ -45,9 +45,9 @@ static struct particle particle_at(const double x[3], int name)
 int drop_fill(int layers, int first, int share, struct particle *room)
 {
     int name = 0, filled = 0;
-    for (int k = -layers; k <= layers; k++)
-        for (int j = -layers; j <= layers; j++)
-            for (int i = -layers; i <= layers; i++) {
+    for (int k = -layers; k <= layers; ++k)
+        for (int j = -layers; j <= layers; ++j)
+            for (int i = -layers; i <= layers; ++i) {
                 if (i * i + j * j + 2 * k * k > layers * layers)
                     continue;
                 if (name++ % share != first)
@@ -55,7 +55,7 @@ int drop_fill(int layers, int first, int share, struct particle *room)
                 const double x[3] = {(double)i / layers, (double)j / layers, (double)k / layers};
                 if (room)
                     room[filled] = particle_at(x, name - 1);
-                filled++;
+                ++filled;
             }
     return filled;
 }
@@ -157,7 +157,7 @@ static void settle(struct drop *drop, bool cut)
     drop->jacobian = resized(drop->jacobian, own, sizeof *drop->jacobian);
     drop->force = resized(drop->force, own, sizeof *drop->force);
     forget_the_skin(drop);
-    drop->settled++;
+    ++drop->settled;
     drop->settling += MPI_Wtime() - begin;
 }
 
@@ -236,11 +236,11 @@ static void stress(const struct drop *drop)
 {
     static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
     const float stiffness = drop->speed_of_sound * drop->speed_of_sound;
-    for (int i = 0; i < drop->domain.own; i++) {
+    for (int i = 0; i < drop->domain.own; ++i) {
         float(*j)[3] = drop->jacobian[i];
         struct particle *p = &particles(drop)[i];
         p->pressure -= (float)drop->time_step * stiffness * (j[0][0] + j[1][1] + j[2][2]);
-        for (int k = 0; k < 6; k++) {
+        for (int k = 0; k < 6; ++k) {
             const int a = row[k], b = column[k];
             drop->second[i].stress[k] =
                 drop->viscosity * (j[a][b] + j[b][a]) - (a == b ? p->pressure : 0);
@@ -252,9 +252,9 @@ static void move(struct drop *drop)
 {
     double middle[3];
     drop_middle(drop, middle);
-    for (int i = 0; i < drop->domain.own; i++) {
+    for (int i = 0; i < drop->domain.own; ++i) {
         struct particle *p = &particles(drop)[i];
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
             const double pull = attraction * (middle[a] - p->x[a]);
             const double push = (double)drop->force[i][a] / drop_mass(drop);
             p->v[a] += (float)(drop->time_step * (pull + push));
@@ -287,7 +287,7 @@ void drop_run(struct drop *drop)
 {
     MPI_Barrier(drop->domain.ranks);
     const double begin = MPI_Wtime();
-    for (int step = 0; step < drop->given.steps; step++)
+    for (int step = 0; step < drop->given.steps; ++step)
         advance(drop, step);
     MPI_Barrier(drop->domain.ranks);
     drop->seconds = MPI_Wtime() - begin;

@@ -12,9 +12,9 @@
 static void sort_parcels(struct plan *plan, const struct parcel *parcels, int count)
 {
     int *next = resized(NULL, (size_t)plan->rank_count, sizeof *next);
-    for (int rank = 0, first = 0; rank < plan->rank_count; first += plan->sent_to[rank], rank++)
+    for (int rank = 0, first = 0; rank < plan->rank_count; first += plan->sent_to[rank], ++rank)
         next[rank] = first;
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         plan->items[next[parcels[k].rank]++] = parcels[k].item;
     free(next);
 }
@@ -28,12 +28,12 @@ void plan_make(struct plan *plan, MPI_Comm ranks, const struct parcel *parcels, 
     plan->received_from = resized(plan->received_from, rank_count, sizeof(int));
     plan->items = resized(plan->items, (size_t)count, sizeof(int32_t));
     memset(plan->sent_to, 0, rank_count * sizeof(int));
-    for (int k = 0; k < count; k++)
-        plan->sent_to[parcels[k].rank]++;
+    for (int k = 0; k < count; ++k)
+        ++plan->sent_to[parcels[k].rank];
     sort_parcels(plan, parcels, count);
     MPI_Alltoall(plan->sent_to, 1, MPI_INT, plan->received_from, 1, MPI_INT, ranks);
     int64_t received = 0;
-    for (int rank = 0; rank < plan->rank_count; rank++)
+    for (int rank = 0; rank < plan->rank_count; ++rank)
         received += plan->received_from[rank];
     if (received > INT_MAX)
         stop("a rank would receive more items than it can count");
@@ -62,7 +62,7 @@ static int bytes_of(int items, size_t size)
 static void pack(struct transfer *transfer, const char *from)
 {
     const struct plan *plan = transfer->plan;
-    for (int k = 0; k < plan->sent; k++)
+    for (int k = 0; k < plan->sent; ++k)
         memcpy(transfer->outgoing + (size_t)k * transfer->size,
                from + (size_t)plan->items[k] * transfer->stride, transfer->size);
 }
@@ -71,7 +71,7 @@ static void post_receives(struct transfer *transfer)
 {
     const struct plan *plan = transfer->plan;
     char *place = transfer->incoming;
-    for (int rank = 0; rank < plan->rank_count; rank++) {
+    for (int rank = 0; rank < plan->rank_count; ++rank) {
         const int bytes = bytes_of(plan->received_from[rank], transfer->size);
         if (bytes)
             MPI_Irecv(place, bytes, MPI_BYTE, rank, 0, plan->ranks,
@@ -84,13 +84,13 @@ static void post_sends(struct transfer *transfer)
 {
     const struct plan *plan = transfer->plan;
     const char *place = transfer->outgoing;
-    for (int rank = 0; rank < plan->rank_count; rank++) {
+    for (int rank = 0; rank < plan->rank_count; ++rank) {
         const int bytes = bytes_of(plan->sent_to[rank], transfer->size);
         if (bytes) {
             MPI_Isend(place, bytes, MPI_BYTE, rank, 0, plan->ranks,
                       &transfer->requests[transfer->request_count++]);
             transfer->bytes += bytes;
-            transfer->messages++;
+            ++transfer->messages;
         }
         place += bytes;
     }
@@ -116,7 +116,7 @@ void transfer_start(struct transfer *transfer, const struct plan *plan, const vo
 void transfer_finish(struct transfer *transfer)
 {
     MPI_Waitall(transfer->request_count, transfer->requests, MPI_STATUSES_IGNORE);
-    for (int k = 0; k < transfer->plan->received; k++)
+    for (int k = 0; k < transfer->plan->received; ++k)
         memcpy(transfer->to + (size_t)k * transfer->stride,
                transfer->incoming + (size_t)k * transfer->size, transfer->size);
 }

@@ -125,7 +125,7 @@ static struct cloud_forces *forces_of(struct work *work, sphg_method method,
     work->scheme.method = method;
     correct(work, wanted->forget);
     press(work);
-    for (int k = 0; k < own; k++)
+    for (int k = 0; k < own; ++k)
         work->forces[k].name = work->particles[k].name;
     return gather_by_name(work->domain.ranks, work->forces, sizeof *work->forces, own, all);
 }
@@ -186,7 +186,7 @@ static int compare(int rank, const struct wanted *wanted)
         begin(&one, MPI_COMM_SELF, wanted);
         print_head(&many, wanted);
     }
-    for (int k = 0; k < METHODS; k++) {
+    for (int k = 0; k < METHODS; ++k) {
         struct cloud_forces *found = forces_of(&many, methods[k].method, wanted);
         if (rank == 0) {
             struct cloud_forces *expected = forces_of(&one, methods[k].method, wanted);
@@ -204,7 +204,7 @@ static int compare(int rank, const struct wanted *wanted)
 static bool read_words(int count, char **words, struct wanted *wanted)
 {
     *wanted = (struct wanted){.side = 9, .cut = best_cut()};
-    for (int k = 1; k < count; k++) {
+    for (int k = 1; k < count; ++k) {
         char *end_of_number;
         const long side = strtol(words[k], &end_of_number, 10);
         if (strcmp(words[k], "slabs") == 0)

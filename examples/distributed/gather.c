@@ -17,7 +17,7 @@ static char *sorted(const char *rows, size_t size, int count)
     char *by_name = resized(NULL, (size_t)count, size);
     char *seen = resized(NULL, (size_t)count, 1);
     memset(seen, 0, (size_t)count);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         const char *row = rows + (size_t)k * size;
         const int32_t name = name_of(row);
         if (name < 0 || name >= count || seen[name]++)
@@ -36,7 +36,7 @@ void *gather_by_name(MPI_Comm ranks, const void *rows, size_t size, int own, int
     struct parcel *parcels = resized(NULL, (size_t)own, sizeof *parcels);
     struct transfer transfer = {0};
     struct plan plan = {0};
-    for (int k = 0; k < own; k++)
+    for (int k = 0; k < own; ++k)
         parcels[k] = (struct parcel){k, 0};
     plan_make(&plan, ranks, parcels, own);
     if (rank == 0 && plan.received != all)

@@ -28,7 +28,7 @@ enum { SUMS = sizeof(struct sums) / sizeof(double) };
 
 static void cross(const double *a, const double *b, double *product)
 {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         product[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
@@ -36,7 +36,7 @@ static void add(struct sums *sums, const double *x, const double *v, const doubl
 {
     double spin[3];
     cross(x, v, spin);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; ++a) {
         sums->momentum[a] += v[a];
         sums->spin[a] += spin[a];
         sums->square += x[a] * x[a];
@@ -51,8 +51,8 @@ static double (*first_places(int layers, int count))[3]
     double(*places)[3] = resized(NULL, (size_t)count, sizeof *places);
     struct particle *all = resized(NULL, (size_t)count, sizeof *all);
     drop_fill(layers, 0, 1, all);
-    for (int k = 0; k < count; k++)
-        for (int a = 0; a < 3; a++)
+    for (int k = 0; k < count; ++k)
+        for (int a = 0; a < 3; ++a)
             places[k][a] = all[k].x[a];
     free(all);
     return places;
@@ -65,9 +65,9 @@ static struct sums sums_of(const struct drop *drop, double (*const first)[3])
     struct sums sums = {.square = 0};
     double middle[3];
     drop_middle(drop, middle);
-    for (int i = 0; i < drop->domain.own; i++) {
+    for (int i = 0; i < drop->domain.own; ++i) {
         double x[3], v[3];
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
             x[a] = particles[i].x[a] - middle[a];
             v[a] = (double)particles[i].v[a] - drop_velocity[a];
         }
@@ -85,7 +85,7 @@ static struct placed *places(const struct drop *drop, int count)
     const struct particle *particles = (const struct particle *)(void *)drop->domain.items;
     const int own = drop->domain.own;
     struct placed *rows = resized(NULL, (size_t)own, sizeof *rows);
-    for (int i = 0; i < own; i++) {
+    for (int i = 0; i < own; ++i) {
         const double *x = particles[i].x;
         rows[i] = (struct placed){particles[i].name, {x[0], x[1], x[2]}};
     }
@@ -104,7 +104,7 @@ struct report report_of(const struct drop *drop)
     double(*first)[3] = first_places(drop->given.layers, count);
     double square = 0, spin = 0, moved = (double)drop->domain.moved;
     const struct sums sums = sums_of(drop, first);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         const double *x = first[k], around = x[0] * x[0] + x[1] * x[1];
         square += around + x[2] * x[2];
         spin += drop_spin * around;
@@ -142,9 +142,9 @@ void report_free(struct report *report)
 double report_difference(const struct report *many, const struct report *one)
 {
     double largest = 0;
-    for (int k = 0; k < many->count; k++) {
+    for (int k = 0; k < many->count; ++k) {
         double square = 0;
-        for (int a = 0; a < 3; a++)
+        for (int a = 0; a < 3; ++a)
             square += pow(many->places[k].x[a] - one->places[k].x[a], 2);
         if (!(sqrt(square) <= largest))
             largest = sqrt(square);

@@ -30,7 +30,7 @@ static bool read_case(int count, char **words, struct drop_case *given)
     int *const numbers[3] = {&given->layers, &given->steps, &given->cut_every};
     static const int most[3] = {500, INT_MAX, INT_MAX};
     *given = (struct drop_case){.layers = 12, .steps = 200, .cut_every = 25, .cut = best_cut()};
-    for (int k = 1; k < count; k++) {
+    for (int k = 1; k < count; ++k) {
         if (k == 4 && strcmp(words[k], "slabs") == 0)
             given->cut = cut_into_slabs;
         else if (k > 3 || !(*numbers[k - 1] = number(words[k], most[k - 1])))

@@ -60,7 +60,7 @@ static void print_row(const double *given, double particles)
     const struct cost c = cost_of(given, particles, ranks[0]);
     printf("%9.0f %10.2f %9.3f %9.3f %9.3f %9.3f ", particles, ghosts_of(particles) / particles,
            c.own / 1e3, c.ghosts / 1e3, c.exchange / 1e3, c.hidden / 1e3);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const struct cost all = cost_of(given, particles, ranks[k]);
         const double step = all.own + all.ghosts + all.exchange - all.hidden + all.decision;
         printf(" %6.0f %%", 100 * all.own / step);
@@ -71,7 +71,7 @@ static void print_row(const double *given, double particles)
 int main(int count, char **words)
 {
     double given[NUMBERS] = {.55, .6, 2, .4};
-    for (int k = 1; k < count; k++) {
+    for (int k = 1; k < count; ++k) {
         char *end = words[k];
         const double value = strtod(words[k], &end);
         if (k > NUMBERS || *end || end == words[k] || !(value > 0) || !isfinite(value)) {

@@ -11,10 +11,10 @@ enum { HALVINGS = 48 }; /* of the extent; closer cuts than that part no particle
 static struct box extent_of(MPI_Comm ranks, const struct places *places)
 {
     double ends[6]; /* the upper ones negative, so that one minimum serves both */
-    for (int a = 0; a < 6; a++)
+    for (int a = 0; a < 6; ++a)
         ends[a] = INFINITY;
-    for (int k = 0; k < places->count; k++)
-        for (int a = 0; a < 3; a++) {
+    for (int k = 0; k < places->count; ++k)
+        for (int a = 0; a < 3; ++a) {
             const double x = place_of(places, k)[a];
             ends[a] = fmin(ends[a], x);
             ends[3 + a] = fmin(ends[3 + a], -x);
@@ -26,7 +26,7 @@ static struct box extent_of(MPI_Comm ranks, const struct places *places)
 static int longest_axis(const struct box *extent)
 {
     int longest = 0;
-    for (int a = 1; a < 3; a++)
+    for (int a = 1; a < 3; ++a)
         if (extent->high[a] - extent->low[a] > extent->high[longest] - extent->low[longest])
             longest = a;
     return longest;
@@ -60,16 +60,16 @@ static void find_cuts(MPI_Comm ranks, const double *along, int count, double low
     long long all = count, *under = resized(NULL, room, sizeof *under);
     double *floors = resized(NULL, room, sizeof *floors);
     MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_LONG_LONG, MPI_SUM, ranks);
-    for (int c = 0; c < cut_count; c++)
+    for (int c = 0; c < cut_count; ++c)
         floors[c] = low;
-    for (int halving = 1; halving <= HALVINGS; halving++) {
+    for (int halving = 1; halving <= HALVINGS; ++halving) {
         const double step = ldexp(high - low, -halving);
-        for (int c = 0; c < cut_count; c++) {
+        for (int c = 0; c < cut_count; ++c) {
             cuts[c] = floors[c] + step;
             under[c] = below(along, count, cuts[c]);
         }
         MPI_Allreduce(MPI_IN_PLACE, under, cut_count, MPI_LONG_LONG, MPI_SUM, ranks);
-        for (int c = 0; c < cut_count; c++)
+        for (int c = 0; c < cut_count; ++c)
             if (under[c] * (cut_count + 1) <= all * (c + 1))
                 floors[c] = cuts[c];
     }
@@ -88,12 +88,12 @@ void cut_into_slabs(MPI_Comm ranks, const struct places *places, struct box *box
     const int axis = longest_axis(&extent);
     double *along = resized(NULL, (size_t)places->count, sizeof *along);
     double *cuts = resized(NULL, (size_t)rank_count, sizeof *cuts);
-    for (int k = 0; k < places->count; k++)
+    for (int k = 0; k < places->count; ++k)
         along[k] = place_of(places, k)[axis];
     qsort(along, (size_t)places->count, sizeof *along, in_order);
     find_cuts(ranks, along, places->count, extent.low[axis], extent.high[axis], cuts,
               rank_count - 1);
-    for (int rank = 0; rank < rank_count; rank++) {
+    for (int rank = 0; rank < rank_count; ++rank) {
         boxes[rank] =
             (struct box){{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
         if (rank > 0)

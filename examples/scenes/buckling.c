@@ -33,7 +33,7 @@ static struct wall make_floor(const struct sph *sph, double half_length, double 
     const int32_t columns = 2 * (int32_t)(half_length / apart) + 1;
     const int32_t rows = 2 * (int32_t)(half_width / apart) + 1;
     vector *x = array_new(columns * rows, sizeof *x);
-    for (int32_t k = 0; k < columns * rows; k++) {
+    for (int32_t k = 0; k < columns * rows; ++k) {
         x[k][0] = apart * (k % columns - columns / 2);
         x[k][2] = apart * (k / columns - rows / 2);
     }
@@ -47,7 +47,7 @@ static void sheet_init(struct sheet *sheet, const struct run *run, const struct 
     struct random random = {run->options->seed};
     sheet->wall = make_floor(sph, 4, sides[2] > 1 ? 1 : 0);
     sheet->fluid = particles_block(sides, spacing, 1e-3, density, &random);
-    for (int32_t i = 0; i < sheet->fluid.count; i++)
+    for (int32_t i = 0; i < sheet->fluid.count; ++i)
         sheet->fluid.x[i][1] += spacing * (0.5 * (sides[1] - 1) + 1);
     sheet->contact = contact_new(sph, &sheet->wall, sheet->fluid.count);
     sheet->pressure = pressure_new(sph, &sheet->contact, sheet->fluid.count);
@@ -72,12 +72,12 @@ static void advance(struct sheet *sheet)
     pressure_prepare(&sheet->pressure, fluid);
     pressure_stop_compression(&sheet->pressure, fluid, step);
     operators_update(&sheet->operators, fluid);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(fluid->v[i], step, gravity);
     viscosity_solve(&sheet->viscosity, fluid, step);
     contact_friction(&sheet->contact, friction, fluid);
     pressure_keep_density(&sheet->pressure, fluid, step);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(fluid->x[i], step, fluid->v[i]);
 }
 
@@ -86,10 +86,10 @@ static double centre_of_slice(const struct particles *fluid, double low, double 
 {
     double sum = 0;
     int32_t count = 0;
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         if (fluid->x[i][1] >= low && fluid->x[i][1] < high) {
             sum += fluid->x[i][0];
-            count++;
+            ++count;
         }
     return count ? sum / count : 0;
 }
@@ -99,7 +99,7 @@ static double centre_line(const struct particles *fluid)
 {
     const double slice = 0.1;
     double farthest = 0;
-    for (int32_t k = 0; k < 60; k++)
+    for (int32_t k = 0; k < 60; ++k)
         farthest = fmax(farthest, fabs(centre_of_slice(fluid, slice * k, slice * (k + 1))));
     return farthest;
 }
@@ -107,7 +107,7 @@ static double centre_line(const struct particles *fluid)
 static double highest(const struct particles *fluid)
 {
     double top = 0;
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         top = fmax(top, fluid->x[i][1]);
     return top;
 }
@@ -126,7 +126,7 @@ static void folds_follow(struct folds *folds, double place)
     } else if (folds->side * (place - folds->extreme) > 0) {
         folds->extreme = place;
     } else if (folds->side * (folds->extreme - place) > 0.1) {
-        folds->reversals++;
+        ++folds->reversals;
         folds->side = -folds->side;
         folds->extreme = place;
     }
@@ -135,7 +135,7 @@ static void folds_follow(struct folds *folds, double place)
 static void write_sheet(const struct run *run, const struct particles *fluid, const char *label)
 {
     FILE *table = output_open(run, label);
-    for (int32_t i = 0; table && i < fluid->count; i++)
+    for (int32_t i = 0; table && i < fluid->count; ++i)
         fprintf(table, "%g %g %g\n", fluid->x[i][0], fluid->x[i][1],
                 sqrt(dot(fluid->v[i], fluid->v[i])));
     output_close(table);
@@ -154,7 +154,7 @@ static struct outcome sink(const struct run *run, const struct sph *sph, const i
     struct outcome outcome = {0};
     const int32_t middle = (int32_t)(early / step + 0.5), steps = (int32_t)(late / step + 0.5);
     sheet_init(&sheet, run, sph, sides, nu);
-    for (int32_t k = 0; k < steps; k++) {
+    for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
         advance(&sheet);
         folds_follow(&folds, centre_of_slice(&sheet.fluid, 0.4, 0.6));
@@ -195,7 +195,7 @@ static void more(const struct run *run, const struct sph *flat, const int32_t si
     static const double others[] = {5, 10, 40};
     static const int32_t solid[3] = {3, 120, 12};
     struct sph sph = run_open(run, 3, support_radius, 4320);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         const struct outcome outcome = sink(run, flat, sides, others[k], false);
         metrics_set(run->metrics, amplitudes[k], outcome.amplitude);
         metrics_set(run->metrics, reversals[k], outcome.reversals);
@@ -249,8 +249,8 @@ static void draw(const struct picture *picture)
             "set yrange [0:2.5]\nset xtics 0.5\nset xlabel 'x [m]'\nset ylabel 'y [m]'\n"
             "set cblabel 'speed [m/s]'\nset cbtics 1\nset bmargin 9\n"
             "set colorbox horizontal user origin graph 0, graph -0.36 size graph 1, 0.03\n");
-    for (int t = 0; t < 2; t++)
-        for (int k = 0; k < 2; k++)
+    for (int t = 0; t < 2; ++t)
+        for (int k = 0; k < 2; ++k)
             fprintf(script,
                     "set title '%s, %g s'\n"
                     "plot 'buckling_%s_%s.dat' using 1:2:(0.025):3 with circles lc palette\n",

@@ -31,7 +31,7 @@ static struct particles make_cube(const struct run *run)
     struct random random = {run->options->seed};
     const int32_t side = run->options->full ? 20 : 8, sides[3] = {side, side, side};
     struct particles cube = particles_block(sides, spacing, 0.1, density, &random);
-    for (int32_t i = 0; i < cube.count; i++) {
+    for (int32_t i = 0; i < cube.count; ++i) {
         cube.v[i][0] = -turning * cube.x[i][1];
         cube.v[i][1] = turning * cube.x[i][0];
     }
@@ -42,7 +42,7 @@ static struct particles make_cube(const struct run *run)
 static void turn(struct particles *cube)
 {
     const double angle = turning * step, c = cos(angle), s = sin(angle);
-    for (int32_t i = 0; i < cube->count; i++) {
+    for (int32_t i = 0; i < cube->count; ++i) {
         double *x = cube->x[i], *v = cube->v[i];
         const double vx = v[0], vy = v[1];
         x[0] += (s * vx - (1 - c) * vy) / turning;
@@ -59,7 +59,7 @@ static double ghost_acceleration(struct viscosity *viscosity, const struct parti
     vector *force = array_new(cube->count, sizeof *force);
     double largest = 0, outermost = 0;
     viscosity_force(viscosity, cube->v, force);
-    for (int32_t i = 0; i < cube->count; i++) {
+    for (int32_t i = 0; i < cube->count; ++i) {
         largest = fmax(largest, sqrt(dot(force[i], force[i])) / cube->mass[i]);
         outermost = fmax(outermost, hypot(cube->x[i][0], cube->x[i][1]));
     }
@@ -81,12 +81,12 @@ static void measure_forces(const struct run *run, struct viscosity *viscosity,
 static void measure_shape(const struct run *run, const struct particles *cube, vector *start)
 {
     double along = 0, across = 0, squares = 0, largest = 0;
-    for (int32_t i = 0; i < cube->count; i++) {
+    for (int32_t i = 0; i < cube->count; ++i) {
         along += cube->x[i][0] * start[i][0] + cube->x[i][1] * start[i][1];
         across += cube->x[i][1] * start[i][0] - cube->x[i][0] * start[i][1];
     }
     const double angle = atan2(across, along), c = cos(angle), s = sin(angle);
-    for (int32_t i = 0; i < cube->count; i++) {
+    for (int32_t i = 0; i < cube->count; ++i) {
         const vector off = {c * start[i][0] - s * start[i][1] - cube->x[i][0],
                             s * start[i][0] + c * start[i][1] - cube->x[i][1],
                             start[i][2] - cube->x[i][2]};
@@ -124,7 +124,7 @@ static void spin(const struct run *run, const struct sph *sph, double turns)
     memcpy(start, cube.x, (size_t)cube.count * sizeof *start);
     viscosity.dynamic = gentle * density;
     viscosity.implicit.tolerance = 1e-9;
-    for (int32_t k = 0; k < steps; k++) {
+    for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
         operators_update_density(&operators, &cube);
         if (k == 0)
@@ -149,7 +149,7 @@ static void spin(const struct run *run, const struct sph *sph, double turns)
 static double noise_energy(const struct particles *cube)
 {
     double sum = 0;
-    for (int32_t i = 0; i < cube->count; i++) {
+    for (int32_t i = 0; i < cube->count; ++i) {
         const vector off = {cube->v[i][0] + turning * cube->x[i][1],
                             cube->v[i][1] - turning * cube->x[i][0], cube->v[i][2]};
         sum += 0.5 * cube->mass[i] * dot(off, off);
@@ -166,13 +166,13 @@ static void calm(const struct run *run, const struct sph *sph)
     struct viscosity viscosity = viscosity_new(&operators, cube.count);
     struct random random = {run->options->seed + 1};
     double gained = 0, lost = 0;
-    for (int32_t i = 0; i < cube.count; i++)
-        for (int k = 0; k < 3; k++)
+    for (int32_t i = 0; i < cube.count; ++i)
+        for (int k = 0; k < 3; ++k)
             cube.v[i][k] += 0.01 * random_between(&random, -1, 1);
     viscosity.dynamic = strong * density;
     viscosity.implicit.tolerance = 1e-9;
     const double noise = noise_energy(&cube);
-    for (int32_t k = 0; k < 50; k++) {
+    for (int32_t k = 0; k < 50; ++k) {
         const struct state before = state_of(&cube);
         operators_update_density(&operators, &cube);
         viscosity_solve(&viscosity, &cube, step);

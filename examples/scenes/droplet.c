@@ -59,10 +59,10 @@ static void advance(struct drop *drop)
     memset(drop->acceleration, 0, (size_t)fluid->count * sizeof *drop->acceleration);
     laplacian_step(&drop->viscosity, fluid, 0, step);
     surface_tension_add(&drop->tension, fluid, drop->acceleration);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(fluid->v[i], step, drop->acceleration[i]);
     pressure_keep_density(&drop->pressure, fluid, step);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(fluid->x[i], step, fluid->v[i]);
 }
 
@@ -70,7 +70,7 @@ static void find_centre(const struct particles *fluid, double *place, double *ve
 {
     memset(place, 0, sizeof(vector));
     memset(velocity, 0, sizeof(vector));
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         add_scaled(place, 1.0 / fluid->count, fluid->x[i]);
         add_scaled(velocity, 1.0 / fluid->count, fluid->v[i]);
     }
@@ -89,7 +89,7 @@ static void direction(int32_t k, double *toward)
 static double extent(const struct particles *fluid, const double *centre, const double *toward)
 {
     double farthest = -INFINITY;
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         farthest = fmax(farthest, dot(fluid->x[i], toward) - dot(centre, toward));
     return farthest;
 }
@@ -106,7 +106,7 @@ static struct roundness measure(const struct particles *fluid)
     vector centre, velocity, toward;
     double sum = 0, squares = 0, least = INFINITY, most = 0, motion = 0;
     find_centre(fluid, centre, velocity);
-    for (int32_t k = 0; k < DIRECTIONS; k++) {
+    for (int32_t k = 0; k < DIRECTIONS; ++k) {
         direction(k, toward);
         const double far = extent(fluid, centre, toward);
         sum += far;
@@ -114,7 +114,7 @@ static struct roundness measure(const struct particles *fluid)
         least = fmin(least, far);
         most = fmax(most, far);
     }
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         vector relative = {0};
         add_scaled(relative, 1, fluid->v[i]);
         add_scaled(relative, -1, velocity);
@@ -133,7 +133,7 @@ static void write_drop(const struct run *run, const struct particles *fluid)
     const double radius = cbrt(fluid->count * fluid->rest_volume * 3 / (4 * 3.141592653589793));
     vector centre, velocity;
     find_centre(fluid, centre, velocity);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         vector relative = {0};
         add_scaled(relative, 1, fluid->x[i]);
         add_scaled(relative, -1, centre);
@@ -156,7 +156,7 @@ static struct roundness form(const struct run *run, const struct sph *sph, doubl
     drop.tension = surface_tension_new(&drop.operators, drop.fluid.count);
     drop.tension.strength = strength;
     drop.tension.balanced = balanced;
-    for (int32_t k = 0; k < steps; k++) {
+    for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
         advance(&drop);
         if (series && k % 10 == 0)
@@ -188,7 +188,7 @@ static double pull(const struct run *run, const struct sph *sph)
     pressure_prepare(&drop.pressure, &drop.fluid);
     operators_update(&drop.operators, &drop.fluid);
     surface_tension_add(&drop.tension, &drop.fluid, drop.acceleration);
-    for (int32_t i = 0; i < drop.fluid.count; i++)
+    for (int32_t i = 0; i < drop.fluid.count; ++i)
         sum -= drop.fluid.mass[i] * dot(drop.acceleration[i], drop.fluid.x[i]);
     sum /= drop.fluid.count;
     drop_free(&drop);

@@ -21,7 +21,7 @@ static void add_mantle(double apart, vector *points, int32_t *count)
 {
     const int32_t around = (int32_t)(6.283185307179586 * drum_radius / apart);
     const int32_t along = (int32_t)(drum_depth / apart) + 1;
-    for (int32_t k = 0; k < around * along; k++) {
+    for (int32_t k = 0; k < around * along; ++k) {
         const double angle = 6.283185307179586 * (k % around) / around;
         const double z = drum_depth * ((double)(k / around) / (along - 1) - 0.5);
         add_point(points, count, drum_radius * cos(angle), drum_radius * sin(angle), z);
@@ -31,7 +31,7 @@ static void add_mantle(double apart, vector *points, int32_t *count)
 static void add_ends(double apart, vector *points, int32_t *count)
 {
     const int32_t half = (int32_t)(drum_radius / apart) + 1, side = 2 * half + 1;
-    for (int32_t k = 0; k < side * side; k++) {
+    for (int32_t k = 0; k < side * side; ++k) {
         const double x = apart * (k % side - half), y = apart * (k / side - half);
         if (hypot(x, y) > drum_radius - 0.5 * apart)
             continue;
@@ -54,7 +54,7 @@ struct wall drum_wall(const struct sph *sph, double spacing)
 void drum_turn(struct wall *wall, double angle, double omega)
 {
     const double c = cos(angle), s = sin(angle);
-    for (int32_t k = 0; k < wall->count; k++) {
+    for (int32_t k = 0; k < wall->count; ++k) {
         double *x = wall->x[k], *v = wall->v[k];
         const double old = x[0];
         x[0] = c * old - s * x[1];
@@ -79,7 +79,7 @@ static bool in_bunny(const double *x, double spacing)
         {0.08, 0.24, 0.04, 0.025}, {0.09, 0.2, -0.03, 0.025},  {0.08, 0.24, -0.04, 0.025},
         {-0.12, 0.05, 0, 0.035},   {0.04, -0.03, 0.06, 0.035}, {0.04, -0.03, -0.06, 0.035},
     };
-    for (size_t k = 0; k < sizeof balls / sizeof balls[0]; k++) {
+    for (size_t k = 0; k < sizeof balls / sizeof balls[0]; ++k) {
         vector off = {0};
         add_scaled(off, 1, x);
         add_scaled(off, -1, balls[k]);
@@ -109,12 +109,12 @@ static void add_phase(struct load *load, enum phase phase, double spacing, doubl
 {
     struct random random = {seed};
     const int32_t half = (int32_t)(drum_radius / spacing) + 1, side = 2 * half + 1;
-    for (int32_t k = 0; k < side * side * side; k++) {
+    for (int32_t k = 0; k < side * side * side; ++k) {
         vector x = {spacing * (k % side - half), spacing * (k / side % side - half),
                     spacing * (k / side / side - half)};
         if (phase_at(x, spacing) != phase)
             continue;
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; ++axis)
             x[axis] += spacing * random_between(&random, -2e-3, 2e-3);
         particles_set_rest_density(&load->all, load->all.count, density);
         memcpy(load->all.x[load->all.count++], x, sizeof x);
@@ -145,7 +145,7 @@ static void reorder(int32_t count, const int32_t *from, void *values, size_t siz
 {
     char *room = array_new(count, size);
     memcpy(room, values, (size_t)count * size);
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         memcpy((char *)values + (size_t)k * size, room + (size_t)from[k] * size, size);
     free(room);
 }
@@ -158,11 +158,11 @@ void load_sort(const struct sph *sph, struct load *load, const sphg_neighbors *n
     int32_t *order = array_new(count, sizeof *order), *from = array_new(count, sizeof *from);
     int32_t filled[3] = {0, load->body, load->soap};
     sph_check(sph, sphg_neighbors_get_order(sph->context, neighbors, order));
-    for (int32_t k = 0; k < count; k++) {
+    for (int32_t k = 0; k < count; ++k) {
         const int32_t i = order[k], phase = (i >= load->body) + (i >= load->soap);
         from[filled[phase]++] = i;
     }
-    for (int32_t i = 0; !with_body && i < load->body; i++)
+    for (int32_t i = 0; !with_body && i < load->body; ++i)
         from[i] = i;
     reorder(count, from, load->all.x, sizeof *load->all.x);
     reorder(count, from, load->all.v, sizeof *load->all.v);
@@ -174,7 +174,7 @@ void load_sort(const struct sph *sph, struct load *load, const sphg_neighbors *n
 
 static bool is_room(const struct particles *all, const double *x, double spacing)
 {
-    for (int32_t i = 0; i < all->count; i++) {
+    for (int32_t i = 0; i < all->count; ++i) {
         vector off = {0};
         add_scaled(off, 1, all->x[i]);
         add_scaled(off, -1, x);
@@ -210,7 +210,7 @@ static void add_particle(struct load *load, const double *x, double speed, doubl
 static void pour(struct load *load, double x, double spacing, double speed, double density)
 {
     const int32_t side = (int32_t)fmin(4, 0.15 / spacing) + 1;
-    for (int32_t k = 0; k < side * side && load->all.count < load->capacity; k++) {
+    for (int32_t k = 0; k < side * side && load->all.count < load->capacity; ++k) {
         const vector at = {x + spacing * (k % side - 0.5 * (side - 1)), 0.3,
                            spacing * (k / side - 0.5 * (side - 1))};
         if (is_room(&load->all, at, 0.99 * spacing))

@@ -33,13 +33,13 @@ static struct frame inclined_frame(void)
 static void to_world(const struct frame *frame, const double *local, double *world)
 {
     world[0] = world[1] = world[2] = 0;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         add_scaled(world, local[k], frame->axes[k]);
 }
 
 static void to_local(const struct frame *frame, const double *world, double *local)
 {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         local[k] = dot(world, frame->axes[k]);
 }
 
@@ -56,7 +56,7 @@ static struct wall make_wall(const struct sph *sph, const struct frame *frame,
     const double low[2] = {-half, -half}, high[2] = {half + slide, half};
     vector *x;
     const int32_t count = sample_rectangle(random, low, high, radius, &x);
-    for (int32_t k = 0; k < count; k++) {
+    for (int32_t k = 0; k < count; ++k) {
         const vector local = {x[k][0], 0, x[k][1]};
         to_world(frame, local, x[k]);
     }
@@ -66,7 +66,7 @@ static struct wall make_wall(const struct sph *sph, const struct frame *frame,
 static struct particles make_grid(const struct frame *frame)
 {
     struct particles made = particles_new(SIDE * SIDE, 0.8 * pow(2 * radius, 3));
-    for (int32_t i = 0; i < made.count; i++) {
+    for (int32_t i = 0; i < made.count; ++i) {
         const vector local = {spacing * (i % SIDE - 0.5 * (SIDE - 1)), start_height,
                               spacing * (i / SIDE - 0.5 * (SIDE - 1))};
         to_world(frame, local, made.x[i]);
@@ -84,13 +84,13 @@ struct heights {
 static void watch_heights(const struct frame *frame, const struct particles *grid,
                           struct heights *heights)
 {
-    for (int32_t i = 0; i < grid->count; i++) {
+    for (int32_t i = 0; i < grid->count; ++i) {
         const double height = dot(grid->x[i], frame->axes[1]);
         const double speed = dot(grid->v[i], frame->axes[1]);
         heights->lowest = fmin(heights->lowest, height);
         heights->highest = fmax(heights->highest, height);
         heights->speed_squares += speed * speed;
-        heights->count++;
+        ++heights->count;
     }
 }
 
@@ -104,11 +104,11 @@ static void measure_shape(const struct run *run, const struct frame *frame,
     double largest = 0, squares = 0;
     int32_t through = 0;
     FILE *table = output_open(run, "places");
-    for (int32_t i = 0; i < grid->count; i++) {
+    for (int32_t i = 0; i < grid->count; ++i) {
         add_scaled(mean, 1.0 / grid->count, grid->x[i]);
         add_scaled(mean, -1.0 / grid->count, start.x[i]);
     }
-    for (int32_t i = 0; i < grid->count; i++) {
+    for (int32_t i = 0; i < grid->count; ++i) {
         vector moved = {0}, local, place;
         add_scaled(moved, 1, grid->x[i]);
         add_scaled(moved, -1, start.x[i]);
@@ -147,12 +147,12 @@ static double slope_error(const struct sph *sph, const struct frame *frame, stru
                           struct particles *grid)
 {
     double worst = 0;
-    for (int again = 0; again < 2; again++) { /* what was found at another height must not stay */
-        for (int32_t i = 0; i < grid->count; i++)
+    for (int again = 0; again < 2; ++again) { /* what was found at another height must not stay */
+        for (int32_t i = 0; i < grid->count; ++i)
             add_scaled(grid->x[i], (again ? 0.5 : -0.5) * start_height, frame->axes[1]);
         contact_update(sph, contact, grid);
     }
-    for (int32_t i = 0; i < grid->count; i++) {
+    for (int32_t i = 0; i < grid->count; ++i) {
         vector off = {0};
         add_scaled(off, start_height, contact->slope[i]);
         add_scaled(off, 1, frame->axes[1]);
@@ -175,14 +175,14 @@ static void simulate(const struct run *run)
     metrics_set(run->metrics, "slope_error", slope_error(&sph, &frame, &contact, &grid));
     pressure.relaxation = 1; /* no particle waits for another: one iteration is the solution */
     pressure.fewest_iterations = 1;
-    for (int32_t k = 0; k < steps; k++) {
+    for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
         pressure_prepare(&pressure, &grid);
         pressure_stop_compression(&pressure, &grid, step);
-        for (int32_t i = 0; i < grid.count; i++)
+        for (int32_t i = 0; i < grid.count; ++i)
             grid.v[i][1] -= step * gravity;
         pressure_keep_density(&pressure, &grid, step);
-        for (int32_t i = 0; i < grid.count; i++)
+        for (int32_t i = 0; i < grid.count; ++i)
             add_scaled(grid.x[i], step, grid.v[i]);
         if (step * k > settled)
             watch_heights(&frame, &grid, &heights);
@@ -207,7 +207,7 @@ static void draw(const struct picture *picture)
             "set size ratio -1\nset cbrange [0:0.5]\nset xrange [-0.5:3]\nset yrange [-1.75:1.75]\n"
             "set cblabel 'distance from the place in the grid [m]'\n"
             "set xlabel 'downhill [m]'\nset ylabel 'across [m]'\n");
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         fprintf(script,
                 "set title '%s: the grid at the end of its slide, from above'\n"
                 "plot 'grid_%s_places.dat' using 1:2:3 with points pt 7 ps 0.8 lc palette\n",

@@ -37,7 +37,7 @@ static void angles_add(struct angles *angles, const double *slope, const double 
 {
     const vector found = {-slope[0], -slope[1], -slope[2]};
     const double angle = angle_between(found, outward);
-    angles->count++;
+    ++angles->count;
     angles->sum += angle;
     angles->largest = fmax(angles->largest, angle);
 }
@@ -53,7 +53,7 @@ static struct wall plane(const struct sph *sph, struct random *random, double ha
 static struct particles queries(int32_t count)
 {
     struct particles made = particles_new(count, 0.8 * pow(2 * radius, 3));
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < count; ++i)
         particles_set_rest_density(&made, i, 1000);
     return made;
 }
@@ -62,8 +62,8 @@ static struct particles queries(int32_t count)
 static void update_from_elsewhere(const struct sph *sph, struct contact *contact,
                                   struct particles *points)
 {
-    for (int step = 0; step < 2; step++) {
-        for (int32_t i = 0; i < points->count; i++)
+    for (int step = 0; step < 2; ++step) {
+        for (int32_t i = 0; i < points->count; ++i)
             points->x[i][2] *= step ? 2 : 0.5;
         contact_update(sph, contact, points);
     }
@@ -77,13 +77,13 @@ static void measure_plane(const struct run *run, const struct sph *sph, struct r
     struct contact contact = contact_new(sph, &wall, points.count);
     struct angles angles = {0};
     double worst_distance = 0;
-    for (int32_t i = 0; i < points.count; i++) {
+    for (int32_t i = 0; i < points.count; ++i) {
         points.x[i][0] = random_between(random, -0.45, 0.45);
         points.x[i][1] = random_between(random, -0.45, 0.45);
         points.x[i][2] = random_between(random, 0.25, 0.85) * support_radius;
     }
     update_from_elsewhere(sph, &contact, &points);
-    for (int32_t i = 0; i < points.count; i++) {
+    for (int32_t i = 0; i < points.count; ++i) {
         const vector up = {0, 0, 1};
         const double length = sqrt(dot(contact.slope[i], contact.slope[i]));
         if (contact.touching[i] < FEWEST_WALL)
@@ -108,7 +108,7 @@ static void measure_sphere(const struct run *run, const struct sph *sph, struct 
     struct particles points = queries(4000);
     struct contact contact = contact_new(sph, &wall, points.count);
     struct angles angles = {0};
-    for (int32_t i = 0; i < points.count; i++) {
+    for (int32_t i = 0; i < points.count; ++i) {
         const double height = random_between(random, -1, 1), across = sqrt(1 - height * height);
         const double angle = random_between(random, 0, 360 / degrees);
         const double far =
@@ -118,7 +118,7 @@ static void measure_sphere(const struct run *run, const struct sph *sph, struct 
         points.x[i][2] = far * height;
     }
     contact_update(sph, &contact, &points);
-    for (int32_t i = 0; i < points.count; i++)
+    for (int32_t i = 0; i < points.count; ++i)
         if (contact.touching[i] >= FEWEST_WALL)
             angles_add(&angles, contact.slope[i], points.x[i]);
     metrics_set(run->metrics, "sphere_mean_degrees", angles.sum / angles.count);
@@ -154,10 +154,10 @@ static void shared_matrix_slopes(const struct sph *sph, const struct contact *co
 static struct particles fluid_layers(struct random *random)
 {
     struct particles fluid = queries(FLUID_SIDE * FLUID_SIDE * FLUID_LAYERS);
-    for (int32_t i = 0; i < fluid.count; i++) {
+    for (int32_t i = 0; i < fluid.count; ++i) {
         const int32_t place[3] = {i % FLUID_SIDE, i / FLUID_SIDE % FLUID_SIDE,
                                   i / FLUID_SIDE / FLUID_SIDE};
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; ++k) {
             const double middle = k == 2 ? -0.5 : 0.5 * (FLUID_SIDE - 1);
             fluid.x[i][k] =
                 2 * radius * (place[k] - middle) + radius * random_between(random, 0, 0.3);
@@ -185,7 +185,7 @@ static void measure_beside_fluid(const struct run *run, const struct sph *sph,
     struct angles alone = {0}, shared = {0};
     contact_update(sph, &contact, &fluid);
     shared_matrix_slopes(sph, &contact, &fluid, slopes);
-    for (int32_t i = 0; i < fluid.count; i++)
+    for (int32_t i = 0; i < fluid.count; ++i)
         if (is_counted(&contact, &fluid, i)) {
             angles_add(&alone, contact.slope[i], up);
             angles_add(&shared, slopes[i], up);
@@ -205,15 +205,15 @@ static void write_tables(const struct run *run, const struct sph *sph, struct ra
     struct particles points = queries(PICTURE_SIDE * PICTURE_SIDE);
     struct contact contact = contact_new(sph, &wall, points.count);
     FILE *sampled = output_open(run, "wall"), *found = output_open(run, "normals");
-    for (int32_t i = 0; i < points.count; i++) {
+    for (int32_t i = 0; i < points.count; ++i) {
         points.x[i][0] = 0.6 * ((i % PICTURE_SIDE + 0.5) / PICTURE_SIDE - 0.5);
         points.x[i][1] = 0.6 * ((i / PICTURE_SIDE + 0.5) / PICTURE_SIDE - 0.5);
         points.x[i][2] = 0.5 * support_radius;
     }
     contact_update(sph, &contact, &points);
-    for (int32_t k = 0; sampled && k < wall.count; k++)
+    for (int32_t k = 0; sampled && k < wall.count; ++k)
         fprintf(sampled, "%g %g\n", wall.x[k][0], wall.x[k][1]);
-    for (int32_t i = 0; found && i < points.count; i++) {
+    for (int32_t i = 0; found && i < points.count; ++i) {
         const double *slope = contact.slope[i];
         const vector up = {0, 0, 1}, normal = {-slope[0], -slope[1], -slope[2]};
         fprintf(found, "%g %g %g %g %g\n", points.x[i][0], points.x[i][1], normal[0] / normal[2],
@@ -248,7 +248,7 @@ static void draw(const struct picture *picture)
                     "set xrange [-0.3:0.3]\nset yrange [-0.3:0.3]\nset cbrange [0:15]\n"
                     "set cblabel 'angle to the true normal [degrees]'\n"
                     "set xlabel 'x [m]'\nset ylabel 'y [m]'\n");
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         fprintf(script,
                 "set title '%s: tilt of the normal above an irregular wall, enlarged'\n"
                 "plot 'normals_%s_wall.dat' using 1:2:(0.012) with circles lc rgb '#dddddd', "

@@ -42,7 +42,7 @@ static struct particles make_top(const struct run *run, double jitter)
     const int32_t side = 2 * (int32_t)(0.3 / spacing) + 1, sides[3] = {side, side, side};
     struct particles block = particles_block(sides, spacing, jitter, density, &random);
     int32_t count = 0;
-    for (int32_t i = 0; i < block.count; i++)
+    for (int32_t i = 0; i < block.count; ++i)
         if (hypot(block.x[i][0], block.x[i][1]) < profile(block.x[i][2]))
             memmove(block.x[count++], block.x[i], sizeof block.x[i]);
     block.count = count;
@@ -51,7 +51,7 @@ static struct particles make_top(const struct run *run, double jitter)
 
 static void set_spinning(struct particles *top, double omega)
 {
-    for (int32_t i = 0; i < top->count; i++) {
+    for (int32_t i = 0; i < top->count; ++i) {
         top->v[i][0] = -omega * top->x[i][1];
         top->v[i][1] = omega * top->x[i][0];
         top->v[i][2] = 0;
@@ -61,7 +61,7 @@ static void set_spinning(struct particles *top, double omega)
 static double largest_acceleration(const struct particles *top, vector *force)
 {
     double largest = 0;
-    for (int32_t i = 0; i < top->count; i++)
+    for (int32_t i = 0; i < top->count; ++i)
         largest = fmax(largest, sqrt(dot(force[i], force[i])) / top->mass[i]);
     return largest;
 }
@@ -69,8 +69,8 @@ static double largest_acceleration(const struct particles *top, vector *force)
 static double rotation_error(const struct elasticity *elasticity, const double *exact)
 {
     double worst = 0;
-    for (int32_t i = 0; i < elasticity->rest.count; i++)
-        for (int k = 0; k < 9; k++)
+    for (int32_t i = 0; i < elasticity->rest.count; ++i)
+        for (int k = 0; k < 9; ++k)
             worst = fmax(worst, fabs(elasticity->rotation[i][k] - exact[k]));
     return worst;
 }
@@ -86,7 +86,7 @@ static void rigid_rotation(const struct run *run, const struct sph *sph)
     const double c = cos(0.7), s = sin(0.7);
     const tensor exact = {c, -s, 0, s, c, 0, 0, 0, 1};
     metrics_set(run->metrics, "stretch_error", elasticity_stretch_error(&elasticity, &top, 0.01));
-    for (int32_t i = 0; i < top.count; i++) {
+    for (int32_t i = 0; i < top.count; ++i) {
         const double x = top.x[i][0], y = top.x[i][1];
         top.x[i][0] = c * x - s * y;
         top.x[i][1] = s * x + c * y;
@@ -118,7 +118,7 @@ static void step_explicitly(struct elasticity *elasticity, struct particles *top
 {
     elasticity_rotate(elasticity, top->x);
     elasticity_force(elasticity, force);
-    for (int32_t i = 0; i < top->count; i++)
+    for (int32_t i = 0; i < top->count; ++i)
         add_scaled(top->v[i], dt / top->mass[i], force[i]);
 }
 
@@ -133,13 +133,13 @@ static double spin(const struct run *run, const struct sph *sph, bool implicit)
     FILE *series = implicit ? output_open(run, "momentum") : NULL;
     set_spinning(&top, turning);
     particles_angular_momentum(&top, before);
-    for (int32_t k = 0; k < steps; k++) {
+    for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
         if (implicit)
             elasticity_solve(&elasticity, &top, dt);
         else
             step_explicitly(&elasticity, &top, force, dt);
-        for (int32_t i = 0; i < top.count; i++)
+        for (int32_t i = 0; i < top.count; ++i)
             add_scaled(top.x[i], dt, top.v[i]);
         particles_angular_momentum(&top, now);
         if (series)
@@ -177,9 +177,9 @@ static void stand_init(struct stand *stand, const struct run *run, const struct 
     vector *x;
     const int32_t count = sample_rectangle(&random, low, high, 0.5 * spacing, &x);
     stand->top = make_top(run, 1e-3);
-    for (int32_t i = 0; i < stand->top.count; i++)
+    for (int32_t i = 0; i < stand->top.count; ++i)
         lowest = fmin(lowest, stand->top.x[i][2]);
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         x[k][2] = lowest - spacing;
     stand->wall = wall_new(sph, count, x);
     stand->elasticity = elasticity_new(sph, &stand->top, young, poisson);
@@ -203,7 +203,7 @@ static void stand_momenta(const struct particles *top, double *momentum, double 
 {
     const double mass = particles_mass(top);
     vector centre = {0}, carried;
-    for (int32_t i = 0; i < top->count; i++)
+    for (int32_t i = 0; i < top->count; ++i)
         add_scaled(centre, top->mass[i] / mass, top->x[i]);
     particles_momentum(top, momentum);
     particles_angular_momentum(top, angular);
@@ -217,10 +217,10 @@ static void stand_advance(struct stand *stand, double dt)
     pressure_prepare(&stand->pressure, top);
     pressure_stop_compression(&stand->pressure, top, dt);
     step_explicitly(&stand->elasticity, top, stand->force, dt);
-    for (int32_t i = 0; i < top->count; i++)
+    for (int32_t i = 0; i < top->count; ++i)
         top->v[i][2] -= gravity * dt;
     pressure_keep_density(&stand->pressure, top, dt);
-    for (int32_t i = 0; i < top->count; i++)
+    for (int32_t i = 0; i < top->count; ++i)
         add_scaled(top->x[i], dt, top->v[i]);
 }
 
@@ -235,13 +235,13 @@ static void stand(const struct run *run, const struct sph *sph)
     stand_init(&stand, run, sph);
     set_spinning(&stand.top, fast_turning);
     stand_momenta(&stand.top, momentum, before);
-    for (int32_t k = 0; k < steps; k++) {
+    for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
         stand_advance(&stand, dt);
         stand_momenta(&stand.top, momentum, now);
         turned = fmax(turned, fabs(now[2] / before[2] - 1));
     }
-    for (int32_t i = 0; i < stand.top.count; i++)
+    for (int32_t i = 0; i < stand.top.count; ++i)
         lowest = fmin(lowest, stand.top.x[i][2] - stand.wall.x[0][2]);
     metrics_set(run->metrics, "ground_spin_change", turned);
     metrics_set(run->metrics, "ground_drift",

@@ -30,7 +30,7 @@ static struct particles make_block(const struct run *run, struct random *random)
 
 static void rotate(struct particles *block)
 {
-    for (int32_t i = 0; i < block->count; i++)
+    for (int32_t i = 0; i < block->count; ++i)
         cross(rotation, block->x[i], block->v[i]);
 }
 
@@ -38,7 +38,7 @@ static void rotate(struct particles *block)
 static double curl_error(vector *curl, int32_t count)
 {
     double worst = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         vector off = {0};
         add_scaled(off, 0.5, curl[i]);
         add_scaled(off, -1, rotation);
@@ -55,8 +55,8 @@ static double printed_curl_error(const struct sph *sph, const struct operators *
     struct pairs pairs = pairs_new(block->count);
     vector *curl = array_new(block->count, sizeof *curl);
     pairs_update(sph, &operators->sources, 0, block->count, &pairs);
-    for (int32_t i = 0; i < block->count; i++)
-        for (int64_t k = pairs.offsets[i]; k < pairs.offsets[i + 1]; k++) {
+    for (int32_t i = 0; i < block->count; ++i)
+        for (int64_t k = pairs.offsets[i]; k < pairs.offsets[i + 1]; ++k) {
             const int32_t j = pairs.indices[k];
             vector apart = {0}, slower = {0}, gradient, term;
             add_scaled(apart, 1, block->x[j]);
@@ -84,15 +84,15 @@ static void find_curl(const struct sph *sph, const struct operators *operators, 
 /* d spin / dt = nu_t (curl v - 2 spin) / Theta */
 static void advance_spin(int32_t count, vector *curl, vector *spin)
 {
-    for (int32_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++)
+    for (int32_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k)
             spin[i][k] += step * transfer / inertia * (curl[i][k] - 2 * spin[i][k]);
 }
 
 static double spin_error(vector *spin, int32_t count)
 {
     double worst = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         vector off = {0};
         add_scaled(off, 1, spin[i]);
         add_scaled(off, -1, rotation);
@@ -105,7 +105,7 @@ static double spin_error(vector *spin, int32_t count)
 static void write_layer(const struct run *run, const struct particles *block, vector *spin)
 {
     FILE *table = output_open(run, "spin");
-    for (int32_t i = 0; table && i < block->count; i++)
+    for (int32_t i = 0; table && i < block->count; ++i)
         if (fabs(block->x[i][2] - 0.5 * spacing) < 0.5 * spacing)
             fprintf(table, "%g %g %g\n", block->x[i][0], block->x[i][1],
                     length(spin[i]) / length(rotation));
@@ -123,7 +123,7 @@ static void held_rotation(const struct run *run, const struct sph *sph, struct p
     rotate(block);
     operators_update(&operators, block);
     find_curl(sph, &operators, block->v, curl);
-    for (int32_t k = 0; k < 1000; k++)
+    for (int32_t k = 0; k < 1000; ++k)
         advance_spin(block->count, curl, spin);
     metrics_set(run->metrics, "curl_error", curl_error(curl, block->count));
     if (run->method != SPH)
@@ -141,7 +141,7 @@ static void held_rotation(const struct run *run, const struct sph *sph, struct p
 static void spin_stress(const double *curl, const double *spin, double *stress)
 {
     double s[3];
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         s[k] = 0.5 * density * transfer * (curl[k] - 2 * spin[k]);
     const double antisymmetric[9] = {0, -s[2], s[1], s[2], 0, -s[0], -s[1], s[0], 0};
     memcpy(stress, antisymmetric, sizeof antisymmetric);
@@ -150,7 +150,7 @@ static void spin_stress(const double *curl, const double *spin, double *stress)
 static void total_angular_momentum(const struct particles *block, vector *spin, double *total)
 {
     particles_angular_momentum(block, total);
-    for (int32_t i = 0; i < block->count; i++)
+    for (int32_t i = 0; i < block->count; ++i)
         add_scaled(total, density * inertia * block->volume[i], spin[i]);
 }
 
@@ -158,11 +158,11 @@ static void couple(const struct sph *sph, const struct operators *operators,
                    struct particles *block, vector *spin, tensor *stress, vector *work)
 {
     find_curl(sph, operators, block->v, work);
-    for (int32_t i = 0; i < block->count; i++)
+    for (int32_t i = 0; i < block->count; ++i)
         spin_stress(work[i], spin[i], stress[i]);
     advance_spin(block->count, work, spin);
     operators_force(operators, SPHG_TENSOR, tensors(stress), work);
-    for (int32_t i = 0; i < block->count; i++) {
+    for (int32_t i = 0; i < block->count; ++i) {
         add_scaled(block->v[i], step / block->mass[i], work[i]);
         add_scaled(block->x[i], step, block->v[i]);
     }
@@ -176,12 +176,12 @@ static void free_block(const struct run *run, const struct sph *sph, struct part
            *work = array_new(block->count, sizeof *work);
     tensor *stress = array_new(block->count, sizeof *stress);
     vector before, after, orbital;
-    for (int32_t i = 0; i < block->count; i++) {
+    for (int32_t i = 0; i < block->count; ++i) {
         memset(block->v[i], 0, sizeof block->v[i]);
         add_scaled(spin[i], 1, rotation);
     }
     total_angular_momentum(block, spin, before);
-    for (int32_t k = 0; k < 50; k++) {
+    for (int32_t k = 0; k < 50; ++k) {
         operators_update(&operators, block);
         couple(sph, &operators, block, spin, stress, work);
     }
@@ -215,7 +215,7 @@ static void draw(const struct picture *picture)
                     "set xrange [-0.33:0.33]\nset yrange [-0.33:0.33]\n"
                     "set cblabel 'spin / angular velocity'\n"
                     "set xlabel 'x [m]'\nset ylabel 'y [m]'\n");
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         fprintf(script,
                 "set title '%s: spin in a rigid rotation, middle layer'\n"
                 "plot 'vorticity_%s_spin.dat' using 1:2:(0.025):3 with circles lc palette\n",

@@ -121,7 +121,7 @@ static void apply_forces(struct machine *machine, double dt)
     struct particles soap = particles_range(&load->all, load->body, load->soap);
     const double *spent = machine->sph->spent;
     const double elsewhere = spent[SEARCH] + spent[FLUID_MATRICES], start = stopwatch_now();
-    for (int32_t i = 0; i < load->all.count; i++)
+    for (int32_t i = 0; i < load->all.count; ++i)
         add_scaled(load->all.v[i], dt, gravity);
     operators_update(&machine->soap_operators, &soap);
     viscosity_solve(&machine->soap, &soap, dt);
@@ -136,7 +136,7 @@ static void observe(struct machine *machine)
 {
     const struct particles *all = &machine->load.all;
     double over = 0;
-    for (int32_t i = 0; i < all->count; i++)
+    for (int32_t i = 0; i < all->count; ++i)
         over += fmax(0, machine->pressure.compression[i] - 1) / all->count;
     machine->worst_compression = fmax(machine->worst_compression, over);
     machine->least_volume =
@@ -159,7 +159,7 @@ static void advance(struct machine *machine)
     apply_forces(machine, dt);
     pressure_keep_density(&machine->pressure, all, dt);
     observe(machine);
-    for (int32_t i = 0; i < all->count; i++)
+    for (int32_t i = 0; i < all->count; ++i)
         add_scaled(all->x[i], dt, all->v[i]);
     machine->time += dt;
     if (machine->time > rest_time &&
@@ -177,7 +177,7 @@ static void draw_machine(const struct run *run, const struct load *load, const d
     double *colour = array_new(load->all.count, sizeof *colour);
     vector *upright = array_new(load->all.count, sizeof *upright);
     int32_t shown = 0;
-    for (int32_t i = 0; i < load->all.count; i++) {
+    for (int32_t i = 0; i < load->all.count; ++i) {
         const double *x = load->all.x[i];
         if (i >= load->body && x[2] > 0)
             continue;
@@ -196,7 +196,7 @@ static void write_machine(const struct run *run, const struct machine *machine, 
     const struct load *load = &machine->load;
     const int32_t count = load->all.count;
     double *phase = array_new(count, sizeof *phase);
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < count; ++i)
         phase[i] = (i >= load->body) + (i >= load->soap);
     const struct output_field fields[] = {
         {"phase", phase, 1}, {"velocity", load->all.v[0], 3}, {0}};
@@ -235,7 +235,7 @@ static void set_costs(const struct run *run, const struct machine *machine, doub
     const double seconds = all_seconds - spent[MEASURING];
     const double matrices = spent[FLUID_MATRICES] + spent[WALL_MATRICES];
     double named = 0;
-    for (int k = 0; k < MEASURING; k++)
+    for (int k = 0; k < MEASURING; ++k)
         named += spent[k];
     metrics_set(run->metrics, "ms_search", each * spent[SEARCH]);
     metrics_set(run->metrics, "ms_forces", each * spent[FORCES]);
@@ -251,7 +251,7 @@ static void set_costs(const struct run *run, const struct machine *machine, doub
 static int32_t count_escaped(const struct load *load)
 {
     int32_t escaped = 0;
-    for (int32_t i = 0; i < load->all.count; i++)
+    for (int32_t i = 0; i < load->all.count; ++i)
         escaped += !drum_holds(load->all.x[i]);
     return escaped;
 }
@@ -301,7 +301,7 @@ static void write_state(FILE *series, const struct machine *machine)
             each_step(machine, machine->elasticity.implicit.iterations),
             each_step(machine, machine->pressure.rate_iterations),
             each_step(machine, machine->pressure.density_iterations));
-    for (int k = 0; k < MEASURING; k++)
+    for (int k = 0; k < MEASURING; ++k)
         fprintf(series, " %g", 1000.0 / machine->steps * machine->sph->spent[k]);
     fprintf(series, "\n");
     fflush(series);
@@ -344,7 +344,7 @@ static void simulate(const struct run *run)
             note_share(&shares, sph.spent, seconds);
         run_progress(run, machine.time, duration);
         if (run->options->output && machine.time >= apart * frame) {
-            write_machine(run, &machine, frame++);
+            write_machine(run, &machine, ++frame);
             write_state(series, &machine);
         }
     }
@@ -371,7 +371,7 @@ static void draw(const struct picture *picture)
             "set key below horizontal maxrows 1 samplen 1 width -3\n"
             "radius = %g\n",
             0.5 * spacing_of(picture->full));
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         fprintf(script,
                 "set title '%s: after %g s, fluids in front cut away'\n"
                 "plot 'washing_machine_%s_drum.dat' using 1:2:(radius):3 with circles lc palette "

@@ -40,7 +40,7 @@ static struct span without_quotes(struct span cell)
 static const char *skip_blanks(const char *at, const char *end)
 {
     while (at < end && isspace((unsigned char)*at))
-        at++;
+        ++at;
     return at;
 }
 
@@ -55,7 +55,7 @@ static const char *skip_quoted(const char *at, const char *end)
         close = memchr(close + 1, '"', (size_t)(end - close - 1));
         if (!close)
             return at;
-        close++;
+        ++close;
     } while (close < end && *close == '"');
     return close;
 }
@@ -78,7 +78,7 @@ static bool split_at_blanks(struct cells *cells, struct span line)
         const char *start = at;
         at = skip_unit(skip_quoted(at, line.end), line.end);
         while (at < line.end && !isspace((unsigned char)*at))
-            at++;
+            ++at;
         if (*start != '[' && *start != '(')
             at = skip_unit(at, line.end);
         if (!add(cells, without_quotes((struct span){start, at})))
@@ -98,12 +98,12 @@ bool cells_split(struct cells *cells, struct span line, char separator)
         const char *start = at;
         at = skip_quoted(at, line.end);
         while (at < line.end && *at != separator)
-            at++;
+            ++at;
         if (!add(cells, without_quotes((struct span){start, at})))
             return false;
         if (at == line.end)
             return true;
-        at++;
+        ++at;
     }
 }
 
@@ -117,7 +117,7 @@ int32_t cells_filled(const struct cells *cells)
 {
     int32_t count = cells->count;
     while (count > 0 && cells->at[count - 1].start == cells->at[count - 1].end)
-        count--;
+        --count;
     return count;
 }
 
@@ -130,7 +130,7 @@ static bool is_digit(char c)
  * has three digits, leaves out. */
 static void translate(const char *cell, size_t size, bool decimal_comma, char *text)
 {
-    for (size_t k = 0; k < size; k++) {
+    for (size_t k = 0; k < size; ++k) {
         const char c = cell[k];
         const bool between = k > 0 && (is_digit(cell[k - 1]) || cell[k - 1] == '.');
         const bool before_digit = k + 1 < size && is_digit(cell[k + 1]);

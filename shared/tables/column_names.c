@@ -54,7 +54,7 @@ static void add_letter(struct words *words, char letter, bool begins)
     if (words->count > WORDS)
         return;
     if (begins || words->count == 0)
-        words->count++;
+        ++words->count;
     if (words->count > WORDS)
         return;
     char *word = words->at[words->count - 1];
@@ -86,7 +86,7 @@ static struct span without_number(struct span name)
     at += bracket;
     const char *digits = at;
     while (at < name.end && isdigit((unsigned char)*at))
-        at++;
+        ++at;
     if (at == digits)
         return name;
     if (bracket && name.end[-1] == ']' && at < name.end && isspace((unsigned char)*at))
@@ -103,7 +103,7 @@ static struct words cut(struct span name)
     struct words words = {0};
     name = without_number(name);
     char last = ' ';
-    for (const char *at = name.start; at < name.end; at++) {
+    for (const char *at = name.start; at < name.end; ++at) {
         at = skip_unit(at, name.end);
         const bool letter = isalpha((unsigned char)*at), digit = isdigit((unsigned char)*at);
         if (letter || digit)
@@ -116,7 +116,7 @@ static struct words cut(struct span name)
 
 static int find(const char *const list[SYNONYMS], const char *word)
 {
-    for (int k = 0; k < SYNONYMS && list[k]; k++)
+    for (int k = 0; k < SYNONYMS && list[k]; ++k)
         if (strcmp(list[k], word) == 0)
             return k;
     return -1;
@@ -131,7 +131,7 @@ static int axis_of(const char *word)
 /* axis: -1 of what has no direction. */
 static struct meaning look_up(const char *word, int axis)
 {
-    for (size_t k = 0; k < sizeof subjects / sizeof subjects[0]; k++) {
+    for (size_t k = 0; k < sizeof subjects / sizeof subjects[0]; ++k) {
         const int synonym = find(subjects[k].synonyms, word);
         const bool bare_number = word[0] == '\0' && axis >= FIRST_INDEX;
         if (synonym >= 0 && subjects[k].vector == (axis >= 0) && !bare_number)
@@ -169,9 +169,9 @@ static struct meaning meaning_of_words(const struct words *words, int first, int
     char joined[WORDS * WORD_SIZE] = "", but_first[WORDS * WORD_SIZE] = "";
     if (end - first == 1)
         return meaning_of_word(words->at[first]);
-    for (int k = first; k < end - 1; k++)
+    for (int k = first; k < end - 1; ++k)
         strcat(joined, words->at[k]);
-    for (int k = first + 1; k < end; k++)
+    for (int k = first + 1; k < end; ++k)
         strcat(but_first, words->at[k]);
     const int last_axis = axis_of(words->at[end - 1]), first_axis = axis_of(words->at[first]);
     if (last_axis >= 0)
@@ -187,8 +187,8 @@ static struct meaning meaning_of(struct span name)
     const struct meaning nothing = {QUANTITIES, 0, -1};
     if (words.count > WORDS)
         return nothing;
-    for (int first = 0; first < words.count; first++) {
-        for (int end = words.count; end > first; end--) {
+    for (int first = 0; first < words.count; ++first) {
+        for (int end = words.count; end > first; --end) {
             const struct meaning found = meaning_of_words(&words, first, end);
             if (found.first != QUANTITIES)
                 return found;
@@ -212,9 +212,9 @@ static struct candidate collect(const struct meaning *meanings, int32_t count, e
                                 int synonym)
 {
     struct candidate found;
-    for (int axis = 0; axis <= AXES; axis++)
+    for (int axis = 0; axis <= AXES; ++axis)
         found.first[axis] = found.second[axis] = -1;
-    for (int32_t k = 0; k < count; k++) {
+    for (int32_t k = 0; k < count; ++k) {
         if (meanings[k].first != first || meanings[k].synonym != synonym)
             continue;
         const int axis = meanings[k].axis < 0 ? AXES : meanings[k].axis;
@@ -228,7 +228,7 @@ static struct candidate collect(const struct meaning *meanings, int32_t count, e
 static int start_of_axes(const struct candidate *found)
 {
     const int starts[] = {0, found->first[FIRST_INDEX] < 0 ? FIRST_INDEX + 1 : FIRST_INDEX};
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; ++k) {
         const int32_t *at = found->first + starts[k];
         if ((at[0] >= 0) + (at[1] >= 0) + (at[2] >= 0) >= 2)
             return starts[k];
@@ -239,12 +239,12 @@ static int start_of_axes(const struct candidate *found)
 static void choose(const struct meaning *meanings, int32_t count, enum quantity first, int width,
                    int32_t columns[QUANTITIES], int32_t *twice)
 {
-    for (int synonym = 0; synonym < SYNONYMS; synonym++) {
+    for (int synonym = 0; synonym < SYNONYMS; ++synonym) {
         const struct candidate found = collect(meanings, count, first, synonym);
         const int start = width > 1 ? start_of_axes(&found) : found.first[AXES] < 0 ? -1 : AXES;
         if (start < 0)
             continue;
-        for (int axis = 0; axis < width; axis++) {
+        for (int axis = 0; axis < width; ++axis) {
             columns[(int)first + axis] = found.first[start + axis];
             if (found.second[start + axis] >= 0)
                 *twice = found.second[start + axis];
@@ -256,9 +256,9 @@ static void choose(const struct meaning *meanings, int32_t count, enum quantity 
 static void keep_complete_velocities(int32_t columns[QUANTITIES])
 {
     bool complete = true;
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         complete = complete && (columns[QUANTITY_X + axis] < 0 || columns[QUANTITY_VX + axis] >= 0);
-    for (int axis = 0; axis < 3; axis++)
+    for (int axis = 0; axis < 3; ++axis)
         if (!complete || columns[QUANTITY_X + axis] < 0)
             columns[QUANTITY_VX + axis] = -1;
 }
@@ -266,17 +266,17 @@ static void keep_complete_velocities(int32_t columns[QUANTITIES])
 bool columns_find(const struct cells *names, int32_t columns[QUANTITIES], int32_t *twice)
 {
     *twice = -1;
-    for (int k = 0; k < QUANTITIES; k++)
+    for (int k = 0; k < QUANTITIES; ++k)
         columns[k] = -1;
     struct meaning *meanings = malloc(((size_t)names->count + 1) * sizeof *meanings);
     if (!meanings)
         return false;
     int32_t positions_seen = 0;
-    for (int32_t k = 0; k < names->count; k++) {
+    for (int32_t k = 0; k < names->count; ++k) {
         meanings[k] = meaning_of(names->at[k]);
         positions_seen += meanings[k].first == QUANTITY_X;
     }
-    for (size_t k = 0; positions_seen > 1 && k < sizeof subjects / sizeof *subjects; k++)
+    for (size_t k = 0; positions_seen > 1 && k < sizeof subjects / sizeof *subjects; ++k)
         choose(meanings, names->count, subjects[k].first, subjects[k].vector ? 3 : 1, columns,
                twice);
     free(meanings);

@@ -76,7 +76,7 @@ static bool read_row(struct csv *csv, const struct cells *cells)
                       (int)csv->least_cells,
                       csv->text.next == csv->text.size ? "; the file may end too early" : "");
     double *row = csv->values[csv->row_count];
-    for (int quantity = 0; quantity < QUANTITIES; quantity++) {
+    for (int quantity = 0; quantity < QUANTITIES; ++quantity) {
         const int32_t column = csv->columns[quantity];
         row[quantity] = 0;
         if (column >= 0 &&

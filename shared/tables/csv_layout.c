@@ -23,14 +23,14 @@ static struct span bare_names(struct span line)
     static const char *const words[] = {"ITEM: ATOMS", "VARIABLES"};
     line = span_trim(line);
     while (line.start < line.end && strchr("#%!/", *line.start))
-        line.start++;
+        ++line.start;
     line = span_trim(line);
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         if (span_begins(line, words[k]))
             line.start += strlen(words[k]);
     line = span_trim(line);
     if (line.start < line.end && *line.start == '=')
-        line.start++;
+        ++line.start;
     return line;
 }
 
@@ -43,7 +43,7 @@ static bool is_number(struct span cell, char separator)
 static int32_t count_numbers(const struct cells *cells, char separator)
 {
     int32_t count = 0;
-    for (int32_t k = 0; k < cells->count; k++)
+    for (int32_t k = 0; k < cells->count; ++k)
         count += is_number(cells->at[k], separator);
     return count;
 }
@@ -55,7 +55,7 @@ static bool fits(const struct csv *csv, const struct cells *row, char separator)
 {
     if (row->count < csv->least_cells || cells_filled(row) > csv->most_cells)
         return false;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; ++axis) {
         const int32_t column = csv->columns[QUANTITY_X + axis];
         if (column >= 0 && !is_number(row->at[column], separator))
             return false;
@@ -79,7 +79,7 @@ static bool name_rows(struct csv *csv, const struct cells *row, struct span line
 static char separator_of(struct csv *csv, struct cells *row, struct span line, char of_names)
 {
     const char order[] = {of_names, ';', '\t', '|', ',', ' ', '\0'};
-    for (const char *separator = order; *separator; separator++)
+    for (const char *separator = order; *separator; ++separator)
         if (cells_split(row, line, *separator) &&
             (fits(csv, row, *separator) ||
              (name_rows(csv, row, line) && fits(csv, row, *separator))))
@@ -89,7 +89,7 @@ static char separator_of(struct csv *csv, struct cells *row, struct span line, c
 
 static bool has_numbers(struct cells *row, struct span line)
 {
-    for (const char *separator = cell_separators; *separator; separator++)
+    for (const char *separator = cell_separators; *separator; ++separator)
         if (cells_split(row, line, *separator) && count_numbers(row, *separator) > 0)
             return true;
     return false;
@@ -148,7 +148,7 @@ static bool find_names(struct csv *csv, int64_t *candidate, char *candidate_sepa
     while (csv->text.line < LINES_BEFORE_NAMES && text_file_line(&csv->text, &line)) {
         const size_t next = csv->text.next;
         const int64_t number = csv->text.line;
-        for (const char *separator = cell_separators; *separator; separator++) {
+        for (const char *separator = cell_separators; *separator; ++separator) {
             int32_t twice;
             const bool names = are_names(csv, line, *separator, &twice);
             if (names && find_first_row(csv, *separator))
@@ -185,13 +185,13 @@ static bool take_candidate(struct csv *csv, int64_t candidate, char separator)
 static void forget_names(struct csv *csv)
 {
     csv->names.count = 0;
-    for (int k = 0; k < QUANTITIES; k++)
+    for (int k = 0; k < QUANTITIES; ++k)
         csv->columns[k] = -1;
 }
 
 static void take_positions(struct csv *csv, int32_t first, int32_t width)
 {
-    for (int axis = 0; axis < width; axis++)
+    for (int axis = 0; axis < width; ++axis)
         csv->columns[QUANTITY_X + axis] = first + axis;
 }
 
@@ -199,10 +199,10 @@ static void take_positions(struct csv *csv, int32_t first, int32_t width)
 static bool next_property(struct span *at, struct span *name, int32_t *width)
 {
     struct span part[3];
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         part[k] = (struct span){at->start, at->start};
         while (part[k].end < at->end && *part[k].end != ':')
-            part[k].end++;
+            ++part[k].end;
         at->start = part[k].end + (part[k].end < at->end);
     }
     double count;
@@ -217,14 +217,14 @@ static bool next_property(struct span *at, struct span *name, int32_t *width)
 static bool value_of(struct span line, const char *word, struct span *value)
 {
     while (line.start < line.end && !span_begins(line, word))
-        line.start++;
+        ++line.start;
     if (line.start == line.end)
         return false;
     value->start = line.start + strlen(word);
     value->start += value->start < line.end && *value->start == '"';
     value->end = value->start;
     while (value->end < line.end && !isspace((unsigned char)*value->end) && *value->end != '"')
-        value->end++;
+        ++value->end;
     return true;
 }
 
@@ -250,7 +250,7 @@ static bool is_xyz(struct csv *csv, char *reason, size_t size)
     double count;
     text_file_rewind(&csv->text);
     bool good = true;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         good = good && text_file_line(&csv->text, &line[k]);
     good = good && cell_number(span_trim(line[0]), ',', &count) && count >= 1 && count < 1e15 &&
            cells_split(&row, line[2], ' ');
@@ -259,7 +259,7 @@ static bool is_xyz(struct csv *csv, char *reason, size_t size)
     if (extended && (first < 0 || row.count < first + 3))
         snprintf(reason, size, "extended XYZ whose Properties have no pos:R:3 that its rows show");
     good = good && first >= 0 && row.count >= first + 3 && (extended || !is_number(row.at[0], ' '));
-    for (int32_t k = first; good && k < first + 3; k++)
+    for (int32_t k = first; good && k < first + 3; ++k)
         good = extended || is_number(row.at[k], ' ');
     if (good) {
         forget_names(csv);
@@ -276,7 +276,7 @@ static bool is_xyz(struct csv *csv, char *reason, size_t size)
 /* Numbers all along, at least two. */
 static char separator_of_numbers(struct cells *row, struct span line)
 {
-    for (const char *separator = cell_separators; *separator; separator++)
+    for (const char *separator = cell_separators; *separator; ++separator)
         if (cells_split(row, line, *separator) && cells_filled(row) > 1 &&
             count_numbers(row, *separator) == cells_filled(row))
             return *separator;
@@ -286,7 +286,7 @@ static char separator_of_numbers(struct cells *row, struct span line)
 /* Words above the numbers, as many as these: names that say nothing to us. */
 static bool are_unknown_names(struct csv *csv, struct span above, int32_t count)
 {
-    for (const char *separator = cell_separators; *separator; separator++)
+    for (const char *separator = cell_separators; *separator; ++separator)
         if (cells_split(&csv->names, bare_names(above), *separator) &&
             (csv->names.count == count || cells_filled(&csv->names) == count) &&
             count_numbers(&csv->names, *separator) == 0)
@@ -298,7 +298,7 @@ static bool refuse_names(const struct csv *csv, char *reason, size_t size)
 {
     size_t length =
         (size_t)snprintf(reason, size, "no columns for the positions (x, y, z); found:");
-    for (int32_t k = 0; k < csv->names.count; k++) {
+    for (int32_t k = 0; k < csv->names.count; ++k) {
         const struct span name = csv->names.at[k];
         const int shown = (int)(name.end - name.start < 30 ? name.end - name.start : 30);
         if (length + (size_t)shown + 30 > size) {
@@ -308,7 +308,7 @@ static bool refuse_names(const struct csv *csv, char *reason, size_t size)
         length += (size_t)snprintf(reason + length, size - length, "%s %.*s", k ? "," : "", shown,
                                    name.start);
     }
-    for (char *at = reason; *at; at++)
+    for (char *at = reason; *at; ++at)
         if (iscntrl((unsigned char)*at))
             *at = ' ';
     return false;
@@ -319,7 +319,7 @@ static bool refuse_line(struct csv *csv, struct span line, char *reason, size_t 
 {
     char best = ',';
     int32_t most = 0;
-    for (const char *separator = cell_separators; *separator; separator++)
+    for (const char *separator = cell_separators; *separator; ++separator)
         if (cells_split(&csv->names, bare_names(line), *separator) && csv->names.count > most) {
             most = csv->names.count;
             best = *separator;

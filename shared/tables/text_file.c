@@ -52,7 +52,7 @@ static bool refuse_kind(const char *name, char *reason, size_t size)
 
 static bool known_kind(const struct text_file *file, char *reason, size_t size)
 {
-    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++)
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; ++k)
         if (file->size >= kinds[k].size && memcmp(file->data, kinds[k].bytes, kinds[k].size) == 0)
             return !refuse_kind(kinds[k].name, reason, size);
     return false;
@@ -104,7 +104,7 @@ static bool make_text(struct text_file *file, char *reason, size_t size)
         decode_wide(file, low);
     drop_byte_order_mark(file);
     while (file->size > 0 && file->data[file->size - 1] == '\x1a') /* where text ends in DOS */
-        file->size--;
+        --file->size;
     if (known_kind(file, reason, size))
         return false;
     if (file->size > 0 && memchr(file->data, '\0', file->size))
@@ -159,12 +159,12 @@ bool text_file_line(struct text_file *file, struct span *line)
     const char *end = file->data + file->size, *at = file->data + file->next;
     line->start = at;
     while (at < end && *at != '\n' && *at != '\r')
-        at++;
+        ++at;
     line->end = at;
     if (at < end)
         at += *at == '\r' && at + 1 < end && at[1] == '\n' ? 2 : 1;
     file->next = (size_t)(at - file->data);
-    file->line++;
+    ++file->line;
     return true;
 }
 
@@ -177,9 +177,9 @@ void text_file_rewind(struct text_file *file)
 struct span span_trim(struct span span)
 {
     while (span.start < span.end && isspace((unsigned char)*span.start))
-        span.start++;
+        ++span.start;
     while (span.start < span.end && isspace((unsigned char)span.end[-1]))
-        span.end--;
+        --span.end;
     return span;
 }
 

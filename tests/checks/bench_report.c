@@ -14,7 +14,7 @@ static int failures;
 static void complain(const char *what, const char *which)
 {
     fprintf(stderr, "%s: %s\n", which, what);
-    failures++;
+    ++failures;
 }
 
 static char *read_file(const char *path)
@@ -52,7 +52,7 @@ static void check_benchmark(const cJSON *benchmark)
 static void check_context(const cJSON *root)
 {
     static const char *const names[] = {"cpu_model", "host_name", "isa", "date", "compiler"};
-    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; ++k)
         if (!cJSON_IsString(cJSON_GetObjectItem(cJSON_GetObjectItem(root, "context"), names[k])))
             complain("not in the context", names[k]);
 }
@@ -67,13 +67,13 @@ static void check_counter(const cJSON *benchmarks, char *const wanted[4])
         if (!strstr(name_of(benchmark), wanted[0]))
             continue;
         const cJSON *counter = cJSON_GetObjectItem(benchmark, wanted[1]);
-        seen++;
+        ++seen;
         if (!cJSON_IsNumber(counter))
             complain(wanted[1], name_of(benchmark));
         else if (!(counter->valuedouble >= least && counter->valuedouble <= most)) {
             fprintf(stderr, "%s: %s is %g, not in [%g, %g]\n", name_of(benchmark), wanted[1],
                     counter->valuedouble, least, most);
-            failures++;
+            ++failures;
         }
     }
     if (seen == 0)

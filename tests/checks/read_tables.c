@@ -6,7 +6,7 @@
 
 int main(int argc, char **argv)
 {
-    for (int k = 1; k < argc; k++) {
+    for (int k = 1; k < argc; ++k) {
         struct csv csv;
         if (csv_open(&csv, argv[k]) && csv_read(&csv)) {
             printf("%s: %d rows\n", argv[k], (int)csv.row_count);

@@ -72,7 +72,7 @@ static void check_cells(hid_t group, hsize_t count)
     double *connectivity = read(group, "Connectivity", count, 1);
     double *offsets = read(group, "Offsets", count + 1, 1);
     double *types = read(group, "Types", count, 1);
-    for (hsize_t i = 0; i < count; i++)
+    for (hsize_t i = 0; i < count; ++i)
         demand(connectivity[i] == (double)i && offsets[i] == (double)i && types[i] == 1,
                "a cell is not the vertex of its point");
     demand(offsets[count] == (double)count, "Offsets do not end with the number of cells");
@@ -85,7 +85,7 @@ static void check_cells(hid_t group, hsize_t count)
 static void check_numbers(hid_t group, const char *name, hsize_t count)
 {
     double *values = read(group, name, count, 3), sum = 0;
-    for (hsize_t k = 0; k < 3 * count; k++)
+    for (hsize_t k = 0; k < 3 * count; ++k)
         sum += fabs(values[k]);
     demand(isfinite(sum) && sum > 0, name);
     free(values);

@@ -17,7 +17,7 @@ awk '
         gsub(/[^A-Za-z0-9]/, "_", name)
         return toupper(name)
     }
-    FNR == 1 { tree = FILENAME; sub(/\/.*/, "", tree); blank = 0; in_function = 0; guard = ""; formatted = 1 }
+    FNR == 1 { blank = 0; in_function = 0; guard = ""; formatted = 1 }
     /clang-format off/ { formatted = 0 }
     /clang-format on/ { formatted = 1 }
 
@@ -27,9 +27,8 @@ awk '
     blank && /^$/ { complain("two blank lines") }
     { blank = /^$/ }
 
-    # The value of an increment is not used: src writes ++k, everything else k++.
-    tree == "src" && /(; |^[ \t]*)[a-z_>.-]+\+\+[;)]/ { complain("k++, where src has ++k") }
-    tree != "src" && /(; |^[ \t]*)\+\+[a-z_][a-z_>.-]*[;)]/ { complain("++k, where only src has it") }
+    # Where the value of an increment is not used, it stands in front.
+    /(; |^[ \t]*)[a-z_][a-z_0-9>.\[\]-]*(\+\+|--)[;)]/ { complain("k++, where everyone has ++k") }
 
     # Includes of ours, then those of others, without a blank line between.
     /^#include </ && after_blank { complain("a blank line among the includes") }

@@ -48,7 +48,7 @@ static inline block_waiting *blocks_waiting(void)
 static inline char *block_reuse(size_t whole)
 {
     block_waiting *waiting = blocks_waiting();
-    for (int k = 0; whole >= BLOCK_LARGE && k < BLOCKS_WAITING; k++)
+    for (int k = 0; whole >= BLOCK_LARGE && k < BLOCKS_WAITING; ++k)
         if (waiting[k].memory && waiting[k].size == whole) {
             char *memory = waiting[k].memory;
             waiting[k].memory = NULL;

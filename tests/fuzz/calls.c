@@ -25,7 +25,7 @@ static void *allocate(size_t size, size_t alignment, void *user)
         return NULL;
     void *memory = block_take(size);
     FUZZ_REQUIRE(memory && alignment <= BLOCK_HEADER, "no memory");
-    own->blocks++;
+    ++own->blocks;
     return memory;
 }
 
@@ -33,7 +33,7 @@ static void release(void *memory, size_t size, void *user)
 {
     world *own = user;
     FUZZ_REQUIRE(block_size(memory) == size, "released %zu bytes of %zu", size, block_size(memory));
-    own->blocks--;
+    --own->blocks;
     block_give(memory);
 }
 
@@ -66,13 +66,13 @@ static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
                                     .skin = flags & 4 ? .25 : 0,
                                     .period = {flags & 8 ? 40 : 0}};
     const sphg_lists lists = {.offsets = own->offsets, .indices = own->indices};
-    for (int k = 0; k < count * 3; k++)
+    for (int k = 0; k < count * 3; ++k)
         own->x[k] = (float)fuzz_tame(from);
     if (!(flags & 16))
         return search_as_foretold(own, object, &geometry);
-    for (int i = 0; i <= MOST; i++)
+    for (int i = 0; i <= MOST; ++i)
         own->offsets[i] = (int64_t)i * count;
-    for (int k = 0; k < MOST * MOST; k++)
+    for (int k = 0; k < MOST * MOST; ++k)
         own->indices[k] = count ? k % count : 0;
     return sphg_neighbors_use_lists(own->context, object, &own->scheme, &geometry, &lists);
 }
@@ -185,10 +185,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     own.scheme = (sphg_scheme){.dimension = 3, .support_radius = 1};
     own.fail = fuzz_byte(&from) % 4;
     if (sphg_context_create(SPHG_VERSION, &config, &own.context) == SPHG_OK)
-        for (int k = 0; k < 16 && from.left; k++) {
+        for (int k = 0; k < 16 && from.left; ++k) {
             const int armed = fuzz_byte(&from);
             own.fail = armed > 128 ? armed % 24 : 0;
-            for (int i = 0; i < MOST; i++)
+            for (int i = 0; i < MOST; ++i)
                 own.volume[i] = 1;
             const sphg_result result = step(&own, &from);
             /* ERROR_INDEX: all objects share the lists, which the last build wrote */
@@ -196,7 +196,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                          (int)result, sphg_last_message(own.context));
             FUZZ_REQUIRE(result != SPHG_ERROR_MEMORY || armed > 128, "memory failed by itself");
         }
-    for (int k = 0; k < OBJECTS; k++)
+    for (int k = 0; k < OBJECTS; ++k)
         sphg_neighbors_destroy(own.objects[k]);
     sphg_context_destroy(own.context);
     FUZZ_REQUIRE(own.blocks == 0, "%ld blocks leaked", own.blocks);

@@ -20,7 +20,7 @@ typedef struct host {
 
 static sphg_view numbers(fuzz_bytes *from, const host *on, double *memory, int width, int tame)
 {
-    for (int k = 0; k < on->count * width; k++)
+    for (int k = 0; k < on->count * width; ++k)
         fuzz_put(on->type, memory, k, tame ? fuzz_byte(from) / 64. : fuzz_real(from));
     return fuzz_view(on->type, memory, width);
 }
@@ -28,7 +28,7 @@ static sphg_view numbers(fuzz_bytes *from, const host *on, double *memory, int w
 static void take_lists(fuzz_bytes *from, host *on, sphg_lists *lists)
 {
     const int kind = fuzz_byte(from), honest = kind & 1;
-    for (int i = 0; i < on->count; i++) {
+    for (int i = 0; i < on->count; ++i) {
         on->lengths[i] = fuzz_below(from, INDICES / MOST);
         on->offsets[i + 1] = on->offsets[i] + on->lengths[i];
         if (!honest && fuzz_byte(from) > 250)
@@ -39,7 +39,7 @@ static void take_lists(fuzz_bytes *from, host *on, sphg_lists *lists)
             on->lengths[i] = -fuzz_byte(from);
         on->rows[i] = on->indices + i * (INDICES / MOST);
     }
-    for (int k = 0; k < INDICES; k++) {
+    for (int k = 0; k < INDICES; ++k) {
         const int index = fuzz_byte(from);
         on->indices[k] = on->count ? index % on->count : 0;
         if (!honest && index > 250)
@@ -60,7 +60,7 @@ static int32_t *moved_to_the_end(host *on, sphg_lists *lists)
 {
     const int64_t used = lists->offsets ? on->offsets[on->count] : 0;
     int monotone = lists->offsets != NULL && used >= 0 && used <= INDICES;
-    for (int i = 0; i < on->count && monotone; i++)
+    for (int i = 0; i < on->count && monotone; ++i)
         monotone = on->offsets[i] <= on->offsets[i + 1];
     if (!monotone)
         return NULL;

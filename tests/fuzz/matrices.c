@@ -16,7 +16,7 @@ typedef struct batch {
 static long double largest(const batch *on, const void *array, int first, int count)
 {
     long double most = 0;
-    for (int k = first; k < first + count; k++) {
+    for (int k = first; k < first + count; ++k) {
         const double x = fuzz_get(on->type, array, k);
         if (!isfinite(x))
             return INFINITY;
@@ -28,10 +28,10 @@ static long double largest(const batch *on, const void *array, int first, int co
 static void require_orthogonal(const batch *on, const void *array, int item)
 {
     const int d = on->dimension;
-    for (int j = 0; j < d; j++)
-        for (int k = 0; k <= j; k++) {
+    for (int j = 0; j < d; ++j)
+        for (int k = 0; k <= j; ++k) {
             long double dot = j == k ? -1 : 0;
-            for (int r = 0; r < d; r++)
+            for (int r = 0; r < d; ++r)
                 dot += (long double)fuzz_get(on->type, array, item * d * d + r * d + j) *
                        fuzz_get(on->type, array, item * d * d + r * d + k);
             FUZZ_REQUIRE(fabsl(dot) <= 64 * on->unit, "columns %d, %d: %Lg", j, k, dot);
@@ -44,11 +44,11 @@ static void require_product(const batch *on, const long double *a, const void *u
 {
     const int d = on->dimension;
     long double size = 0;
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         size = fmaxl(size, fabsl(a[k]));
-    for (int k = 0; k < d * d; k++) {
+    for (int k = 0; k < d * d; ++k) {
         long double rest = a[k];
-        for (int m = 0; m < d; m++)
+        for (int m = 0; m < d; ++m)
             rest -= (long double)fuzz_get(on->type, u, item * d * d + k / d * d + m) *
                     fuzz_get(on->type, values, item * d + m) *
                     fuzz_get(on->type, v, item * d * d + k % d * d + m);
@@ -65,12 +65,12 @@ static void try_eigen(batch *on)
                             fuzz_view(on->type, on->second, d * d)) == SPHG_OK,
                  "eigen");
     const long double top = on->type == SPHG_F64 ? DBL_MAX / 8 : (long double)FLT_MAX / 8;
-    for (int i = 0; i < ITEMS; i++) {
+    for (int i = 0; i < ITEMS; ++i) {
         long double a[9];
         if (largest(on, on->in, i * width, width) > top)
             continue;
-        for (int r = 0, k = i * width; r < d; r++)
-            for (int c = r; c < d; c++, k++)
+        for (int r = 0, k = i * width; r < d; ++r)
+            for (int c = r; c < d; c++, ++k)
                 a[r * d + c] = a[c * d + r] = fuzz_get(on->type, on->in, k);
         require_orthogonal(on, on->second, i);
         require_product(on, a, on->second, on->first, on->second, i);
@@ -84,11 +84,11 @@ static void try_svd(batch *on)
                           fuzz_view(on->type, on->third, 9)) == SPHG_OK,
                  "svd");
     const long double top = on->type == SPHG_F64 ? DBL_MAX / 8 : (long double)FLT_MAX / 8;
-    for (int i = 0; i < ITEMS && on->dimension == 3; i++) {
+    for (int i = 0; i < ITEMS && on->dimension == 3; ++i) {
         long double a[9];
         if (largest(on, on->in, i * 9, 9) > top)
             continue;
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 9; ++k)
             a[k] = fuzz_get(on->type, on->in, 9 * i + k);
         require_orthogonal(on, on->first, i);
         require_orthogonal(on, on->third, i);
@@ -107,7 +107,7 @@ static void try_inversion(batch *on, fuzz_bytes *from)
                                 .policy = (sphg_policy)(fuzz_byte(from) % 4),
                                 .support_radius = 1,
                                 .threshold = fuzz_byte(from) / 256.};
-    for (int i = 0; i < ITEMS; i++)
+    for (int i = 0; i < ITEMS; ++i)
         fuzz_put(on->type, volume, i, fuzz_byte(from) / 64.);
     const sphg_inversion wanted = {.correction = fuzz_view(on->type, on->first, width),
                                    .rank = sphg_view_u8(rank, 1),
@@ -117,7 +117,7 @@ static void try_inversion(batch *on, fuzz_bytes *from)
                                      fuzz_view(on->type, on->in, width),
                                      fuzz_view(on->type, volume, 1), &wanted) == SPHG_OK,
                  "invert: %s", sphg_last_message(on->context));
-    for (int i = 0; i < ITEMS; i++) {
+    for (int i = 0; i < ITEMS; ++i) {
         FUZZ_REQUIRE(rank[i] <= d, "rank %d", rank[i]);
         const long double size = largest(on, on->in, i * width, width);
         if (isinf(size))
@@ -139,7 +139,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     on.dimension = flags & 2 ? 3 : 2;
     on.unit = on.type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
     on.grain = on.type == SPHG_F64 ? 0x1p-1074 : 0x1p-149;
-    for (int k = 0; k < ITEMS * 9; k++)
+    for (int k = 0; k < ITEMS * 9; ++k)
         fuzz_put(on.type, on.in, k, fuzz_real(&from));
     try_eigen(&on);
     try_svd(&on);

@@ -17,7 +17,7 @@ static void replay(const char *name)
 
 int main(int argc, char **argv)
 {
-    for (int k = 1; k < argc; k++)
+    for (int k = 1; k < argc; ++k)
         replay(argv[k]);
     printf("%d inputs\n", argc - 1);
     return argc < 2;

@@ -36,7 +36,7 @@ static double radius_of(cloud *on, int side, int item)
 /* Octaves apart, now and then anything at all. */
 static void take_radii(fuzz_bytes *from, cloud *made, int side, int count)
 {
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; ++k) {
         const int kind = fuzz_byte(from);
         fuzz_put(made->type, radii_of(made, side), k,
                  kind == 255 ? fuzz_real(from) : ldexp(1 + kind % 16 / 16., -(kind / 16)));
@@ -62,7 +62,7 @@ static void take_radii_of_cloud(fuzz_bytes *from, cloud *made)
 
 static void take_positions(fuzz_bytes *from, cloud *made, int side, int count, int tame)
 {
-    for (int k = 0; k < count * made->dimension; k++)
+    for (int k = 0; k < count * made->dimension; ++k)
         fuzz_put(made->type, memory_of(made, side), k, tame ? fuzz_tame(from) : fuzz_real(from));
 }
 
@@ -77,7 +77,7 @@ static void take_cloud(fuzz_bytes *from, cloud *made)
     made->scheme.dimension = made->dimension;
     made->scheme.support_radius = flags & 8 ? fabs(fuzz_real(from)) : (1 + fuzz_byte(from)) / 32.;
     const int tame = (flags & 16) != 0;
-    for (int a = 0; a < made->dimension && tame; a++)
+    for (int a = 0; a < made->dimension && tame; ++a)
         made->geometry.period[a] = fuzz_below(from, 3) ? 0 : fuzz_byte(from) / 4.;
     made->geometry.list_free = (flags & 32) != 0;
     made->geometry.skin = flags & 64 ? fuzz_byte(from) / 64. : 0;
@@ -118,7 +118,7 @@ static double separation(const cloud *on, double x, double other, int axis)
     if (!(period > 0))
         return difference;
     const double nearest = -nearbyint(difference / period);
-    for (int k = -1; k <= 1; k++) {
+    for (int k = -1; k <= 1; ++k) {
         const double image = rounded(on, difference + (nearest + k) * period);
         if (fabs(image) < fabs(best))
             best = image;
@@ -132,7 +132,7 @@ static int is_near(cloud *on, int i, int j)
     double sum = 0;
     if (!on->own_targets && i == j)
         return 0;
-    for (int a = 0; a < d; a++) {
+    for (int a = 0; a < d; ++a) {
         const double target = fuzz_get(on->type, memory_of(on, on->own_targets), i * d + a);
         const double x = separation(on, target, fuzz_get(on->type, memory_of(on, 0), j * d + a), a);
         sum = rounded(on, sum + rounded(on, x * x));
@@ -145,9 +145,9 @@ static int is_near(cloud *on, int i, int j)
 
 static void compare(cloud *on, const int64_t *offsets, const int32_t *indices)
 {
-    for (int i = 0; i < on->targets; i++) {
+    for (int i = 0; i < on->targets; ++i) {
         int64_t at = offsets[i];
-        for (int32_t j = 0; j < on->sources; j++) {
+        for (int32_t j = 0; j < on->sources; ++j) {
             const int is_listed = at < offsets[i + 1] && indices[at] == j;
             FUZZ_REQUIRE(is_listed == is_near(on, i, j), "pair (%d, %d): listed %d", i, (int)j,
                          is_listed);
@@ -160,8 +160,8 @@ static void compare(cloud *on, const int64_t *offsets, const int32_t *indices)
 /* Radii that were accepted: positive and finite. */
 static int are_radii(cloud *on)
 {
-    for (int side = 0; side <= on->own_targets && on->largest > 0; side++)
-        for (int k = 0; k < (side ? on->targets : on->sources); k++)
+    for (int side = 0; side <= on->own_targets && on->largest > 0; ++side)
+        for (int k = 0; k < (side ? on->targets : on->sources); ++k)
             if (!(radius_of(on, side, k) > 0) || !isfinite(radius_of(on, side, k)))
                 return 0;
     return 1;
@@ -170,10 +170,10 @@ static int are_radii(cloud *on)
 static int is_finite(cloud *on)
 {
     const int d = on->dimension;
-    for (int k = 0; k < on->sources * d; k++)
+    for (int k = 0; k < on->sources * d; ++k)
         if (!isfinite(fuzz_get(on->type, memory_of(on, 0), k)))
             return 0;
-    for (int k = 0; k < on->targets * d && on->own_targets; k++)
+    for (int k = 0; k < on->targets * d && on->own_targets; ++k)
         if (!isfinite(fuzz_get(on->type, memory_of(on, 1), k)))
             return 0;
     return 1;
@@ -189,7 +189,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const fuzz_instance *instance = fuzz_instance_for(size);
     sphg_context *context = instance->context;
     take_cloud(&from, &on);
-    for (int turn = 0; turn < 2; turn++) {
+    for (int turn = 0; turn < 2; ++turn) {
         const sphg_result result =
             sphg_neighbors_search(context, instance->neighbors, &on.scheme, &on.geometry);
         FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
@@ -205,7 +205,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
                                          &pairs) == SPHG_OK,
                      "%s", sphg_last_message(context));
         compare(&on, offsets, indices);
-        for (int k = 0; k < on.sources * on.dimension; k++) {
+        for (int k = 0; k < on.sources * on.dimension; ++k) {
             const double x = fuzz_get(on.type, memory_of(&on, 0), k);
             const double far = on.geometry.skin > 0 ? on.geometry.skin : 1. / 16;
             fuzz_put(on.type, memory_of(&on, 0), k, x + far * (fuzz_byte(&from) % 9 - 4) / 4);

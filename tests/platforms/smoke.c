@@ -72,7 +72,7 @@ static void expect(int holds, const char *what, const char *detail)
 {
     if (!holds) {
         printf("FAILED: %s %s\n", what, detail);
-        failures++;
+        ++failures;
     }
 }
 

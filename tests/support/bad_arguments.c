@@ -89,7 +89,7 @@ static int put_real(valid_call *own, const argument *spoilt, double value, trial
     memcpy(member(own, spoilt), &value, sizeof value);
     name_trial(made, "%g", value);
     expect(made, SPHG_ERROR_ARGUMENT, NULL);
-    for (int digits = 6; digits <= 17; digits++) { /* the fewest that read back */
+    for (int digits = 6; digits <= 17; ++digits) { /* the fewest that read back */
         snprintf(made->value, sizeof made->value, "%.*g", digits, value);
         if (strtod(made->value, NULL) == value)
             break;

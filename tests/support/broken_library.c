@@ -24,7 +24,7 @@ static int how(void)
     static const char *const words[] = {"zero", "minus", "late", "1.01", "random", "hole", "none"};
     static int letter;
     const char *word = getenv("BROKEN_LIBRARY");
-    for (int k = 0; !letter && word && k < 7; k++)
+    for (int k = 0; !letter && word && k < 7; ++k)
         if (strcmp(word, words[k]) == 0)
             letter = *word;
     if (!letter) {
@@ -44,7 +44,7 @@ static double *kept(const void *place)
         double value;
     } table[PLACES];
     size_t at = (size_t)((uintptr_t)place * 0x9e3779b97f4a7c15u >> 42);
-    for (size_t tried = 0; table[at].place && table[at].place != place; tried++) {
+    for (size_t tried = 0; table[at].place && table[at].place != place; ++tried) {
         if (tried == PLACES) {
             fprintf(stderr, "results at more places than can be kept\n");
             abort();
@@ -121,8 +121,8 @@ static void spoil_item(const sphg_view *view, int32_t item, int32_t rows, int32_
 {
     const void *const parts[3] = {view->x, view->y, view->z};
     const int32_t apart = !view->y ? 1 : rows > 1 ? rows : columns;
-    for (int32_t part = 0; part < apart; part++)
-        for (int32_t number = 0; number < rows * columns / apart; number++)
+    for (int32_t part = 0; part < apart; ++part)
+        for (int32_t number = 0; number < rows * columns / apart; ++number)
             spoil_number(view, parts[part], item, number);
 }
 
@@ -135,7 +135,7 @@ static void spoil(sphg_context *context, const sphg_sources *sources, const sphg
         return;
     const int32_t begin = subset ? subset->begin : 0;
     const int32_t end = subset ? subset->end : info.target_count;
-    for (int32_t k = begin; k < end; k++) {
+    for (int32_t k = begin; k < end; ++k) {
         const int32_t item = subset && subset->indices ? subset->indices[k] : k;
         if (!subset || !subset->mask || subset->mask[item])
             spoil_item(view, item, rows, columns);
@@ -180,7 +180,7 @@ sphg_result sphg_evaluate(sphg_context *context, const sphg_scheme *scheme,
     REAL(evaluate, "sphg_evaluate");
     const sphg_result result = evaluate(context, scheme, request);
     if (result == SPHG_OK && scheme->method != SPHG_PLAIN)
-        for (int32_t k = 0; k < request->field_count; k++)
+        for (int32_t k = 0; k < request->field_count; ++k)
             spoil_field(context, scheme, request, &request->fields[k]);
     return result;
 }
@@ -227,7 +227,7 @@ sphg_result sphg_pair_gradients(sphg_context *context, const sphg_scheme *scheme
     REAL(call, "sphg_pair_gradients");
     const sphg_result result = call(context, scheme, sources, subset, target_correction, pairs);
     if (result == SPHG_OK && scheme->method != SPHG_PLAIN && pairs->gradient.x)
-        for (int64_t k = 0; k < pairs->count; k++)
+        for (int64_t k = 0; k < pairs->count; ++k)
             spoil_item(&pairs->gradient, (int32_t)k, 1, dimension_of(scheme));
     return result;
 }
@@ -238,6 +238,6 @@ void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double vo
     void (*call)(const sphg_scheme *, const double *, double, const double *, double *);
     REAL(call, "sphg_pair_gradient");
     call(scheme, x_ij, volume, correction, gradient);
-    for (int32_t k = 0; scheme->method != SPHG_PLAIN && k < dimension_of(scheme); k++)
+    for (int32_t k = 0; scheme->method != SPHG_PLAIN && k < dimension_of(scheme); ++k)
         gradient[k] = spoiled(&gradient[k], gradient[k]);
 }

@@ -29,7 +29,7 @@ scene scene_of_cloud(const test_case *test, const cloud *points)
     particles.precision = test_field_type(test);
     particles.source_count = particles.target_count = points->count;
     particles.sources = points->x;
-    for (int k = 0; k < points->count * points->dimension && !particles.is_double; k++)
+    for (int k = 0; k < points->count * points->dimension && !particles.is_double; ++k)
         points->x[k] = (double)(float)points->x[k];
     return particles;
 }
@@ -94,7 +94,7 @@ static double separation(const scene *particles, double a, double b, int axis)
     const double difference = rounded(particles, a - b);
     double best = difference;
     const double nearest = period > 0 ? -nearbyint(difference / period) : 0;
-    for (int k = -1; k <= 1 && period > 0; k++) {
+    for (int k = -1; k <= 1 && period > 0; ++k) {
         const double shift = rounded(particles, (nearest + k) * period);
         const double image = rounded(particles, difference + shift);
         if (fabs(image) < fabs(best))
@@ -106,7 +106,7 @@ static double separation(const scene *particles, double a, double b, int axis)
 static int is_near_single(int d, const double *difference, float support_radius)
 {
     float sum = 0;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         const float square = (float)difference[k] * (float)difference[k];
         sum = sum + square;
     }
@@ -116,7 +116,7 @@ static int is_near_single(int d, const double *difference, float support_radius)
 static int is_near_double(int d, const double *difference, double support_radius)
 {
     double sum = 0;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         sum = sum + difference[k] * difference[k];
     return sum < support_radius * support_radius;
 }
@@ -140,7 +140,7 @@ static int is_neighbour(const scene *particles, int i, int j, double support_rad
     double difference[3];
     if (!particles->targets && i == j)
         return 0;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         difference[k] = separation(particles, boxed(particles, target[k], k, support_radius),
                                    boxed(particles, source[k], k, support_radius), k);
         if (fabs(difference[k]) > far)
@@ -155,9 +155,9 @@ rows rows_by_brute_force(const scene *particles, double support_radius)
     const int targets = particles->target_count, sources = particles->source_count;
     char *near = test_memory((size_t)targets * (size_t)sources);
     rows found = {targets, test_memory(((size_t)targets + 1) * sizeof(int64_t)), NULL};
-    for (int i = 0; i < targets; i++) {
+    for (int i = 0; i < targets; ++i) {
         found.offsets[i + 1] = found.offsets[i];
-        for (int j = 0; j < sources; j++) {
+        for (int j = 0; j < sources; ++j) {
             near[(size_t)i * (size_t)sources + (size_t)j] =
                 (char)is_neighbour(particles, i, j, support_radius);
             found.offsets[i + 1] += near[(size_t)i * (size_t)sources + (size_t)j];
@@ -165,8 +165,8 @@ rows rows_by_brute_force(const scene *particles, double support_radius)
     }
     found.indices = test_memory((size_t)found.offsets[targets] * sizeof(int32_t));
     int64_t next = 0;
-    for (int i = 0; i < targets; i++)
-        for (int j = 0; j < sources; j++)
+    for (int i = 0; i < targets; ++i)
+        for (int j = 0; j < sources; ++j)
             if (near[(size_t)i * (size_t)sources + (size_t)j])
                 found.indices[next++] = j;
     return found;
@@ -180,7 +180,7 @@ static int32_t selected_count(sphg_context *context, const sphg_neighbors *neigh
     if (!subset)
         return info.target_count;
     int32_t count = 0;
-    for (int32_t k = subset->begin; k < subset->end; k++)
+    for (int32_t k = subset->begin; k < subset->end; ++k)
         count += !subset->mask || subset->mask[subset->indices ? subset->indices[k] : k];
     return count;
 }
@@ -212,12 +212,12 @@ void rows_require_equal(const rows *found, const rows *expected, const char *whe
 {
     TEST_REQUIRE(found->count == expected->count, "%s: %d rows, not %d", where, found->count,
                  expected->count);
-    for (int32_t i = 0; i < expected->count; i++) {
+    for (int32_t i = 0; i < expected->count; ++i) {
         const int64_t length = expected->offsets[i + 1] - expected->offsets[i];
         const int64_t listed = found->offsets[i + 1] - found->offsets[i];
         TEST_REQUIRE(listed == length, "%s: row %d has %lld neighbours, not %lld", where, i,
                      (long long)listed, (long long)length);
-        for (int64_t k = 0; k < length; k++) {
+        for (int64_t k = 0; k < length; ++k) {
             const int32_t a = found->indices[found->offsets[i] + k];
             const int32_t b = expected->indices[expected->offsets[i] + k];
             TEST_REQUIRE(a == b, "%s: row %d lists %d, not %d", where, i, a, b);

@@ -42,7 +42,7 @@ comparison comparison_of_radii(const test_case *test, const char *name, cloud po
     random_state random = random_seeded(78);
     comparison made = set_up(test, name, points, 0, &random);
     double *volume = cloud_volumes(&points, .2, &random);
-    for (int i = 0; i < points.count; i++) {
+    for (int i = 0; i < points.count; ++i) {
         radii[i] = cloud_rounded(radii[i]);
         volume[i] = cloud_rounded(volume[i] * pow(radii[i] / points.spacing, points.dimension));
     }
@@ -106,7 +106,7 @@ double *comparison_random_field(const comparison *on, sphg_shape shape, uint64_t
     int total = on->points.count * setup_width(shape, on->points.dimension);
     double *numbers = test_memory((size_t)total * sizeof *numbers);
     random_state random = random_seeded(seed);
-    for (int k = 0; k < total; k++)
+    for (int k = 0; k < total; ++k)
         numbers[k] = (double)(float)random_between(&random, -1, 1);
     return numbers;
 }
@@ -173,7 +173,7 @@ static comparison_result evaluate(const comparison *on, const comparison_field *
     comparison_ask_for(&result, &asked);
     sphg_view *const views[] = {&asked.gradient, &asked.divergence, &asked.curl, &asked.value,
                                 &asked.square};
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 5; ++k)
         if (!(asks >> k & 1))
             *views[k] = sphg_absent();
     sphg_request request = {.sources = &sources, .fields = &asked, .set_count = 1};
@@ -214,7 +214,7 @@ int comparison_results_have_same_bits(const comparison_result *a, const comparis
 double comparison_ratio(const setup_array *found, int item, const quad *exact, quad bound)
 {
     double numbers[16];
-    for (int k = 0; k < found->width; k++)
+    for (int k = 0; k < found->width; ++k)
         numbers[k] = setup_get(found, item, k);
     return oracle_ratio(found->width, numbers, exact, bound);
 }
@@ -251,7 +251,7 @@ void comparison_compare(const comparison *on, const comparison_field *field,
                 {"curl", &found->curl, exact.curl, exact.bound},
                 {"value", &found->value, exact.value, exact.value_bound},
                 {"square", &found->square, &exact.square, exact.square_bound}};
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 5; ++k)
         if (rows[k].array->width > 0)
             gate(on, test_text("%s %s", forms[field->form], rows[k].what),
                  comparison_ratio(rows[k].array, i, rows[k].numbers, rows[k].bound), exact.touched,

@@ -52,7 +52,7 @@ static void *take(fake_host *host, size_t size, size_t alignment)
     head->alignment = alignment;
     head->guard = LIVE;
     memset(base + space, 0xff, size);
-    host->live_blocks++;
+    ++host->live_blocks;
     host->live_bytes += (int64_t)size;
     if (host->live_bytes > host->peak_bytes)
         host->peak_bytes = host->live_bytes;
@@ -66,7 +66,7 @@ static void *fake_host_allocate(size_t size, size_t alignment, void *user)
     pthread_mutex_lock(&host->lock);
     const int64_t ordinal = ++host->allocations;
     if (alignment == 0 || (alignment & (alignment - 1)) != 0)
-        host->faults++;
+        ++host->faults;
     else if (ordinal < host->fail_from || ordinal >= host->fail_until)
         memory = take(host, size, alignment);
     pthread_mutex_unlock(&host->lock);
@@ -77,12 +77,12 @@ static void give_back(fake_host *host, void *memory, size_t size)
 {
     header *head = (header *)(void *)((char *)memory - sizeof(header));
     if (head->guard != LIVE) {
-        host->faults++;
+        ++host->faults;
         return;
     }
     if (head->size != size)
-        host->faults++;
-    host->live_blocks--;
+        ++host->faults;
+    --host->live_blocks;
     host->live_bytes -= (int64_t)head->size;
     head->guard = DEAD;
     memset(memory, 0xfe, head->size);
@@ -102,7 +102,7 @@ static void fake_host_release(void *memory, size_t size, void *user)
 static void fake_host_log(sphg_result result, const char *message, void *user)
 {
     fake_host *host = user;
-    host->log_count++;
+    ++host->log_count;
     host->log_result = result;
     strncpy(host->log_message, message, sizeof host->log_message - 1);
 }
@@ -128,7 +128,7 @@ void fake_host_odd_splits(sphg_task *task, void *data, int32_t count, int32_t gr
 {
     fake_host *host = user;
     int32_t step = grain, worker = 0;
-    host->regions++;
+    ++host->regions;
     for (int32_t begin = 0; begin < count; worker = (worker + 1) % host->workers) {
         const int32_t end = begin + least(step, count - begin);
         task(data, begin, end, worker);
@@ -140,7 +140,7 @@ void fake_host_odd_splits(sphg_task *task, void *data, int32_t count, int32_t gr
 void fake_host_reversed(sphg_task *task, void *data, int32_t count, int32_t grain, void *user)
 {
     fake_host *host = user;
-    host->regions++;
+    ++host->regions;
     for (int32_t end = count; end > 0;) {
         const int32_t begin = end - least(grain, end);
         task(data, begin, end, host->workers - 1);
@@ -182,12 +182,12 @@ void fake_host_pthreads(sphg_task *task, void *data, int32_t count, int32_t grai
     queue work = {PTHREAD_MUTEX_INITIALIZER, task, data, 0, count, grain};
     pthread_t threads[64];
     seat seats[64];
-    host->regions++;
-    for (int32_t worker = 0; worker < host->workers; worker++) {
+    ++host->regions;
+    for (int32_t worker = 0; worker < host->workers; ++worker) {
         seats[worker] = (seat){&work, worker};
         pthread_create(&threads[worker], NULL, serve, &seats[worker]);
     }
-    for (int32_t worker = 0; worker < host->workers; worker++)
+    for (int32_t worker = 0; worker < host->workers; ++worker)
         pthread_join(threads[worker], NULL);
     pthread_mutex_destroy(&work.lock);
 }

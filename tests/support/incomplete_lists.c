@@ -18,9 +18,9 @@ comparison comparison_lacking(const comparison *made, comparison_lack lack)
     const rows all = rows_listed(made->context, made->neighbors, &made->scheme, NULL);
     int64_t *offsets = test_memory(((size_t)all.count + 1) * sizeof *offsets);
     int32_t *indices = test_memory(((size_t)all.offsets[all.count] + 1) * sizeof *indices);
-    for (int i = 0; i < all.count; i++) {
+    for (int i = 0; i < all.count; ++i) {
         int64_t end = offsets[i];
-        for (int64_t k = all.offsets[i]; k < all.offsets[i + 1]; k++)
+        for (int64_t k = all.offsets[i]; k < all.offsets[i + 1]; ++k)
             if (is_kept(lack, made->points.dimension, i, all.indices[k], k - all.offsets[i]))
                 indices[end++] = all.indices[k];
         offsets[i + 1] = end;

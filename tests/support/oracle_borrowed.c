@@ -54,18 +54,18 @@ static loan loan_of(const oracle_scene *scene, const oracle_point *point, int n,
 {
     const quad unit = oracle_weight_unit(scene, point), h = scene->scheme.support_radius;
     loan made = {.sum = 0};
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         const double *of = lent + (size_t)pair->j * (size_t)width,
                      *hessian = of + 1 + component * n;
         made.sum -= pair->s * unit * of[0];
         made.off += pair->spread * unit * of[0];
-        for (int m = 0; m < n; m++) {
+        for (int m = 0; m < n; ++m) {
             made.mean[m] -= pair->s * unit * hessian[m] * h * h;
             made.mean_off[m] += pair->spread * unit * quad_abs(hessian[m]) * h * h;
         }
     }
-    for (int m = 0; m < n && made.sum > 0; m++) {
+    for (int m = 0; m < n && made.sum > 0; ++m) {
         made.mean[m] /= made.sum;
         made.mean_off[m] = (made.mean_off[m] + quad_abs(made.mean[m]) * made.off) / made.sum;
     }
@@ -84,9 +84,9 @@ quad oracle_confidence_lent(const oracle_scene *scene, const oracle_point *point
 static void unwhitened(const oracle_basis *of, const quad *hessian, quad *h)
 {
     quad mean = 0;
-    for (int m = 0; m < of->n; m++)
+    for (int m = 0; m < of->n; ++m)
         mean += of->a[m] == of->b[m] ? hessian[m] / 2 / of->d : 0;
-    for (int m = 0; m < of->n; m++)
+    for (int m = 0; m < of->n; ++m)
         h[m] = of->a[m] == of->b[m] ? (hessian[m] / 2 - mean) / of->deviator + mean / of->trace
                                     : hessian[m] / of->off;
 }
@@ -109,19 +109,19 @@ static borrower borrower_of(const oracle_scene *scene, const oracle_basis *of,
     quad slope, square = 0, c_square = 0;
     b.beta = oracle_smooth(made->sum, 0, (quad).0625, &slope);
     b.beta_off = (slope + 1) * made->off;
-    for (int a = 0; a < of->d; a++)
-        for (int m = 0; m < of->n; m++) {
-            for (int c = 0; c < of->d; c++)
+    for (int a = 0; a < of->d; ++a)
+        for (int m = 0; m < of->n; ++m) {
+            for (int c = 0; c < of->d; ++c)
                 b.transport[a][m] += point->correction[a][c] * point->scale * second->m3[c][m];
             square += b.transport[a][m] * b.transport[a][m];
         }
     b.norm_transport = quad_sqrt(square);
-    for (int a = 0; a < of->d; a++)
-        for (int c = 0; c < of->d; c++)
+    for (int a = 0; a < of->d; ++a)
+        for (int c = 0; c < of->d; ++c)
             c_square += point->correction[a][c] * point->correction[a][c];
     quad third = 0;
-    for (int a = 0; a < of->d; a++)
-        for (int m = 0; m < of->n; m++)
+    for (int a = 0; a < of->d; ++a)
+        for (int m = 0; m < of->n; ++m)
             third += second->m3[a][m] * second->m3[a][m];
     b.transport_off = point->scale * (quad_sqrt(c_square) * second->third +
                                       point->correction_bound * quad_sqrt(third));
@@ -134,8 +134,8 @@ static borrower borrower_of(const oracle_scene *scene, const oracle_basis *of,
         return b;
     }
     oracle_inverse_of(of->n, second->s, second->shift + b.beta * b.high, b.f);
-    for (int m = 0; m < of->n; m++)
-        for (int l = 0; l < of->n; l++)
+    for (int m = 0; m < of->n; ++m)
+        for (int l = 0; l < of->n; ++l)
             b.f[m][l] *= second->kept;
     b.norm_f = oracle_norm_of(of->n, b.f);
     return b;
@@ -152,14 +152,14 @@ static curvature curve(const oracle_basis *of, const oracle_second *second, cons
     quad right[oracle_pairs], mean[oracle_pairs], blurred[oracle_pairs];
     unwhitened(of, made->mean, mean);
     unwhitened(of, made->mean_off, blurred);
-    for (int m = 0; m < of->n; m++) {
+    for (int m = 0; m < of->n; ++m) {
         right[m] = sums->second[m];
-        for (int a = 0; a < of->d; a++)
+        for (int a = 0; a < of->d; ++a)
             right[m] -= second->k[a][m] * sums->first[a];
     }
-    for (int m = 0; m < of->n; m++) {
+    for (int m = 0; m < of->n; ++m) {
         h.borrowed[m] = b->beta * b->rest * mean[m];
-        for (int l = 0; l < of->n; l++) {
+        for (int l = 0; l < of->n; ++l) {
             h.own[m] += b->f[m][l] * right[l];
             h.borrowed[m] += b->beta * b->f[m][l] * b->both * mean[l];
         }
@@ -190,14 +190,14 @@ static void borrow_component(const oracle_scene *scene, const oracle_basis *of,
     const quad slope = second->kept > 0 ? oracle_slope_norm(of, point, sums) : 0;
     const curvature h = curve(of, second, &b, sums, made, slope);
     quad all[oracle_pairs];
-    for (int m = 0; m < of->n; m++)
+    for (int m = 0; m < of->n; ++m)
         all[m] = h.own[m] + h.borrowed[m];
     oracle_hessian_of(of, all, over, hessian);
-    for (int a = 0; a < of->d; a++) {
+    for (int a = 0; a < of->d; ++a) {
         g[a] = 0;
-        for (int c = 0; c < of->d; c++)
+        for (int c = 0; c < of->d; ++c)
             g[a] += point->correction[a][c] * point->scale * sums->first[c];
-        for (int m = 0; m < of->n; m++)
+        for (int m = 0; m < of->n; ++m)
             g[a] -= second->k[a][m] * h.own[m] + b.transport[a][m] * h.borrowed[m];
         g[a] *= over;
     }
@@ -221,11 +221,11 @@ oracle_curved oracle_apply_borrowed(oracle *reference, const oracle_field *field
     oracle_curved found = {.undecided = second.undecided || point->undecided,
                            .touched = !second.full};
     quad gradient[9][3], hessian[oracle_pairs];
-    for (int c = 0; c < width; c++) {
+    for (int c = 0; c < width; ++c) {
         const oracle_change sums = oracle_sum_changes(scene, &of, point, field, i, c, width);
         const loan made = loan_of(scene, point, of.n, c, lent, 1 + width * of.n);
         borrow_component(scene, &of, point, &second, &sums, &made, gradient[c], hessian, &found);
-        for (int m = 0; m < of.n; m++) {
+        for (int m = 0; m < of.n; ++m) {
             if (field->shape < SPHG_SYM_TENSOR)
                 found.hessian[c * of.n + m] = hessian[m];
             found.laplacian[c] += of.a[m] == of.b[m] ? hessian[m] : 0;

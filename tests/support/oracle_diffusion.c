@@ -16,7 +16,7 @@ static quad share(int d, quad volume, quad unit, const oracle_point *point, cons
                   quad *bound)
 {
     quad along = 0, trace = 0;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         along += pair->gradient[k] * pair->x[k];
         trace += point->correction[k][k];
     }
@@ -43,12 +43,12 @@ oracle_flow oracle_diffuse(oracle *reference, const oracle_field *field, const d
     const oracle_point *point = oracle_at(reference, i);
     const int d = scene->scheme.dimension, width = width_of(field->shape, d);
     oracle_flow flow = {.touched = point->rank < d, .undecided = point->undecided};
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         const oracle_point *there = oracle_at(reference, pair->j);
         oracle_pair back = *pair;
         quad bounds[2], size = 0;
-        for (int a = 0; a < d; a++)
+        for (int a = 0; a < d; ++a)
             back.x[a] = -pair->x[a];
         oracle_weigh(scene, there->support, scene->volume[i], &back);
         back.bound = oracle_gradient_of(scene, there, &back);
@@ -57,7 +57,7 @@ oracle_flow oracle_diffuse(oracle *reference, const oracle_field *field, const d
             here + share(d, scene->volume[pair->j], scene->unit, there, &back, &bounds[1]);
         const quad mean = mean_of(coefficient, i, pair->j);
         flow.least = k == 0 || between < flow.least ? between : flow.least;
-        for (int c = 0; c < width; c++) {
+        for (int c = 0; c < width; ++c) {
             const quad change = (quad)field->at_sources[pair->j * width + c] -
                                 (quad)field->at_sources[i * width + c];
             flow.sum[c] += mean * between * change;
@@ -84,7 +84,7 @@ static void add_weighted(const oracle_scene *scene, const oracle_field *field, q
     const oracle_weights at = oracle_weights_at(scene->scheme.kernel, d, support, r);
     const quad bound = quad_abs(volume) * (3 * at.w + r * r * quad_abs(at.slope));
     quad size = 0;
-    for (int c = 0; c < width; c++) {
+    for (int c = 0; c < width; ++c) {
         const quad value = (quad)field->at_sources[j * width + c] - (own ? (quad)own[c] : 0);
         to->value[c] += volume * at.w * value;
         size += value * value;
@@ -103,7 +103,7 @@ oracle_mean oracle_value(oracle *reference, const oracle_field *field, const dou
     const int d = scene->scheme.dimension, width = width_of(field->shape, d);
     const double *own = field->form == SPHG_DIFFERENCE ? field->at_sources + i * width : NULL;
     sums all = {.weight = 0};
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         if (pair->r < point->support) /* W_i, whatever the list has */
             add_weighted(scene, field, volumes[pair->j], point->support, pair->r, pair->j, own,
@@ -113,7 +113,7 @@ oracle_mean oracle_value(oracle *reference, const oracle_field *field, const dou
         add_weighted(scene, field, volumes[i], point->support, 0, i, NULL, &all);
     oracle_mean mean = {.bound = scene->unit * all.value_bound};
     quad size = 0;
-    for (int c = 0; c < width; c++) {
+    for (int c = 0; c < width; ++c) {
         mean.value[c] = shepard ? all.value[c] / all.weight : all.value[c];
         size += mean.value[c] * mean.value[c];
     }

@@ -71,13 +71,13 @@ static item read_item(int d, sphg_shape shape, const double *numbers, int i)
     item full = {0};
     if (shape == SPHG_SYM_TENSOR) {
         full.count = d * d;
-        for (int a = 0, k = 0; a < d; a++)
-            for (int b = a; b < d; b++, k++)
+        for (int a = 0, k = 0; a < d; ++a)
+            for (int b = a; b < d; b++, ++k)
                 full.a[a * d + b] = full.a[b * d + a] = first[k];
         return full;
     }
     full.count = width_of(shape, d);
-    for (int k = 0; k < full.count; k++)
+    for (int k = 0; k < full.count; ++k)
         full.a[k] = first[k];
     return full;
 }
@@ -85,7 +85,7 @@ static item read_item(int d, sphg_shape shape, const double *numbers, int i)
 static item scaled_sum(quad weight, const item *left, quad other_weight, const item *right)
 {
     item sum = {.count = left->count};
-    for (int k = 0; k < sum.count; k++)
+    for (int k = 0; k < sum.count; ++k)
         sum.a[k] = weight * left->a[k] + other_weight * right->a[k];
     return sum;
 }
@@ -96,7 +96,7 @@ static void add_curl(int d, const quad *a, const quad *g, quad *curl)
         curl[0] += g[0] * a[1] - g[1] * a[0];
         return;
     }
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         curl[k] += g[(k + 1) % 3] * a[(k + 2) % 3] - g[(k + 2) % 3] * a[(k + 1) % 3];
 }
 
@@ -105,14 +105,14 @@ static void contract(int d, sphg_shape shape, const item *a, const quad *g, orac
 {
     int rows = shape == SPHG_SCALAR ? 1 : d;
     if (shape == SPHG_SCALAR || shape == SPHG_VECTOR)
-        for (int k = 0; k < rows * d; k++)
+        for (int k = 0; k < rows * d; ++k)
             result->gradient[k] += a->a[k / d] * g[k % d];
     if (shape == SPHG_VECTOR) {
-        for (int k = 0; k < d; k++)
+        for (int k = 0; k < d; ++k)
             result->divergence[0] += a->a[k] * g[k];
         add_curl(d, a->a, g, result->curl);
     } else if (shape != SPHG_SCALAR) {
-        for (int k = 0; k < d * d; k++)
+        for (int k = 0; k < d * d; ++k)
             result->divergence[k / d] += a->a[k] * g[k % d];
     }
 }
@@ -139,7 +139,7 @@ static void one_sided(const oracle_scene *scene, const oracle_field *field, int 
     item own = {.count = 0};
     if (own_share != 0)
         own = read_item(d, field->shape, targets, i);
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         item other = read_item(d, field->shape, field->at_sources, pair->j);
         item change = scaled_sum(1, &other, own_share, &own);
@@ -150,7 +150,7 @@ static void one_sided(const oracle_scene *scene, const oracle_field *field, int 
             result->bound += size * pair->bound;
         else
             result->bound += scene->unit * point->correction_norm * pair->spread * pair->r * size;
-        for (int c = 0; c < d * width; c++)
+        for (int c = 0; c < d * width; ++c)
             b[c] += pair->s * pair->x[c / width] * change.a[c % width];
     }
     if (!oracle_is_classic(scene->scheme.method))
@@ -185,7 +185,7 @@ static oracle_pair seen_from(const oracle_scene *scene, const oracle_point *othe
 {
     oracle_pair back = *pair;
     back.j = i;
-    for (int k = 0; k < scene->scheme.dimension; k++)
+    for (int k = 0; k < scene->scheme.dimension; ++k)
         back.x[k] = -pair->x[k];
     oracle_weigh(scene, other->support, scene->volume[i], &back);
     back.bound = oracle_gradient_of(scene, other, &back);
@@ -200,7 +200,7 @@ static void two_sided(oracle *reference, const oracle_field *field, int i, oracl
     item own = read_item(d, field->shape, field->at_sources, i), none = {.count = own.count};
     result->touched = point->rank < d;
     result->undecided = point->undecided;
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         const oracle_point *there = oracle_at(reference, pair->j);
         oracle_pair back = seen_from(scene, there, pair, i);
@@ -226,7 +226,7 @@ static quad interpolation_weight(const oracle_scene *scene, const oracle_point *
     int d = scheme->dimension;
     if (oracle_is_classic(scheme->method)) {
         quad sum = point->y[0], square = 1;
-        for (int k = 0; k < d; k++) {
+        for (int k = 0; k < d; ++k) {
             quad xi = -pair->x[k] / point->support;
             sum += point->y[k + 1] * xi;
             square += xi * xi;
@@ -245,7 +245,7 @@ static void add_value(const oracle_scene *scene, const oracle_field *field, cons
     int d = scene->scheme.dimension, width = width_of(field->shape, d);
     const double *a = field->at_sources + pair->j * width;
     quad bound, weight = interpolation_weight(scene, point, pair, &bound), square = 0;
-    for (int c = 0; c < width; c++) {
+    for (int c = 0; c < width; ++c) {
         result->value[c] += weight * a[c];
         square += (quad)a[c] * a[c];
     }
@@ -255,7 +255,7 @@ static void add_value(const oracle_scene *scene, const oracle_field *field, cons
 static void sum_values(const oracle_scene *scene, const oracle_field *field, int i,
                        const oracle_point *point, oracle_result *result)
 {
-    for (int k = 0; k < point->pair_count; k++)
+    for (int k = 0; k < point->pair_count; ++k)
         add_value(scene, field, &point->pairs[k], point, result);
     if (!point->has_self)
         return;
@@ -279,7 +279,7 @@ static void sum_squares(const oracle_scene *scene, const oracle_field *field, in
                         const oracle_point *point, oracle_result *result)
 {
     const int d = scene->scheme.dimension, classic = oracle_is_classic(scene->scheme.method);
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         add_square(scene, field->at_sources[pair->j], pair->gradient,
                    classic ? quad_norm(pair->gradient, d)
@@ -310,7 +310,7 @@ oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i)
 double oracle_ratio(int width, const double *found, const quad *exact, quad bound)
 {
     quad square = 0;
-    for (int k = 0; k < width; k++) {
+    for (int k = 0; k < width; ++k) {
         quad error = (quad)found[k] - exact[k];
         square += error * error;
     }

@@ -80,7 +80,7 @@ quad oracle_mu2(sphg_kernel kernel, int dimension)
 static void add_pieces(const kernel_text *text, quad q, quad shape[3])
 {
     int p = text->power;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; ++k) {
         quad c = text->pieces[k].c, a = text->pieces[k].a, base = text->pieces[k].b - a * q;
         if (c == 0 || base <= 0)
             continue;

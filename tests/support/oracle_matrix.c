@@ -13,12 +13,12 @@ static void rotate(int n, oracle_matrix a, oracle_matrix vectors, int p, int q)
     quad theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
     quad t = (theta < 0 ? -1 : 1) / (quad_abs(theta) + quad_sqrt(theta * theta + 1));
     quad c = 1 / quad_sqrt(t * t + 1), s = t * c;
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < n; ++k) {
         quad left = a[k][p], right = a[k][q];
         a[k][p] = c * left - s * right;
         a[k][q] = s * left + c * right;
     }
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < n; ++k) {
         quad left = a[p][k], right = a[q][k];
         a[p][k] = c * left - s * right;
         a[q][k] = s * left + c * right;
@@ -33,16 +33,16 @@ void oracle_eigen(int n, oracle_matrix a, quad *values, oracle_matrix vectors)
 {
     enum { sweeps = 12 };
     oracle_matrix work;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
             work[i][j] = a[i][j];
             vectors[i][j] = i == j;
         }
-    for (int sweep = 0; sweep < sweeps; sweep++)
-        for (int p = 0; p < n; p++)
-            for (int q = p + 1; q < n; q++)
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (int p = 0; p < n; ++p)
+            for (int q = p + 1; q < n; ++q)
                 rotate(n, work, vectors, p, q);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; ++i)
         values[i] = work[i][i];
 }
 
@@ -51,7 +51,7 @@ quad oracle_spectral_norm(int n, oracle_matrix a)
     quad values[oracle_rows], largest = 0;
     oracle_matrix vectors;
     oracle_eigen(n, a, values, vectors);
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; ++k)
         largest = quad_max(largest, quad_abs(values[k]));
     return largest;
 }
@@ -106,7 +106,7 @@ static policy_value apply(sphg_policy policy, quad lambda, quad lambda_min, quad
 static quad smallest(int n, const quad *values)
 {
     quad least = values[0];
-    for (int k = 1; k < n; k++)
+    for (int k = 1; k < n; ++k)
         least = values[k] < least ? values[k] : least;
     return least;
 }
@@ -117,7 +117,7 @@ static quad steepest(sphg_policy policy, const oracle_filter *filter, int k, int
 {
     enum { steps = 8 };
     quad largest = 0;
-    for (int step = -steps; step <= steps; step++) {
+    for (int step = -steps; step <= steps; ++step) {
         quad near = filter->lambda[k] + blur * step / steps;
         policy_value value = apply(policy, near, filter->lambda_min, filter->eps, below);
         largest = quad_max(largest, quad_abs(value.derivative));
@@ -131,13 +131,13 @@ oracle_filter oracle_filtered(int n, oracle_matrix normalised, sphg_policy polic
     oracle_filter filter = {.n = n, .eps = eps};
     oracle_eigen(n, normalised, filter.lambda, filter.axes);
     filter.lambda_min = smallest(n, filter.lambda);
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < n; ++k) {
         policy_value value = apply(policy, filter.lambda[k], filter.lambda_min, eps, below);
         filter.f[k] = value.f;
         filter.rank += value.kept;
     }
-    for (int k = 0; k < n; k++)
-        for (int l = 0; l < n; l++) {
+    for (int k = 0; k < n; ++k)
+        for (int l = 0; l < n; ++l) {
             quad gap = filter.lambda[k] - filter.lambda[l];
             quad size = quad_abs(filter.lambda[k]) + quad_abs(filter.lambda[l]);
             filter.divided[k][l] = quad_abs(gap) <= size * 0x1p-50
@@ -149,10 +149,10 @@ oracle_filter oracle_filtered(int n, oracle_matrix normalised, sphg_policy polic
 
 void oracle_recompose(const oracle_filter *filter, oracle_matrix result)
 {
-    for (int a = 0; a < filter->n; a++)
-        for (int b = 0; b < filter->n; b++) {
+    for (int a = 0; a < filter->n; ++a)
+        for (int b = 0; b < filter->n; ++b) {
             result[a][b] = 0;
-            for (int k = 0; k < filter->n; k++)
+            for (int k = 0; k < filter->n; ++k)
                 result[a][b] += filter->axes[a][k] * filter->f[k] * filter->axes[b][k];
         }
 }

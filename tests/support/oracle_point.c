@@ -11,7 +11,7 @@ static double shifted(double difference, double period, int single)
     if (period <= 0)
         return difference;
     double k = -nearbyint(difference / period), best = INFINITY;
-    for (double near = k - 1; near <= k + 1; near++) {
+    for (double near = k - 1; near <= k + 1; ++near) {
         double candidate = single ? (double)((float)difference + (float)(near * period))
                                   : difference + near * period;
         best = fabs(candidate) < fabs(best) ? candidate : best;
@@ -50,13 +50,13 @@ static int measure(const oracle_scene *scene, const double *x, double support, i
     int d = scene->scheme.dimension, single = scene->single_positions;
     const double *other = scene->sources + j * d;
     double difference[3] = {0};
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         double plain = single ? (double)((float)x[k] - (float)other[k]) : x[k] - other[k];
         difference[k] = shifted(plain, scene->period[k], single);
     }
     if (!is_inside(difference, d, support, single))
         return 0;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         pair->x[k] = exact_difference(x[k], other[k], difference[k], scene->period[k]);
     pair->j = j;
     pair->r = quad_norm(pair->x, d);
@@ -74,7 +74,7 @@ static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
 {
     const double *x = oracle_target(scene, i);
     point->pairs = oracle_memory((size_t)scene->source_count * sizeof *point->pairs);
-    for (int j = 0; j < scene->source_count; j++) {
+    for (int j = 0; j < scene->source_count; ++j) {
         oracle_pair pair = {0};
         if (!(point->has_self && j == i) && measure(scene, x, reach_of(scene, point, j), j, &pair))
             point->pairs[point->pair_count++] = pair;
@@ -124,7 +124,7 @@ void oracle_weigh(const oracle_scene *scene, double support, quad volume, oracle
 static quad mean_volume(const oracle_scene *scene, const oracle_point *point)
 {
     quad sum = 0, weights = 0;
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         sum += -pair->s * scene->volume[pair->j];
         weights += -pair->s;
@@ -149,11 +149,11 @@ static quad reference_moment(const oracle_scene *scene, const oracle_point *poin
 
 static void sum_moments(int d, oracle_point *point)
 {
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         point->spread += pair->spread * pair->r * pair->r;
-        for (int a = 0; a < d; a++)
-            for (int b = 0; b < d; b++)
+        for (int a = 0; a < d; ++a)
+            for (int b = 0; b < d; ++b)
                 point->moment[a][b] -= pair->s * pair->x[a] * pair->x[b];
     }
 }
@@ -163,7 +163,7 @@ static quad threshold(const oracle_scene *scene, int d, oracle_matrix normalised
 {
     double eps = scene->scheme.threshold > 0 ? scene->scheme.threshold : 1e-2;
     quad trace = 0;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         trace += normalised[k][k];
     return quad_max(eps, 16 * scene->unit * trace);
 }
@@ -172,18 +172,18 @@ static void filter_moments(const oracle_scene *scene, int below, oracle_point *p
 {
     int d = scene->scheme.dimension;
     oracle_matrix normalised = {{0}};
-    for (int a = 0; a < d; a++)
-        for (int b = 0; b < d; b++)
+    for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b)
             normalised[a][b] = point->moment[a][b] / point->scale;
     quad eps = threshold(scene, d, normalised);
     quad blur = 8 * scene->unit * point->spread / point->scale;
     point->filter = oracle_filtered(d, normalised, scene->scheme.policy, eps, below, blur);
     point->rank = point->filter.rank;
     oracle_recompose(&point->filter, point->correction);
-    for (int a = 0; a < d; a++)
-        for (int b = 0; b < d; b++)
+    for (int a = 0; a < d; ++a)
+        for (int b = 0; b < d; ++b)
             point->correction[a][b] /= point->scale;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         if (scene->scheme.policy != SPHG_BLEND && quad_abs(point->filter.lambda[k] - eps) <= blur)
             point->undecided = 1;
 }
@@ -191,7 +191,7 @@ static void filter_moments(const oracle_scene *scene, int below, oracle_point *p
 static quad largest_divided(const oracle_filter *filter, int l)
 {
     quad largest = 0;
-    for (int k = 0; k < filter->n; k++)
+    for (int k = 0; k < filter->n; ++k)
         largest = quad_max(largest, filter->divided[k][l]);
     return largest;
 }
@@ -201,10 +201,10 @@ quad oracle_filter_error(const oracle_point *point, int width, const quad *b)
 {
     quad sum = 0;
     int d = point->filter.n;
-    for (int l = 0; l < d; l++) {
+    for (int l = 0; l < d; ++l) {
         quad row[9] = {0};
-        for (int k = 0; k < d; k++)
-            for (int c = 0; c < width; c++)
+        for (int k = 0; k < d; ++k)
+            for (int c = 0; c < width; ++c)
                 row[c] += point->filter.axes[k][l] * b[k * width + c];
         sum += largest_divided(&point->filter, l) * quad_norm(row, width);
     }
@@ -218,15 +218,15 @@ static void solve_linearised(const oracle_scene *scene, oracle_point *point)
     point->scale = reference_moment(scene, point);
     filter_moments(scene, 1, point);
     if (scene->scheme.method == SPHG_PLAIN) {
-        for (int a = 0; a < d; a++)
-            for (int b = 0; b < d; b++)
+        for (int a = 0; a < d; ++a)
+            for (int b = 0; b < d; ++b)
                 point->correction[a][b] = a == b;
         point->filter = (oracle_filter){.n = d, .f = {1, 1, 1}};
         point->rank = d;
         point->undecided = 0;
         point->spread = 0;
     }
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         quad size = quad_abs(point->filter.f[k]) / point->scale;
         point->correction_norm = quad_max(point->correction_norm, size);
         quad error =
@@ -247,7 +247,7 @@ static void basis_of(const oracle_scene *scene, const oracle_point *point, const
                      quad *p)
 {
     p[0] = 1;
-    for (int k = 0; k < scene->scheme.dimension; k++)
+    for (int k = 0; k < scene->scheme.dimension; ++k)
         p[k + 1] = -pair->x[k] / point->support;
 }
 
@@ -255,15 +255,15 @@ static void sum_classic(const oracle_scene *scene, const oracle_point *point, cl
 {
     int d = scene->scheme.dimension;
     sums->a[0][0] = sums->a_spread[0][0] = point->self_weight;
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         quad p[oracle_rows];
         basis_of(scene, point, pair, p);
-        for (int a = 0; a <= d; a++)
-            for (int b = 0; b <= d; b++) {
+        for (int a = 0; a <= d; ++a)
+            for (int b = 0; b <= d; ++b) {
                 sums->a[a][b] += pair->s * p[a] * p[b];
                 sums->a_spread[a][b] += pair->spread * p[a] * p[b];
-                for (int c = 0; c < d; c++)
+                for (int c = 0; c < d; ++c)
                     sums->b[c][a][b] += pair->slope * pair->x[c] * p[a] * p[b];
             }
     }
@@ -273,15 +273,15 @@ static void sum_classic(const oracle_scene *scene, const oracle_point *point, cl
 static void centre_moments(const oracle_scene *scene, oracle_point *point, const quad *centre)
 {
     int d = scene->scheme.dimension;
-    for (int k = -1; k < point->pair_count; k++) {
+    for (int k = -1; k < point->pair_count; ++k) {
         quad p[oracle_rows] = {1};
         quad w = k < 0 ? point->self_weight : point->pairs[k].s;
         quad spread = k < 0 ? w : point->pairs[k].spread, square = 0;
         if (k >= 0)
             basis_of(scene, point, &point->pairs[k], p);
-        for (int a = 0; a < d; a++) {
+        for (int a = 0; a < d; ++a) {
             square += p[a + 1] * p[a + 1];
-            for (int b = 0; b < d; b++)
+            for (int b = 0; b < d; ++b)
                 point->moment[a][b] += w * (p[a + 1] - centre[a]) * (p[b + 1] - centre[b]);
         }
         point->spread += spread * square;
@@ -293,9 +293,9 @@ static void bordered_inverse(int d, const oracle_point *point, const quad *centr
                              oracle_matrix inverse)
 {
     quad image[3], product = 0;
-    for (int a = 0; a < d; a++) {
+    for (int a = 0; a < d; ++a) {
         image[a] = 0;
-        for (int b = 0; b < d; b++) {
+        for (int b = 0; b < d; ++b) {
             image[a] += point->correction[a][b] * centre[b];
             inverse[a + 1][b + 1] = point->correction[a][b];
         }
@@ -310,9 +310,9 @@ static void right_side(const oracle_scene *scene, const classic_sums *sums,
                        const oracle_point *point, int k, quad *right)
 {
     int n = scene->scheme.dimension + 1;
-    for (int a = 0; a < n; a++) {
+    for (int a = 0; a < n; ++a) {
         right[a] = a == k + 1 ? 1 / (quad)point->support : 0;
-        for (int b = 0; b < n; b++)
+        for (int b = 0; b < n; ++b)
             right[a] -= sums->b[k][a][b] * point->y[b];
     }
 }
@@ -322,14 +322,14 @@ static void solve_coefficients(const oracle_scene *scene, oracle_matrix inverse,
                                const classic_sums *sums, oracle_point *point)
 {
     int d = scene->scheme.dimension, n = d + 1;
-    for (int a = 0; a < n; a++)
+    for (int a = 0; a < n; ++a)
         point->y[a] = inverse[a][0];
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         quad right[oracle_rows];
         right_side(scene, sums, point, k, right);
-        for (int a = 0; a < n; a++) {
+        for (int a = 0; a < n; ++a) {
             point->z[k][a] = 0;
-            for (int b = 0; b < n; b++)
+            for (int b = 0; b < n; ++b)
                 point->z[k][a] += inverse[a][b] * right[b];
         }
     }
@@ -342,16 +342,16 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
 {
     int d = scene->scheme.dimension;
     quad unit_part = 0, sum = 0;
-    for (int k = 1; k <= d; k++)
+    for (int k = 1; k <= d; ++k)
         unit_part = quad_max(unit_part, quad_norm(inverse[k], d + 1));
-    for (int n = 0; n < point->pair_count; n++) {
+    for (int n = 0; n < point->pair_count; ++n) {
         const oracle_pair *pair = &point->pairs[n];
         quad p[oracle_rows], size = 0, value = 0;
         basis_of(scene, point, pair, p);
-        for (int a = 0; a <= d; a++) {
+        for (int a = 0; a <= d; ++a) {
             quad image = 0;
             value += p[a] * point->y[a];
-            for (int b = 0; b <= d; b++)
+            for (int b = 0; b <= d; ++b)
                 image += inverse[a][b] * p[b];
             size = quad_max(size, quad_abs(image));
         }
@@ -365,10 +365,10 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
 static quad blur_of_y(int d, oracle_matrix inverse, const classic_sums *sums)
 {
     quad largest = 0;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         quad square = 0;
-        for (int a = 0; a <= d; a++)
-            for (int b = 0; b <= d; b++)
+        for (int a = 0; a <= d; ++a)
+            for (int b = 0; b <= d; ++b)
                 square += sums->b[k][a][b] * sums->b[k][a][b];
         largest = quad_max(largest, quad_sqrt(square));
     }
@@ -382,15 +382,15 @@ static void add_blur_of_filter(const oracle_scene *scene, oracle_matrix inverse,
 {
     int d = scene->scheme.dimension;
     quad steepest = 0, size = 0, largest = 0, border = 1 + quad_norm(centre, d);
-    for (int l = 0; l < d; l++)
+    for (int l = 0; l < d; ++l)
         steepest = quad_max(steepest, largest_divided(&point->filter, l));
     quad change = steepest * point->spread / (point->scale * point->scale) * border * border;
     point->y_bound += change;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         quad right[oracle_rows];
         right_side(scene, sums, point, k, right);
         largest = quad_max(largest, quad_norm(right, d + 1));
-        for (int a = 0; a <= d; a++)
+        for (int a = 0; a <= d; ++a)
             size = quad_max(size, quad_norm(sums->b[k][a], d + 1));
     }
     point->z_bound += change * (largest + oracle_spectral_norm(d + 1, inverse) * size);
@@ -403,10 +403,10 @@ static quad balanced_condition(const oracle_scene *scene, oracle_matrix inverse,
     int d = scene->scheme.dimension;
     quad root = quad_sqrt(oracle_mu2(scene->scheme.kernel, d)), trace = 0;
     oracle_matrix balanced;
-    for (int a = 0; a <= d; a++) {
+    for (int a = 0; a <= d; ++a) {
         quad row = a ? root : 1;
         trace += sums->a_spread[a][a] / (row * row);
-        for (int b = 0; b <= d; b++)
+        for (int b = 0; b <= d; ++b)
             balanced[a][b] = inverse[a][b] * row * (b ? root : 1);
     }
     return trace * oracle_spectral_norm(d + 1, balanced);
@@ -427,7 +427,7 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
     point->mass = sums.a[0][0];
     if (!(point->mass > 0))
         return;
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         centre[k] = sums.a[0][k + 1] / point->mass;
     centre_moments(scene, point, centre);
     point->scale = point->mass * oracle_mu2(scene->scheme.kernel, d);
@@ -436,7 +436,7 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
     solve_coefficients(scene, inverse, &sums, point);
     point->condition = balanced_condition(scene, inverse, &sums);
     point->y_norm = quad_norm(point->y, d + 1);
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         point->z_norm = quad_max(point->z_norm, quad_norm(point->z[k], d + 1));
         point->self_gradient[k] = point->self_weight * point->z[k][0];
     }
@@ -457,10 +457,10 @@ static quad linearised_gradient(const oracle_scene *scene, const oracle_point *p
 {
     int d = scene->scheme.dimension;
     quad b[3];
-    for (int a = 0; a < d; a++) {
+    for (int a = 0; a < d; ++a) {
         b[a] = pair->s * pair->x[a];
         pair->gradient[a] = 0;
-        for (int c = 0; c < d; c++)
+        for (int c = 0; c < d; ++c)
             pair->gradient[a] += point->correction[a][c] * pair->s * pair->x[c];
     }
     return scene->unit *
@@ -473,11 +473,11 @@ static quad classic_gradient(const oracle_scene *scene, const oracle_point *poin
     int d = scene->scheme.dimension;
     quad p[oracle_rows], value = 0;
     basis_of(scene, point, pair, p);
-    for (int a = 0; a <= d; a++)
+    for (int a = 0; a <= d; ++a)
         value += p[a] * point->y[a];
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         quad slope = 0;
-        for (int a = 0; a <= d; a++)
+        for (int a = 0; a <= d; ++a)
             slope += p[a] * point->z[k][a];
         pair->gradient[k] = pair->slope * pair->x[k] * value + pair->s * slope;
     }
@@ -500,7 +500,7 @@ void oracle_solve(const oracle_scene *scene, int i, oracle_point *point)
     point->volume = own ? own[i] : -1;
     point->support = scene->support ? scene->support[i] : scene->scheme.support_radius;
     find_pairs(scene, i, point);
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         oracle_pair *pair = &point->pairs[k];
         oracle_weigh(scene, point->support, scene->volume ? scene->volume[pair->j] : 1, pair);
     }
@@ -508,7 +508,7 @@ void oracle_solve(const oracle_scene *scene, int i, oracle_point *point)
         solve_classic(scene, i, point);
     else
         solve_linearised(scene, point);
-    for (int k = 0; k < point->pair_count; k++)
+    for (int k = 0; k < point->pair_count; ++k)
         point->pairs[k].bound = oracle_gradient_of(scene, point, &point->pairs[k]);
 }
 
@@ -516,7 +516,7 @@ int oracle_rank_is_open(const oracle_scene *scene, const oracle_point *point)
 {
     quad limit = scene->scheme.policy == SPHG_BLEND ? 4 * point->filter.eps : point->filter.eps;
     quad blur = 16 * scene->unit * point->spread / point->scale;
-    for (int k = 0; k < scene->scheme.dimension; k++)
+    for (int k = 0; k < scene->scheme.dimension; ++k)
         if (quad_abs(point->filter.lambda[k] - limit) <= blur)
             return 1;
     return 0;

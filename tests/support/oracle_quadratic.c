@@ -9,7 +9,7 @@
 static quad legendre(int degree, quad x, quad *slope)
 {
     quad before = 1, value = x;
-    for (int n = 1; n < degree; n++) {
+    for (int n = 1; n < degree; ++n) {
         quad next = ((2 * n + 1) * x * value - n * before) / (n + 1);
         before = value;
         value = next;
@@ -24,15 +24,15 @@ static quad integral(sphg_kernel kernel, int power)
 {
     enum { nodes = 10, pieces = 6 };
     quad sum = 0;
-    for (int k = 0; k < nodes; k++) {
+    for (int k = 0; k < nodes; ++k) {
         quad x = cos(acos(-1.) * (k + .75) / (nodes + .5)), slope;
-        for (int step = 0; step < 6; step++) {
+        for (int step = 0; step < 6; ++step) {
             quad value = legendre(nodes, x, &slope);
             x -= value / slope;
         }
         legendre(nodes, x, &slope);
         quad weight = 2 / ((1 - x * x) * slope * slope);
-        for (int piece = 0; piece < pieces; piece++) {
+        for (int piece = 0; piece < pieces; ++piece) {
             quad q = (piece + (1 + x) / 2) / pieces, shape[3];
             oracle_shape_of(kernel, q, shape);
             sum += weight / (2 * pieces) * shape[0] * quad_power(q, power);
@@ -53,8 +53,8 @@ oracle_basis oracle_basis_of(const oracle_scene *scene)
 {
     const sphg_scheme *scheme = &scene->scheme;
     oracle_basis made = {.d = scheme->dimension};
-    for (int a = 0; a < made.d; a++)
-        for (int b = a; b < made.d; b++, made.n++)
+    for (int a = 0; a < made.d; ++a)
+        for (int b = a; b < made.d; b++, ++made.n)
             made.a[made.n] = a, made.b[made.n] = b;
     quad mu2 = oracle_mu2(scheme->kernel, made.d);
     quad m4 = scheme->method == SPHG_KGC ? mu2 : oracle_mu4(scheme->kernel, made.d) / mu2;
@@ -68,9 +68,9 @@ oracle_basis oracle_basis_of(const oracle_scene *scene)
 void oracle_whitened(const oracle_basis *of, const quad *pairs, quad *q)
 {
     quad mean = 0;
-    for (int k = 0; k < of->n; k++)
+    for (int k = 0; k < of->n; ++k)
         mean += of->a[k] == of->b[k] ? pairs[k] / of->d : 0;
-    for (int k = 0; k < of->n; k++)
+    for (int k = 0; k < of->n; ++k)
         q[k] = of->a[k] == of->b[k] ? of->deviator * (pairs[k] - mean) + of->trace * mean
                                     : of->off * pairs[k];
 }
@@ -79,9 +79,9 @@ void oracle_offsets_of(const oracle_scene *scene, const oracle_basis *of, const 
                        quad *e, quad *q)
 {
     quad products[oracle_pairs];
-    for (int a = 0; a < of->d; a++)
+    for (int a = 0; a < of->d; ++a)
         e[a] = -pair->x[a] / scene->scheme.support_radius;
-    for (int k = 0; k < of->n; k++)
+    for (int k = 0; k < of->n; ++k)
         products[k] = e[of->a[k]] * e[of->b[k]];
     oracle_whitened(of, products, q);
 }
@@ -100,30 +100,30 @@ int oracle_inverse_of(int n, oracle_block given, quad shift, oracle_block invers
 {
     oracle_block a;
     quad largest = 0;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
             a[i][j] = given[i][j] + (i == j ? shift : 0);
             inverse[i][j] = i == j;
             largest = quad_max(largest, quad_abs(a[i][j]));
         }
-    for (int c = 0; c < n; c++) {
+    for (int c = 0; c < n; ++c) {
         int pivot = c;
-        for (int i = c + 1; i < n; i++)
+        for (int i = c + 1; i < n; ++i)
             pivot = quad_abs(a[i][c]) > quad_abs(a[pivot][c]) ? i : pivot;
         if (!(quad_abs(a[pivot][c]) > largest * 0x1p-100))
             return 0;
-        for (int j = 0; j < n; j++) {
+        for (int j = 0; j < n; ++j) {
             quad held = a[c][j];
             a[c][j] = a[pivot][j], a[pivot][j] = held;
             held = inverse[c][j];
             inverse[c][j] = inverse[pivot][j], inverse[pivot][j] = held;
         }
         const quad over = 1 / a[c][c];
-        for (int j = 0; j < n; j++)
+        for (int j = 0; j < n; ++j)
             a[c][j] *= over, inverse[c][j] *= over;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; ++i) {
             const quad factor = i == c ? 0 : a[i][c];
-            for (int j = 0; j < n; j++) {
+            for (int j = 0; j < n; ++j) {
                 a[i][j] -= factor * a[c][j];
                 inverse[i][j] -= factor * inverse[c][j];
             }
@@ -135,8 +135,8 @@ int oracle_inverse_of(int n, oracle_block given, quad shift, oracle_block invers
 quad oracle_norm_of(int n, oracle_block a)
 {
     quad sum = 0;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
             sum += a[i][j] * a[i][j];
     return quad_sqrt(sum);
 }
@@ -157,7 +157,7 @@ static void keep(const oracle_scene *scene, const oracle_point *point, oracle_se
     const oracle_filter *filter = &point->filter;
     quad blur = scene->unit * point->spread / point->scale;
     second->kept = 1;
-    for (int k = 0; k < filter->n; k++) {
+    for (int k = 0; k < filter->n; ++k) {
         quad slope = 0, share = filter->lambda[k] > filter->eps;
         if (scene->scheme.policy == SPHG_BLEND)
             share = oracle_smooth(filter->lambda[k], filter->eps, 4 * filter->eps, &slope);
@@ -182,15 +182,15 @@ static moments sum_moments(const oracle_scene *scene, const oracle_basis *of,
 {
     moments sums = {.trace2 = 0};
     const quad unit = oracle_weight_unit(scene, point);
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs], w = -pair->s * unit, spread = pair->spread * unit;
         oracle_offsets_of(scene, of, pair, e, q);
-        for (int a = 0; a < of->d; a++)
-            for (int m = 0; m < of->n; m++)
+        for (int a = 0; a < of->d; ++a)
+            for (int m = 0; m < of->n; ++m)
                 sums.third[a][m] += w * e[a] * q[m];
-        for (int m = 0; m < of->n; m++)
-            for (int l = 0; l < of->n; l++)
+        for (int m = 0; m < of->n; ++m)
+            for (int l = 0; l < of->n; ++l)
                 sums.fourth[m][l] += w * q[m] * q[l];
         const quad r = quad_norm(e, of->d), size = quad_norm(q, of->n);
         sums.second_spread += spread * r * r;
@@ -207,25 +207,25 @@ static void eliminate(const oracle_point *point, const oracle_basis *of, moments
 {
     const oracle_filter *filter = &point->filter;
     quad inverse[3][3] = {{0}}, square = 0;
-    for (int a = 0; a < of->d; a++)
-        for (int b = 0; b < of->d; b++) {
-            for (int k = 0; k < of->d; k++)
+    for (int a = 0; a < of->d; ++a)
+        for (int b = 0; b < of->d; ++b) {
+            for (int k = 0; k < of->d; ++k)
                 inverse[a][b] += filter->axes[a][k] * filter->axes[b][k] / filter->lambda[k];
             square += inverse[a][b] * inverse[a][b];
         }
     second->inverse_norm = quad_sqrt(square);
     square = 0;
-    for (int a = 0; a < of->d; a++)
-        for (int m = 0; m < of->n; m++) {
-            for (int b = 0; b < of->d; b++)
+    for (int a = 0; a < of->d; ++a)
+        for (int m = 0; m < of->n; ++m) {
+            for (int b = 0; b < of->d; ++b)
                 second->k[a][m] += inverse[a][b] * sums->third[b][m];
             square += second->k[a][m] * second->k[a][m];
         }
     second->norm_k = quad_sqrt(square);
-    for (int m = 0; m < of->n; m++)
-        for (int l = 0; l < of->n; l++) {
+    for (int m = 0; m < of->n; ++m)
+        for (int l = 0; l < of->n; ++l) {
             second->s[m][l] = sums->fourth[m][l];
-            for (int a = 0; a < of->d; a++)
+            for (int a = 0; a < of->d; ++a)
                 second->s[m][l] -= sums->third[a][m] * second->k[a][l];
         }
 }
@@ -245,8 +245,8 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
     const sphg_policy policy = scene->scheme.policy;
     moments sums = sum_moments(scene, &of, point);
     *second = (oracle_second){.rank = point->rank, .undecided = point->undecided};
-    for (int a = 0; a < of.d; a++)
-        for (int m = 0; m < of.n; m++)
+    for (int a = 0; a < of.d; ++a)
+        for (int m = 0; m < of.n; ++m)
             second->m3[a][m] = sums.third[a][m];
     second->second = sums.second_spread, second->third = sums.third_spread;
     second->trace2 = sums.trace2;
@@ -266,9 +266,9 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
     if (!dropped)
         oracle_inverse_of(of.n, second->s, second->shift, second->f);
     second->left = dropped ? 0 : of.n;
-    for (int m = 0; m < of.n; m++) {
+    for (int m = 0; m < of.n; ++m) {
         second->left -= second->shift * second->f[m][m];
-        for (int l = 0; l < of.n; l++)
+        for (int l = 0; l < of.n; ++l)
             second->f[m][l] *= second->kept;
     }
     second->left *= second->kept;
@@ -294,15 +294,15 @@ oracle_change oracle_sum_changes(const oracle_scene *scene, const oracle_basis *
     const double *targets = field->at_targets ? field->at_targets : field->at_sources;
     oracle_change sums = {.first_size = 0};
     const quad unit = oracle_weight_unit(scene, point);
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs];
         quad difference =
             (quad)field->at_sources[pair->j * width + component] - targets[i * width + component];
         oracle_offsets_of(scene, of, pair, e, q);
-        for (int a = 0; a < of->d; a++)
+        for (int a = 0; a < of->d; ++a)
             sums.first[a] -= pair->s * unit * e[a] * difference;
-        for (int m = 0; m < of->n; m++)
+        for (int m = 0; m < of->n; ++m)
             sums.second[m] -= pair->s * unit * q[m] * difference;
         const quad size = pair->spread * unit * quad_abs(difference);
         sums.first_size += size * quad_norm(e, of->d);
@@ -316,14 +316,14 @@ static quad solve_curvature(const oracle_basis *of, const oracle_second *second,
                             const oracle_change *sums, quad y_norm, quad *h)
 {
     quad right[oracle_pairs];
-    for (int m = 0; m < of->n; m++) {
+    for (int m = 0; m < of->n; ++m) {
         right[m] = sums->second[m];
-        for (int a = 0; a < of->d; a++)
+        for (int a = 0; a < of->d; ++a)
             right[m] -= second->k[a][m] * sums->first[a];
     }
-    for (int m = 0; m < of->n; m++) {
+    for (int m = 0; m < of->n; ++m) {
         h[m] = 0;
-        for (int l = 0; l < of->n; l++)
+        for (int l = 0; l < of->n; ++l)
             h[m] += second->f[m][l] * right[l];
     }
     const quad size = quad_norm(h, of->n), k = second->norm_k;
@@ -338,9 +338,9 @@ static quad solve_curvature(const oracle_basis *of, const oracle_second *second,
 quad oracle_slope_norm(const oracle_basis *of, const oracle_point *point, const oracle_change *sums)
 {
     quad y[3] = {0};
-    for (int a = 0; a < of->d; a++)
-        for (int k = 0; k < of->d; k++)
-            for (int b = 0; b < of->d; b++)
+    for (int a = 0; a < of->d; ++a)
+        for (int k = 0; k < of->d; ++k)
+            for (int b = 0; b < of->d; ++b)
                 y[a] += point->filter.axes[a][k] * point->filter.axes[b][k] * sums->first[b] /
                         point->filter.lambda[k];
     return quad_norm(y, of->d);
@@ -350,7 +350,7 @@ void oracle_hessian_of(const oracle_basis *of, const quad *h, quad over, quad *h
 {
     quad matrix[oracle_pairs];
     oracle_whitened(of, h, matrix);
-    for (int m = 0; m < of->n; m++)
+    for (int m = 0; m < of->n; ++m)
         hessian[m] = matrix[m] * (of->a[m] == of->b[m] ? 2 : 1) * over * over;
 }
 
@@ -363,11 +363,11 @@ void oracle_curve_component(const oracle_scene *scene, const oracle_basis *of,
     if (second->kept > 0)
         h_off = solve_curvature(of, second, sums, oracle_slope_norm(of, point, sums), h);
     oracle_hessian_of(of, h, over, hessian);
-    for (int a = 0; a < of->d; a++) {
+    for (int a = 0; a < of->d; ++a) {
         g[a] = 0;
-        for (int b = 0; b < of->d; b++)
+        for (int b = 0; b < of->d; ++b)
             g[a] += point->correction[a][b] * point->scale * sums->first[b];
-        for (int m = 0; m < of->n; m++)
+        for (int m = 0; m < of->n; ++m)
             g[a] -= second->k[a][m] * h[m];
         g[a] *= over;
     }
@@ -384,20 +384,20 @@ void oracle_contract_second(const oracle_basis *of, const oracle_field *field, q
 {
     const int d = of->d;
     if (field->shape == SPHG_SCALAR || field->shape == SPHG_VECTOR)
-        for (int k = 0; k < (field->shape == SPHG_SCALAR ? d : d * d); k++)
+        for (int k = 0; k < (field->shape == SPHG_SCALAR ? d : d * d); ++k)
             found->gradient[k] = gradient[k / d][k % d];
     if (field->shape == SPHG_VECTOR && d == 2)
         found->curl[0] = gradient[1][0] - gradient[0][1];
-    for (int a = 0; field->shape == SPHG_VECTOR && a < d; a++) {
+    for (int a = 0; field->shape == SPHG_VECTOR && a < d; ++a) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         found->divergence[0] += gradient[a][a];
         if (d == 3)
             found->curl[a] = gradient[c][b] - gradient[b][c];
     }
-    for (int a = 0; field->shape >= SPHG_SYM_TENSOR && a < d; a++)
-        for (int b = 0; b < d; b++) {
+    for (int a = 0; field->shape >= SPHG_SYM_TENSOR && a < d; ++a)
+        for (int b = 0; b < d; ++b) {
             int component = a * d + b;
-            for (int m = 0; field->shape == SPHG_SYM_TENSOR && m < of->n; m++)
+            for (int m = 0; field->shape == SPHG_SYM_TENSOR && m < of->n; ++m)
                 if ((of->a[m] == a && of->b[m] == b) || (of->a[m] == b && of->b[m] == a))
                     component = m;
             found->divergence[a] += gradient[component][b];
@@ -414,10 +414,10 @@ oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, 
     const oracle_result linear = oracle_apply(reference, field, i);
     oracle_curved found = {.undecided = second.undecided, .touched = !second.full};
     quad gradient[9][3], hessian[oracle_pairs];
-    for (int c = 0; c < width; c++) {
+    for (int c = 0; c < width; ++c) {
         const oracle_change sums = oracle_sum_changes(scene, &of, point, field, i, c, width);
         oracle_curve_component(scene, &of, point, &second, &sums, gradient[c], hessian, &found);
-        for (int m = 0; m < of.n; m++) {
+        for (int m = 0; m < of.n; ++m) {
             if (field->shape < SPHG_SYM_TENSOR)
                 found.hessian[c * of.n + m] = hessian[m];
             found.laplacian[c] += of.a[m] == of.b[m] ? hessian[m] : 0;

@@ -14,9 +14,9 @@ static quad gradient_of(const oracle_scene *scene, const oracle_basis *of,
     oracle_change change = {.first_size = 0};
     oracle_curved bounds = {.gradient_bound = 0};
     oracle_offsets_of(scene, of, pair, e, q);
-    for (int a = 0; a < of->d; a++)
+    for (int a = 0; a < of->d; ++a)
         change.first[a] = -pair->s * unit * e[a];
-    for (int m = 0; m < of->n; m++)
+    for (int m = 0; m < of->n; ++m)
         change.second[m] = -pair->s * unit * q[m];
     change.first_size = pair->spread * unit * quad_norm(e, of->d);
     change.second_size = pair->spread * unit * quad_norm(q, of->n);
@@ -28,7 +28,7 @@ static oracle_pair seen_from_there(const oracle_scene *scene, const oracle_pair 
 {
     oracle_pair back = *pair;
     back.j = i;
-    for (int k = 0; k < scene->scheme.dimension; k++)
+    for (int k = 0; k < scene->scheme.dimension; ++k)
         back.x[k] = -pair->x[k];
     oracle_weigh(scene, scene->scheme.support_radius, scene->volume[i], &back);
     return back;
@@ -44,7 +44,7 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
     const oracle_second *second = oracle_second_at(reference, i);
     quad gradient[9][3] = {{0}};
     oracle_curved found = {.undecided = second->undecided, .touched = !second->full};
-    for (int k = 0; k < point->pair_count; k++) {
+    for (int k = 0; k < point->pair_count; ++k) {
         oracle_pair pair = point->pairs[k], back = seen_from_there(scene, &pair, i);
         const oracle_point *there = oracle_at(reference, pair.j);
         const oracle_second *other = oracle_second_at(reference, pair.j);
@@ -57,8 +57,8 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
         }
         const quad bounds[2] = {gradient_of(scene, &of, point, second, &pair, here),
                                 gradient_of(scene, &of, there, other, &back, back_there)};
-        for (int c = 0; c < width; c++) {
-            for (int a = 0; a < d; a++)
+        for (int c = 0; c < width; ++c) {
+            for (int a = 0; a < d; ++a)
                 gradient[c][a] +=
                     weights[0] * own[c] * here[a] - weights[1] * away[c] * back_there[a];
             found.gradient_bound += quad_abs(weights[0] * own[c]) * bounds[0] +

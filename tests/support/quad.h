@@ -23,7 +23,7 @@ static inline quad quad_max(quad a, quad b)
 static inline quad quad_power(quad base, int exponent)
 {
     quad result = 1;
-    for (int k = 0; k < exponent; k++)
+    for (int k = 0; k < exponent; ++k)
         result *= base;
     return result;
 }
@@ -40,7 +40,7 @@ static inline quad quad_sqrt(quad a)
     for (; a < 0x1p-200; a *= 0x1p200)
         scale *= 0x1p-100;
     quad root = sqrt((double)a);
-    for (int step = 0; step < 2; step++)
+    for (int step = 0; step < 2; ++step)
         root = (root + a / root) / 2;
     return root * scale;
 }
@@ -48,7 +48,7 @@ static inline quad quad_sqrt(quad a)
 static inline quad quad_norm(const quad *a, int count)
 {
     quad sum = 0;
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; ++k)
         sum += a[k] * a[k];
     return quad_sqrt(sum);
 }

@@ -72,10 +72,10 @@ static cloud rim_pairs(int d, random_state *random)
 {
     enum { pairs = 8 };
     cloud points = cloud_line(d, 2 * pairs, 1);
-    for (int p = 0; p < pairs; p++) {
+    for (int p = 0; p < pairs; ++p) {
         double distance = .5 * (1 - ldexp(1, -2 * p - 2)), angle = random_between(random, 0, 6);
         double *first = points.x + 2 * p * d, *second = first + d;
-        for (int k = 0; k < d; k++) {
+        for (int k = 0; k < d; ++k) {
             first[k] = k == 0 ? 2 * p : .125;
             second[k] = first[k];
         }

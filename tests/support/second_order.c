@@ -85,7 +85,7 @@ void second_order_require_same_bits(const second_order *a, const second_order *b
 double second_order_ratio(const setup_array *found, int i, const quad *exact, quad bound)
 {
     double numbers[27];
-    for (int k = 0; k < found->width; k++)
+    for (int k = 0; k < found->width; ++k)
         numbers[k] = setup_get(found, i, k);
     return oracle_ratio(found->width, numbers, exact, bound);
 }
@@ -103,7 +103,7 @@ void second_order_compare(const comparison *on, const second_order *found,
                 {"curl", &found->curl, exact->curl, exact->gradient_bound},
                 {"Hessian", &found->hessian, exact->hessian, exact->hessian_bound},
                 {"Laplacian", &found->laplacian, exact->laplacian, exact->hessian_bound}};
-    for (int k = 0; k < 5 && !exact->undecided; k++)
+    for (int k = 0; k < 5 && !exact->undecided; ++k)
         test_within(tolerance, second_order_ratio(rows[k].array, i, rows[k].numbers, rows[k].bound),
                     test_text("%s of particle %d, %s, %s", rows[k].what, i, on->name,
                               test_method_name(on->test->method)));
@@ -115,11 +115,11 @@ double *second_order_polynomial(const cloud *points, int degree)
 {
     const int d = points->dimension;
     double *numbers = test_memory((size_t)points->count * sizeof *numbers);
-    for (int i = 0; i < points->count; i++) {
+    for (int i = 0; i < points->count; ++i) {
         const double *x = points->x + i * d;
-        for (int a = 0, k = 0; a < d; a++) {
+        for (int a = 0, k = 0; a < d; ++a) {
             numbers[i] += second_order_slopes[a] * x[a];
-            for (int b = a; degree == 2 && b < d; b++, k++)
+            for (int b = a; degree == 2 && b < d; b++, ++k)
                 numbers[i] += second_order_second[k] * x[a] * x[b] * (a == b ? .5 : 1);
         }
     }
@@ -131,8 +131,8 @@ void second_order_slope_at(const cloud *points, int i, double *gradient)
     const int d = points->dimension;
     const double *x = points->x + i * d;
     memcpy(gradient, second_order_slopes, (size_t)d * sizeof *gradient);
-    for (int a = 0, k = 0; a < d; a++)
-        for (int b = a; b < d; b++, k++) {
+    for (int a = 0, k = 0; a < d; ++a)
+        for (int b = a; b < d; b++, ++k) {
             gradient[a] += second_order_second[k] * x[b];
             gradient[b] += a == b ? 0 : second_order_second[k] * x[a];
         }

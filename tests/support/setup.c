@@ -84,7 +84,7 @@ setup_array setup_output(sphg_type type, int count, int width)
 setup_array setup_numbers(sphg_type type, int count, int width, const double *numbers)
 {
     setup_array array = setup_output(type, count, width);
-    for (int k = 0; k < count * width; k++)
+    for (int k = 0; k < count * width; ++k)
         numbers_set(&array, k / width, k % width, numbers[k]);
     return array;
 }
@@ -93,7 +93,7 @@ double *setup_doubles(const setup_array *array)
 {
     int total = array->count * array->width;
     double *numbers = test_memory((size_t)total * sizeof *numbers);
-    for (int k = 0; k < total; k++)
+    for (int k = 0; k < total; ++k)
         numbers[k] = setup_get(array, k / array->width, k % array->width);
     return numbers;
 }
@@ -109,10 +109,10 @@ void setup_require_close(const setup_array *a, const setup_array *b, const char 
 {
     const double unit = a->type == SPHG_F64 ? 0x1p-53 : 0x1p-24;
     double largest = 0;
-    for (int k = 0; k < a->count * a->width; k++)
+    for (int k = 0; k < a->count * a->width; ++k)
         largest = fmax(largest, fabs(setup_get(a, k / a->width, k % a->width)));
-    for (int i = 0; i < a->count; i++)
-        for (int c = 0; c < a->width; c++)
+    for (int i = 0; i < a->count; ++i)
+        for (int c = 0; c < a->width; ++c)
             TEST_WITHIN(order_of_summation,
                         fabs(setup_get(a, i, c) - setup_get(b, i, c)) / (largest * unit), where);
 }
@@ -126,7 +126,7 @@ int setup_is_canary(const setup_array *array, int item)
 {
     size_t bytes = (size_t)array->width * size_of(array->type);
     const unsigned char *data = (const unsigned char *)array->data + (size_t)item * bytes;
-    for (size_t k = 0; k < bytes; k++)
+    for (size_t k = 0; k < bytes; ++k)
         if (data[k] != canary)
             return 0;
     return 1;

@@ -27,23 +27,23 @@ static void random_rotation(int d, random_state *random, double *q)
     const double m[9] = {1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),
                          s * (x * y + w * z),     1 - s * (x * x + z * z), s * (y * z - w * x),
                          s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y)};
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         q[k] = m[k / d * 3 + k % d];
 }
 
 static void round_all(int count, int is_double, double *a)
 {
-    for (int k = 0; k < count && !is_double; k++)
+    for (int k = 0; k < count && !is_double; ++k)
         a[k] = (double)(float)a[k];
 }
 
 /* U diag(values) V^T; U = V gives a matrix that is symmetric to the bit. */
 static void product(int d, const double *u, const double *values, const double *v, double *a)
 {
-    for (int r = 0; r < d; r++)
-        for (int c = 0; c < d; c++) {
+    for (int r = 0; r < d; ++r)
+        for (int c = 0; c < d; ++c) {
             a[r * d + c] = 0;
-            for (int k = 0; k < d; k++)
+            for (int k = 0; k < d; ++k)
                 a[r * d + c] += values[k] * (u[r * d + k] * v[c * d + k]);
         }
 }
@@ -60,8 +60,8 @@ void spectra_compose(int dimension, const double *values, int is_double, random_
 /* I + size * symmetric noise. */
 static void noisy_identity(int d, double size, random_state *random, double *a)
 {
-    for (int r = 0; r < d; r++)
-        for (int c = 0; c <= r; c++)
+    for (int r = 0; r < d; ++r)
+        for (int c = 0; c <= r; ++c)
             a[r * d + c] = a[c * d + r] = (r == c) + size * uniform(random);
 }
 
@@ -69,10 +69,10 @@ static void noisy_identity(int d, double size, random_state *random, double *a)
 static void graded_rows(int d, random_state *random, double *a)
 {
     double grade[3];
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         grade[k] = decade(random, -15, 0);
     noisy_identity(d, 0.3, random, a);
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         a[k] *= grade[k / d] * grade[k % d];
 }
 
@@ -80,13 +80,13 @@ static void graded_rows(int d, random_state *random, double *a)
 static void integer_rank(int d, int rank, int is_symmetric, random_state *random, double *a)
 {
     memset(a, 0, (size_t)(d * d) * sizeof *a);
-    for (int term = 0; term < rank; term++) {
+    for (int term = 0; term < rank; ++term) {
         double u[3], v[3];
-        for (int k = 0; k < d; k++) {
+        for (int k = 0; k < d; ++k) {
             u[k] = random_index(random, 17) - 8;
             v[k] = is_symmetric ? u[k] : random_index(random, 17) - 8;
         }
-        for (int k = 0; k < d * d; k++)
+        for (int k = 0; k < d * d; ++k)
             a[k] += u[k / d] * v[k % d];
     }
 }
@@ -94,22 +94,22 @@ static void integer_rank(int d, int rank, int is_symmetric, random_state *random
 static void axis_aligned(int d, random_state *random, double *a)
 {
     memset(a, 0, (size_t)(d * d) * sizeof *a);
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         a[k * d + k] = random_index(random, 2) ? decade(random, -3, 0) : 0;
 }
 
 /* Integers times the smallest positive number. */
 static void denormal(int d, int is_double, random_state *random, double *a)
 {
-    for (int r = 0; r < d; r++)
-        for (int c = 0; c <= r; c++)
+    for (int r = 0; r < d; ++r)
+        for (int c = 0; c <= r; ++c)
             a[r * d + c] = a[c * d + r] =
                 ldexp(random_index(random, 1 << 20) - (1 << 19), is_double ? -1074 : -149);
 }
 
 static void scale(int d, double factor, double *a)
 {
-    for (int k = 0; k < d * d; k++)
+    for (int k = 0; k < d * d; ++k)
         a[k] *= factor;
 }
 
@@ -118,7 +118,7 @@ static void general(int d, int is_graded, random_state *random, double *a)
     double u[9], v[9], values[3];
     random_rotation(d, random, u);
     random_rotation(d, random, v);
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         values[k] = is_graded ? decade(random, -30, 0) : uniform(random);
     product(d, u, values, v, a);
 }
@@ -127,7 +127,7 @@ static void general(int d, int is_graded, random_state *random, double *a)
 static void choose_values(spectrum set, int d, random_state *random, double *values)
 {
     const double small = decade(random, -8, 0);
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         const int last = k == d - 1;
         switch (set) {
         case SPECTRA_one_one_small:
@@ -216,12 +216,12 @@ static void annihilate(int d, int p, int q, long double *a, long double *v)
     const long double theta = (a[q * d + q] - a[p * d + p]) / (2 * off);
     const long double t = (theta < 0 ? -1 : 1) / (fabsl(theta) + hypotl(theta, 1));
     const long double c = 1 / hypotl(t, 1), s = t * c;
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         const long double left = a[k * d + p], right = a[k * d + q];
         a[k * d + p] = c * left - s * right;
         a[k * d + q] = s * left + c * right;
     }
-    for (int k = 0; k < d; k++) {
+    for (int k = 0; k < d; ++k) {
         const long double upper = a[p * d + k], lower = a[q * d + k];
         a[p * d + k] = c * upper - s * lower;
         a[q * d + k] = s * upper + c * lower;
@@ -236,7 +236,7 @@ static void swap_pairs(int d, int j, int k, long double *values, long double *ve
     const long double value = values[j];
     values[j] = values[k];
     values[k] = value;
-    for (int row = 0; row < d; row++) {
+    for (int row = 0; row < d; ++row) {
         const long double number = vectors[row * d + j];
         vectors[row * d + j] = vectors[row * d + k];
         vectors[row * d + k] = number;
@@ -247,18 +247,18 @@ void spectra_eigen(int dimension, const double *a, long double *values, long dou
 {
     const int d = dimension;
     long double work[9];
-    for (int k = 0; k < d * d; k++) {
+    for (int k = 0; k < d * d; ++k) {
         work[k] = a[k];
         vectors[k] = k / d == k % d;
     }
-    for (int sweep = 0; sweep < 8; sweep++)
-        for (int p = 0; p < d; p++)
-            for (int q = p + 1; q < d; q++)
+    for (int sweep = 0; sweep < 8; ++sweep)
+        for (int p = 0; p < d; ++p)
+            for (int q = p + 1; q < d; ++q)
                 annihilate(d, p, q, work, vectors);
-    for (int k = 0; k < d; k++)
+    for (int k = 0; k < d; ++k)
         values[k] = work[k * d + k];
-    for (int j = 0; j < d; j++)
-        for (int k = j + 1; k < d; k++)
+    for (int j = 0; j < d; ++j)
+        for (int k = j + 1; k < d; ++k)
             if (values[k] > values[j])
                 swap_pairs(d, j, k, values, vectors);
 }

@@ -108,7 +108,7 @@ static sphg_isa wanted_isa(void)
                  {"v4", SPHG_ISA_X86_V4},
                  {"neon", SPHG_ISA_NEON}};
     const char *wanted = getenv("SPHG_TEST_ISA");
-    for (size_t k = 0; wanted && k < sizeof known / sizeof known[0]; k++)
+    for (size_t k = 0; wanted && k < sizeof known / sizeof known[0]; ++k)
         if (strcmp(wanted, known[k].name) == 0 && is_here(known[k].isa))
             return known[k].isa;
     if (wanted && *wanted)
@@ -163,7 +163,7 @@ void test_within(test_tolerance tolerance, double value, const char *where)
 
 static void print_worst(void)
 {
-    for (int t = 0; t < TEST_TOLERANCE_COUNT; t++)
+    for (int t = 0; t < TEST_TOLERANCE_COUNT; ++t)
         if (worst[t].used)
             printf("%-28s measured %-10.3g limit %-8g at %s\n", tolerances[t].name, worst[t].value,
                    tolerances[t].limit, worst[t].where);
@@ -291,14 +291,14 @@ static size_t expand(const test_entry *entry, size_t number, named_case *cases)
 {
     enum { all = 3 * 4 * 6 * 7 };
     size_t count = 0;
-    for (int k = 0; k < all; k++) {
+    for (int k = 0; k < all; ++k) {
         const test_case test = {(test_precision)(k / 168), k / 42 % 4, (sphg_method)(k / 7 % 6),
                                 (sphg_kernel)(k % 7)};
         if (!is_of_entry(entry, &test) || !is_of_share(entry, &test, number))
             continue;
         if (cases)
             cases[count] = name_case(entry, &test);
-        count++;
+        ++count;
     }
     return count;
 }
@@ -308,14 +308,14 @@ int test_run(int argc, char **argv, const test_entry *entries, size_t count)
     size_t total = 0, used = 0;
     chosen_isa = wanted_isa();
     read_share();
-    for (size_t e = 0; e < count; e++)
+    for (size_t e = 0; e < count; ++e)
         total += expand(&entries[e], e, NULL);
     named_case *cases = required(calloc(total + 1, sizeof *cases));
     struct CMUnitTest *tests = required(calloc(total + 1, sizeof *tests));
-    for (size_t e = 0; e < count; e++)
+    for (size_t e = 0; e < count; ++e)
         used += expand(&entries[e], e, cases + used);
     const int only_lists = argc > 1 && strcmp(argv[1], "--list") == 0;
-    for (size_t k = 0; k < used; k++) {
+    for (size_t k = 0; k < used; ++k) {
         if (only_lists)
             puts(cases[k].name);
         struct CMUnitTest unit = {cases[k].name, run_case, NULL, end_case, &cases[k]};

@@ -28,7 +28,7 @@ static sphg_view input(const valid_call *own, int width, double low, double high
 {
     random_state random = random_seeded(11 + (uint64_t)width);
     double numbers[VALID_CALL_COUNT * 9];
-    for (int k = 0; k < VALID_CALL_COUNT * width; k++)
+    for (int k = 0; k < VALID_CALL_COUNT * width; ++k)
         numbers[k] = random_between(&random, low, high);
     const setup_array array =
         setup_numbers(test_field_type(own->test), VALID_CALL_COUNT, width, numbers);
@@ -157,11 +157,11 @@ static void set_rest(valid_call *own)
 
 static void refill_lists(valid_call *own)
 {
-    for (int k = 0; k <= VALID_CALL_COUNT; k++)
+    for (int k = 0; k <= VALID_CALL_COUNT; ++k)
         own->offsets[k] = k * (int64_t)VALID_CALL_COUNT;
-    for (int k = 0; k < VALID_CALL_COUNT * VALID_CALL_COUNT; k++)
+    for (int k = 0; k < VALID_CALL_COUNT * VALID_CALL_COUNT; ++k)
         own->indices[k] = k % VALID_CALL_COUNT;
-    for (int k = 0; k < VALID_CALL_COUNT; k++)
+    for (int k = 0; k < VALID_CALL_COUNT; ++k)
         own->picked[k] = k;
     memset(own->mask, 1, VALID_CALL_COUNT);
 }
@@ -201,7 +201,7 @@ valid_call *valid_call_create(const test_case *test, int trusted)
     make_outputs(own);
     refill_lists(own);
     sphg_neighbors **const all[] = {&own->built, &own->blank, &own->listed, &own->rebuilt};
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; ++k)
         SETUP_OK(own->living, sphg_neighbors_create(own->living, all[k]));
     set_build(own);
     for (int k = 0; k < 4; k += 3)

@@ -43,7 +43,7 @@ static inline void cross(const double *a, const double *b, double *result)
 /* v += factor a */
 static inline void add_scaled(double *v, double factor, const double *a)
 {
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         v[k] += factor * a[k];
 }
 #endif

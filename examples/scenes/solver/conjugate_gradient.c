@@ -6,14 +6,14 @@
 static double product(int32_t count, const double *a, const double *b)
 {
     double sum = 0;
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         sum += a[k] * b[k];
     return sum;
 }
 
 static void add(int32_t count, double *x, double factor, const double *y)
 {
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         x[k] += factor * y[k];
 }
 
@@ -24,7 +24,7 @@ int32_t conjugate_gradient(const struct conjugate_gradient *system, const double
     const double enough = system->tolerance * system->tolerance * product(n, b, b);
     int32_t iterations = 0;
     system->apply(system->data, x, image);
-    for (int32_t k = 0; k < n; k++)
+    for (int32_t k = 0; k < n; ++k)
         residual[k] = direction[k] = b[k] - image[k];
     double squares = product(n, residual, residual);
     while (squares > enough && iterations < system->most_iterations) {
@@ -33,10 +33,10 @@ int32_t conjugate_gradient(const struct conjugate_gradient *system, const double
         add(n, x, length, direction);
         add(n, residual, -length, image);
         const double next = product(n, residual, residual);
-        for (int32_t k = 0; k < n; k++)
+        for (int32_t k = 0; k < n; ++k)
             direction[k] = residual[k] + next / squares * direction[k];
         squares = next;
-        iterations++;
+        ++iterations;
     }
     return iterations;
 }

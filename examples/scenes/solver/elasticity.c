@@ -45,16 +45,16 @@ void elasticity_rotate(struct elasticity *elasticity, vector *x)
 /* result = A B, or A B^T */
 static void multiply(const double *a, const double *b, double *result)
 {
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++)
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
             result[3 * row + column] = a[3 * row] * b[column] + a[3 * row + 1] * b[3 + column] +
                                        a[3 * row + 2] * b[6 + column];
 }
 
 static void multiply_transposed(const double *a, const double *b, double *result)
 {
-    for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++)
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
             result[3 * row + column] = dot(a + 3 * row, b + 3 * column);
 }
 
@@ -66,8 +66,8 @@ static void corotated_stress(const struct elasticity *elasticity, const double *
     tensor turned, piola;
     multiply_transposed(gradient, rotation, turned);
     const double pressure = elasticity->lame * (turned[0] + turned[4] + turned[8]);
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
             piola[3 * a + b] = elasticity->shear * (turned[3 * a + b] + turned[3 * b + a]) +
                                (a == b ? pressure : 0);
     multiply(piola, rotation, stress);
@@ -80,10 +80,10 @@ static void force_of_stress(struct elasticity *elasticity, vector *force)
 
 void elasticity_force(struct elasticity *elasticity, vector *force)
 {
-    for (int32_t i = 0; i < elasticity->rest.count; i++) {
+    for (int32_t i = 0; i < elasticity->rest.count; ++i) {
         tensor gradient, unstrained;
         multiply(elasticity->rotation[i], elasticity->rest_gradient[i], unstrained);
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 9; ++k)
             gradient[k] = elasticity->deformation[i][k] - unstrained[k];
         corotated_stress(elasticity, gradient, elasticity->rotation[i], elasticity->stress[i]);
     }
@@ -93,7 +93,7 @@ void elasticity_force(struct elasticity *elasticity, vector *force)
 void elasticity_rate(struct elasticity *elasticity, vector *u, vector *force)
 {
     operators_jacobian(&elasticity->rest, u, elasticity->gradient);
-    for (int32_t i = 0; i < elasticity->rest.count; i++)
+    for (int32_t i = 0; i < elasticity->rest.count; ++i)
         corotated_stress(elasticity, elasticity->gradient[i], elasticity->rotation[i],
                          elasticity->stress[i]);
     force_of_stress(elasticity, force);
@@ -110,7 +110,7 @@ void elasticity_solve(struct elasticity *elasticity, struct particles *body, dou
     elasticity_rotate(elasticity, body->x);
     elasticity_force(elasticity, implicit->force);
     implicit_begin(implicit, body);
-    for (int32_t i = 0; i < body->count; i++)
+    for (int32_t i = 0; i < body->count; ++i)
         add_scaled(implicit->momentum[i], dt, implicit->force[i]);
     implicit_solve(implicit, body, dt * dt, find_rate, elasticity);
 }
@@ -122,13 +122,13 @@ double elasticity_stretch_error(struct elasticity *elasticity, const struct part
     vector *stretched = array_new(count, sizeof *stretched);
     vector *force = array_new(count, sizeof *force);
     double work = 0, volume = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         add_scaled(stretched[i], 1, body->x[i]);
         stretched[i][2] += share * body->x[i][2];
     }
     elasticity_rotate(elasticity, stretched);
     elasticity_force(elasticity, force);
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         work += body->x[i][2] * force[i][2];
         volume += elasticity->rest.volume[i];
     }
@@ -140,7 +140,7 @@ double elasticity_stretch_error(struct elasticity *elasticity, const struct part
 double elasticity_least_volume(const struct elasticity *elasticity)
 {
     double least = INFINITY;
-    for (int32_t i = 0; i < elasticity->rest.count; i++) {
+    for (int32_t i = 0; i < elasticity->rest.count; ++i) {
         const double *sigma = elasticity->rotations.sigma[i];
         least = fmin(least, sigma[0] * sigma[1] * sigma[2]);
     }

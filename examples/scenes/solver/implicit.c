@@ -23,8 +23,8 @@ void implicit_free(struct implicit *implicit)
 
 void implicit_begin(struct implicit *implicit, const struct particles *particles)
 {
-    for (int32_t i = 0; i < particles->count; i++)
-        for (int k = 0; k < 3; k++)
+    for (int32_t i = 0; i < particles->count; ++i)
+        for (int k = 0; k < 3; ++k)
             implicit->momentum[i][k] = particles->mass[i] * particles->v[i][k];
 }
 
@@ -33,8 +33,8 @@ static void apply(void *data, double *v, double *result)
 {
     struct implicit *implicit = data;
     implicit->find_force(implicit->data, (vector *)v, implicit->force);
-    for (int32_t i = 0; i < implicit->count; i++)
-        for (int k = 0; k < 3; k++)
+    for (int32_t i = 0; i < implicit->count; ++i)
+        for (int k = 0; k < 3; ++k)
             result[3 * i + k] =
                 implicit->mass[i] * v[3 * i + k] - implicit->scale * implicit->force[i][k];
 }

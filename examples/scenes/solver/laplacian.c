@@ -28,12 +28,12 @@ static void find_force(void *data, vector *v, vector *result)
     const int32_t first = laplacian->first;
     const double floor = 0.01 * scheme->support_radius * scheme->support_radius;
     const double factor = 2 * (scheme->dimension + 2) * laplacian->kinematic / all->rest_volume;
-    for (int32_t i = first; i < all->count; i++) {
+    for (int32_t i = first; i < all->count; ++i) {
         double *force = result[i - first];
         const double *at = all->x[i], *own = v[i - first];
         const double scale = factor * all->rest_density[i] * all->volume[i];
         force[0] = force[1] = force[2] = 0;
-        for (int64_t k = pairs->offsets[i - first]; k < pairs->offsets[i - first + 1]; k++) {
+        for (int64_t k = pairs->offsets[i - first]; k < pairs->offsets[i - first + 1]; ++k) {
             const int32_t j = pairs->indices[k];
             if (j < first)
                 continue;
@@ -60,7 +60,7 @@ void laplacian_step(struct laplacian *laplacian, struct particles *all, int32_t 
     vector *force = laplacian->implicit.force;
     prepare(laplacian, all, first);
     find_force(laplacian, all->v + first, force);
-    for (int32_t i = first; i < all->count; i++)
+    for (int32_t i = first; i < all->count; ++i)
         add_scaled(all->v[i], dt / all->mass[i], force[i - first]);
 }
 

@@ -17,7 +17,7 @@ void metrics_set(struct metrics *metrics, const char *name, double value)
 
 static const double *find(const struct metrics *metrics, const char *name)
 {
-    for (int32_t k = 0; k < metrics->count; k++)
+    for (int32_t k = 0; k < metrics->count; ++k)
         if (strcmp(metrics->items[k].name, name) == 0)
             return &metrics->items[k].value;
     return NULL;
@@ -37,7 +37,7 @@ void metrics_print(const struct options *options, enum method method, const stru
     printf("{\"scene\": \"%s\", \"method\": \"%s\", \"size\": \"%s\", \"seed\": %llu",
            options->scene, method_names[method], options->full ? "full" : "quick",
            (unsigned long long)options->seed);
-    for (int32_t k = 0; k < metrics->count; k++) {
+    for (int32_t k = 0; k < metrics->count; ++k) {
         const double value = metrics->items[k].value;
         if (isfinite(value))
             printf(", \"%s\": %.6g", metrics->items[k].name, value);
@@ -104,8 +104,8 @@ bool gates_hold(const struct options *options, const struct gate *gates,
                 const struct metrics runs[METHOD_COUNT])
 {
     bool all = true, any = false;
-    for (const struct gate *gate = gates; gate->name; gate++)
-        for (int m = SPH; m < METHOD_COUNT; m++)
+    for (const struct gate *gate = gates; gate->name; ++gate)
+        for (int m = SPH; m < METHOD_COUNT; ++m)
             if (is_compared(options, gate, (enum method)m, &runs[m])) {
                 all = gate_holds(options, gate, (enum method)m, runs) && all;
                 any = true;

@@ -66,7 +66,7 @@ static void sum_density(const struct operators *operators, struct particles *par
     sphg_field field = direct_field(SPHG_SCALAR, &mass);
     field.value = scalars(particles->density);
     sph_evaluate(sph, &sph->plain, &sources, sphg_absent(), 1, &field);
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         particles->volume[i] = particles->mass[i] / particles->density[i];
 }
 

@@ -82,7 +82,7 @@ void output_speeds(const struct run *run, const char *label, const double eye[3]
                    const struct particles *particles)
 {
     double *speed = array_new(particles->count, sizeof *speed);
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         speed[i] = sqrt(dot(particles->v[i], particles->v[i]));
     output_view(run, label, eye, particles->count, particles->x, speed);
     free(speed);

@@ -56,9 +56,9 @@ struct particles particles_block(const int32_t sides[3], double spacing, double 
 {
     const int dimension = sides[2] > 1 ? 3 : 2;
     struct particles made = particles_new(sides[0] * sides[1] * sides[2], pow(spacing, dimension));
-    for (int32_t i = 0; i < made.count; i++) {
+    for (int32_t i = 0; i < made.count; ++i) {
         const int32_t place[3] = {i % sides[0], i / sides[0] % sides[1], i / sides[0] / sides[1]};
-        for (int k = 0; k < dimension; k++)
+        for (int k = 0; k < dimension; ++k)
             made.x[i][k] = spacing * (place[k] - 0.5 * (sides[k] - 1) +
                                       random_between(random, -jitter, jitter));
         particles_set_rest_density(&made, i, rest_density);
@@ -68,21 +68,21 @@ struct particles particles_block(const int32_t sides[3], double spacing, double 
 
 void particles_repeat_change(struct particles *particles)
 {
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         add_scaled(particles->v[i], 1, particles->change[i]);
 }
 
 void particles_note_change(struct particles *particles, vector *momentum)
 {
-    for (int32_t i = 0; i < particles->count; i++)
-        for (int k = 0; k < 3; k++)
+    for (int32_t i = 0; i < particles->count; ++i)
+        for (int k = 0; k < 3; ++k)
             particles->change[i][k] = particles->v[i][k] - momentum[i][k] / particles->mass[i];
 }
 
 double particles_mass(const struct particles *particles)
 {
     double mass = 0;
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         mass += particles->mass[i];
     return mass;
 }
@@ -90,14 +90,14 @@ double particles_mass(const struct particles *particles)
 void particles_momentum(const struct particles *particles, double *momentum)
 {
     momentum[0] = momentum[1] = momentum[2] = 0;
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         add_scaled(momentum, particles->mass[i], particles->v[i]);
 }
 
 void particles_angular_momentum(const struct particles *particles, double *momentum)
 {
     momentum[0] = momentum[1] = momentum[2] = 0;
-    for (int32_t i = 0; i < particles->count; i++) {
+    for (int32_t i = 0; i < particles->count; ++i) {
         vector moment;
         cross(particles->x[i], particles->v[i], moment);
         add_scaled(momentum, particles->mass[i], moment);
@@ -107,7 +107,7 @@ void particles_angular_momentum(const struct particles *particles, double *momen
 double particles_kinetic_energy(const struct particles *particles)
 {
     double energy = 0;
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         energy += 0.5 * particles->mass[i] * dot(particles->v[i], particles->v[i]);
     return energy;
 }
@@ -115,7 +115,7 @@ double particles_kinetic_energy(const struct particles *particles)
 double particles_fastest(const struct particles *particles)
 {
     double fastest = 0;
-    for (int32_t i = 0; i < particles->count; i++)
+    for (int32_t i = 0; i < particles->count; ++i)
         fastest = fmax(fastest, dot(particles->v[i], particles->v[i]));
     return sqrt(fastest);
 }

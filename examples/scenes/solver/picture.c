@@ -44,7 +44,7 @@ void picture_views(const struct picture *picture, const char *label, double radi
 {
     fprintf(picture->script, "set size ratio -1\nunset xtics\nunset ytics\nunset border\n"
                              "set offsets graph 0.05, graph 0.05, graph 0.1, graph 0.1\n");
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         fprintf(picture->script,
                 "set title '%s: %s'\n"
                 "plot '%s_%s_%s.dat' using 1:2:(%g):3 with circles lc palette "
@@ -57,7 +57,7 @@ void picture_series(const struct picture *picture, const char *label)
     static const char *const colours[2] = {"#440154", "#35b779"};
     fprintf(picture->script, "set size noratio\nset xtics\nset ytics\nset border\n"
                              "set offsets 0, 0, 0, 0\nset xlabel 'time [s]'\nplot ");
-    for (int k = 0; k < 2; k++)
+    for (int k = 0; k < 2; ++k)
         fprintf(picture->script, "'%s_%s_%s.dat' with lines lw 2 lc rgb '%s' title '%s'%s",
                 picture->name, picture->methods[k], label, colours[k], picture->titles[k],
                 k ? "\n" : ", ");
@@ -93,10 +93,10 @@ void picture_project(FILE *table, const double eye[3], int count, double (*x)[3]
         return;
     cross(toward, right, up);
     struct seen *seen = array_new(count, sizeof *seen);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; ++i)
         seen[i] = (struct seen){dot(x[i], right), dot(x[i], up), dot(x[i], toward), colour[i]};
     qsort(seen, (size_t)count, sizeof *seen, farther_first);
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; ++i)
         fprintf(table, "%.5g %.5g %.5g\n", seen[i].right, seen[i].up, seen[i].colour);
     free(seen);
 }

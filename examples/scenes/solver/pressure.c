@@ -71,13 +71,13 @@ static void sum_compression(struct pressure *pressure, const struct particles *f
     const sphg_sources sources = sources_of(pressure, fluid);
     const struct contact *contact = pressure->contact;
     sphg_field fields[2] = {direct_field(SPHG_SCALAR, &ones), direct_field(SPHG_SCALAR, &light)};
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         lightness[i] = 1 / fluid->rest_density[i];
     fields[0].value = scalars(pressure->compression);
     fields[0].gradient = vectors(pressure->slope);
     fields[1].square = scalars(pressure->inverse_diagonal);
     sph_evaluate(pressure->sph, &pressure->sph->plain, &sources, sphg_absent(), 2, fields);
-    for (int32_t i = 0; contact && i < fluid->count; i++) {
+    for (int32_t i = 0; contact && i < fluid->count; ++i) {
         pressure->compression[i] += contact->filling[i];
         add_scaled(pressure->slope[i], 1, contact->slope[i]);
     }
@@ -109,7 +109,7 @@ void pressure_prepare(struct pressure *pressure, struct particles *fluid)
     const double start = stopwatch_now();
     sum_compression(pressure, fluid);
     count_pairs(pressure, fluid);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         const double sum = diagonal(pressure, fluid, i);
         pressure->inverse_diagonal[i] = sum > least ? 1 / sum : 0;
         fluid->density[i] = fluid->rest_density[i] * pressure->compression[i];
@@ -127,7 +127,7 @@ static void compression_rate(struct pressure *pressure, const struct particles *
     sph_check(pressure->sph,
               sphg_divergence(pressure->sph->context, &pressure->sph->plain, &sources, NULL,
                               vectors(u), scalars(pressure->change)));
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         pressure->change[i] = -pressure->change[i];
         if (contact)
             pressure->change[i] +=
@@ -141,13 +141,13 @@ static void compression_rate(struct pressure *pressure, const struct particles *
 static void displace(struct pressure *pressure, const struct particles *fluid)
 {
     const sphg_sources sources = sources_of(pressure, fluid);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         pressure->stress[i] = fluid->rest_density[i] * pressure->potential[i];
     sph_check(pressure->sph,
               sphg_force(pressure->sph->context, &pressure->sph->plain, &sources, NULL, SPHG_SCALAR,
                          scalars(pressure->stress), vectors(pressure->displacement)));
-    for (int32_t i = 0; i < fluid->count; i++) {
-        for (int k = 0; k < 3; k++)
+    for (int32_t i = 0; i < fluid->count; ++i) {
+        for (int k = 0; k < 3; ++k)
             pressure->displacement[i][k] /= -fluid->mass[i];
         if (pressure->contact)
             add_scaled(pressure->displacement[i], -pressure->potential[i],
@@ -163,7 +163,7 @@ static double relax(struct pressure *pressure, const struct particles *fluid, do
     double left = 0;
     displace(pressure, fluid);
     compression_rate(pressure, fluid, pressure->displacement, false);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         const double residual = pressure->source[i] + pressure->change[i];
         const double step = pressure->relaxation * residual * pressure->inverse_diagonal[i];
         const double reached = fmax(0, pressure->potential[i] + step);
@@ -199,14 +199,14 @@ static int32_t solve(struct pressure *pressure, struct particles *fluid, double 
     const int32_t iterations = iterate(pressure, fluid, error);
     memcpy(pressure->potential, pressure->reached, size);
     displace(pressure, fluid);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(fluid->v[i], 1 / dt, pressure->displacement[i]);
     return iterations;
 }
 
 static void start_from_source(struct pressure *pressure, int32_t count)
 {
-    for (int32_t i = 0; i < count; i++)
+    for (int32_t i = 0; i < count; ++i)
         pressure->potential[i] =
             pressure->relaxation * fmax(0, pressure->source[i]) * pressure->inverse_diagonal[i];
 }
@@ -222,7 +222,7 @@ void pressure_stop_compression(struct pressure *pressure, struct particles *flui
 {
     const double start = stopwatch_now();
     compression_rate(pressure, fluid, fluid->v, true);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         pressure->source[i] = count_neighbors(pressure, i) < fewest_neighbors(pressure->sph)
                                   ? never_compressed
                                   : fmax(0, dt * pressure->change[i]);
@@ -235,10 +235,10 @@ void pressure_keep_density(struct pressure *pressure, struct particles *fluid, d
 {
     const double start = stopwatch_now();
     compression_rate(pressure, fluid, fluid->v, true);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         pressure->source[i] = pressure->compression[i] + dt * pressure->change[i] - 1;
     start_from_source(pressure, fluid->count);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         pressure->potential[i] = fmax(pressure->potential[i], pressure->kept * fluid->potential[i]);
     pressure->density_iterations += solve(pressure, fluid, dt, pressure->density_error);
     memcpy(fluid->potential, pressure->potential, (size_t)fluid->count * sizeof *fluid->potential);

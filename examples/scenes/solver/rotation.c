@@ -27,8 +27,8 @@ static double determinant(const double *a)
 /* U diag(1, 1, sign) V^T */
 static void multiply(const double *u, double sign, const double *v, double *result)
 {
-    for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b)
             result[3 * a + b] = u[3 * a] * v[3 * b] + u[3 * a + 1] * v[3 * b + 1] +
                                 sign * u[3 * a + 2] * v[3 * b + 2];
 }
@@ -38,7 +38,7 @@ void rotations_find(const struct sph *sph, struct rotations *rotations, int32_t 
 {
     sph_check(sph, sphg_svd(sph->context, count, tensors(matrices), tensors(rotations->left),
                             vectors(rotations->sigma), tensors(rotations->right)));
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         const double *u = rotations->left[i], *v = rotations->right[i];
         const double sign = determinant(u) * determinant(v) < 0 ? -1 : 1;
         multiply(u, sign, v, found[i]);

@@ -25,8 +25,8 @@ static bool is_near(const double *a, const double *b, double distance)
 static bool is_free(const struct board *board, int32_t column, int32_t row, vector *points,
                     const double *dart, double distance)
 {
-    for (int32_t c = column - 2; c <= column + 2; c++)
-        for (int32_t r = row - 2; r <= row + 2; r++) {
+    for (int32_t c = column - 2; c <= column + 2; ++c)
+        for (int32_t r = row - 2; r <= row + 2; ++r) {
             if (c < 0 || r < 0 || c >= board->columns || r >= board->rows)
                 continue;
             const int32_t held = board->held[(ptrdiff_t)r * board->columns + c];
@@ -46,7 +46,7 @@ int32_t sample_rectangle(struct random *random, const double low[2], const doubl
     const int32_t cells = board.columns * board.rows;
     board.held = array_new(cells, sizeof *board.held);
     *points = array_new(cells, sizeof **points);
-    for (int64_t dart = 0; dart < (int64_t)cells * DARTS_PER_CELL; dart++) {
+    for (int64_t dart = 0; dart < (int64_t)cells * DARTS_PER_CELL; ++dart) {
         const vector x = {random_between(random, low[0], high[0]),
                           random_between(random, low[1], high[1]), 0};
         const int32_t column = (int32_t)((x[0] - low[0]) / board.cell);
@@ -66,13 +66,13 @@ int32_t sample_sphere(struct random *random, double radius, double distance, vec
     const int32_t most = (int32_t)(16 * radius * radius / (distance * distance)) + 1;
     int32_t count = 0;
     *points = array_new(most, sizeof **points);
-    for (int misses = 0; misses < LAST_MISSES && count < most; misses++) {
+    for (int misses = 0; misses < LAST_MISSES && count < most; ++misses) {
         const double height = random_between(random, -1, 1);
         const double angle = random_between(random, 0, 6.283185307179586);
         const double across = radius * sqrt(1 - height * height);
         const vector x = {across * cos(angle), across * sin(angle), radius * height};
         bool free_place = true;
-        for (int32_t k = 0; k < count && free_place; k++)
+        for (int32_t k = 0; k < count && free_place; ++k)
             free_place = !is_near((*points)[k], x, distance);
         if (!free_place)
             continue;

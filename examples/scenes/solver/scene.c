@@ -50,7 +50,7 @@ static void simulate(const struct scene *scene, const struct options *options, e
 static void simulate_in_turn(const struct scene *scene, const struct options *options,
                              struct metrics runs[METHOD_COUNT])
 {
-    for (int m = SPH; m < METHOD_COUNT; m++)
+    for (int m = SPH; m < METHOD_COUNT; ++m)
         if (is_run(scene, options, (enum method)m)) {
             simulate(scene, options, (enum method)m, &runs[m], true);
             metrics_print(options, (enum method)m, &runs[m]);
@@ -86,10 +86,10 @@ static void simulate_side_by_side(const struct scene *scene, const struct option
                                   struct metrics runs[METHOD_COUNT])
 {
     pid_t processes[METHOD_COUNT];
-    for (int m = SPH; m < METHOD_COUNT; m++)
+    for (int m = SPH; m < METHOD_COUNT; ++m)
         if (is_run(scene, options, (enum method)m))
             processes[m] = begin(scene, options, (enum method)m, &runs[m]);
-    for (int m = SPH; m < METHOD_COUNT; m++)
+    for (int m = SPH; m < METHOD_COUNT; ++m)
         if (is_run(scene, options, (enum method)m)) {
             await(options, (enum method)m, processes[m]);
             metrics_print(options, (enum method)m, &runs[m]);

@@ -52,7 +52,7 @@ static void find_squares(struct surface_tension *tension, int32_t count)
     const bool renormalised =
         tension->operators->sph->corrected.method == SPHG_PLAIN; /* Eq. (42) */
     sum_gradient(tension->operators, tension->colour, tension->gradient);
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         const double factor = renormalised ? 1 / tension->colour[i] : 1;
         tension->squares[i] = factor * factor * dot(tension->gradient[i], tension->gradient[i]);
     }
@@ -62,9 +62,9 @@ static void find_squares(struct surface_tension *tension, int32_t count)
 static void find_force(struct surface_tension *tension, const struct particles *fluid)
 {
     sum_gradient(tension->operators, tension->squares, tension->force);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         add_scaled(tension->force[i], tension->squares[i], tension->surface[i]);
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; ++k)
             tension->force[i][k] *= 0.25 * tension->strength * fluid->volume[i];
     }
 }
@@ -78,14 +78,14 @@ static struct moments find_moments(const struct surface_tension *tension,
 {
     struct moments found = {0};
     const double mass = particles_mass(fluid);
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(found.centre, fluid->mass[i] / mass, fluid->x[i]);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         vector arm = {fluid->x[i][0], fluid->x[i][1], fluid->x[i][2]}, moment;
         add_scaled(arm, -1, found.centre);
         cross(arm, tension->force[i], moment);
         add_scaled(found.torque, 1, moment);
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; ++k)
             found.inertia[k] += fluid->mass[i] * (dot(arm, arm) - arm[k] * arm[k]);
     }
     return found;
@@ -101,7 +101,7 @@ static void balance(const struct surface_tension *tension, const struct particle
     const vector spin = {moments.torque[0] / moments.inertia[0],
                          moments.torque[1] / moments.inertia[1],
                          moments.torque[2] / moments.inertia[2]};
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         vector arm = {fluid->x[i][0], fluid->x[i][1], fluid->x[i][2]}, turning;
         add_scaled(arm, -1, moments.centre);
         cross(spin, arm, turning);
@@ -118,12 +118,12 @@ void surface_tension_add(struct surface_tension *tension, const struct particles
     find_colour(tension);
     find_squares(tension, fluid->count);
     find_force(tension, fluid);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         add_scaled(net, 1, tension->force[i]);
         sum += sqrt(dot(tension->force[i], tension->force[i]));
     }
     tension->net_share = sqrt(dot(net, net)) / sum;
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         add_scaled(acceleration[i], 1 / fluid->mass[i], tension->force[i]);
     if (tension->balanced)
         balance(tension, fluid, net, acceleration);

@@ -26,8 +26,8 @@ void viscosity_free(struct viscosity *viscosity)
 static void viscous_stress(int32_t dimension, double dynamic, const double *jacobian,
                            double *stress)
 {
-    for (int32_t a = 0; a < dimension; a++)
-        for (int32_t b = a; b < dimension; b++)
+    for (int32_t a = 0; a < dimension; ++a)
+        for (int32_t b = a; b < dimension; ++b)
             *stress++ = dynamic * (jacobian[3 * a + b] + jacobian[3 * b + a]);
 }
 
@@ -35,7 +35,7 @@ void viscosity_force(struct viscosity *viscosity, vector *v, vector *force)
 {
     const struct operators *operators = viscosity->operators;
     operators_jacobian(operators, v, viscosity->jacobian);
-    for (int32_t i = 0; i < operators->count; i++)
+    for (int32_t i = 0; i < operators->count; ++i)
         viscous_stress(operators->sph->corrected.dimension, viscosity->dynamic,
                        viscosity->jacobian[i], viscosity->stress + (ptrdiff_t)WIDTH * i);
     operators_force(operators, SPHG_SYM_TENSOR,
@@ -48,10 +48,10 @@ struct shear_errors viscosity_shear_errors(struct viscosity *viscosity,
     vector *flow = array_new(fluid->count, sizeof *flow);
     vector *force = array_new(fluid->count, sizeof *force);
     double power = 0, volume = 0, rate = 0;
-    for (int32_t i = 0; i < fluid->count; i++)
+    for (int32_t i = 0; i < fluid->count; ++i)
         flow[i][0] = fluid->x[i][1];
     viscosity_force(viscosity, flow, force);
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         power += dot(flow[i], force[i]);
         volume += viscosity->operators->volume[i];
         rate = fmax(rate, fabs(viscosity->jacobian[i][1] - 1));

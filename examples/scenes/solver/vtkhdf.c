@@ -57,7 +57,7 @@ static bool write_counts(hid_t group, int32_t count)
                                         "NumberOfConnectivityIds"};
     const int64_t number = count;
     bool good = true;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; ++k)
         good =
             good && write_data(group, names[k], H5T_NATIVE_INT64, H5T_NATIVE_INT64, 1, 0, &number);
     return good;
@@ -69,7 +69,7 @@ static bool write_cells(hid_t group, int32_t count)
     int64_t *numbers = array_new(count + 1, sizeof *numbers);
     uint8_t *types = array_new(count, sizeof *types);
     memset(types, 1, (size_t)count); /* VTK_VERTEX */
-    for (int32_t i = 0; i <= count; i++)
+    for (int32_t i = 0; i <= count; ++i)
         numbers[i] = i;
     const hid_t whole = H5T_NATIVE_INT64;
     const bool good =
@@ -85,7 +85,7 @@ static bool write_points(hid_t group, int32_t count, vector *x, const struct out
 {
     bool good = write_data(group, "Points", H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, count, 3, x);
     const hid_t data = H5Gcreate2(group, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    for (const struct output_field *field = fields; field->name; field++)
+    for (const struct output_field *field = fields; field->name; ++field)
         good = good && write_data(data, field->name, H5T_NATIVE_FLOAT, H5T_NATIVE_DOUBLE, count,
                                   field->dimension == 1 ? 0 : field->dimension, field->values);
     H5Gclose(data);

@@ -28,7 +28,7 @@ struct wall wall_new(const struct sph *sph, int32_t count, vector *x)
     sphg_field field = direct_field(SPHG_SCALAR, &ones);
     field.value = scalars(wall.volume);
     sph_evaluate(sph, &sph->plain, &sources, sphg_absent(), 1, &field);
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < count; ++k)
         wall.volume[k] = 1 / wall.volume[k];
     sphg_neighbors_destroy(neighbors);
     return wall;
@@ -92,7 +92,7 @@ static void count_pairs(const struct sph *sph, struct contact *contact, const sp
     sph_check(sph,
               sphg_pair_gradients(sph->context, &sph->plain, sources, NULL, sphg_absent(), &pairs));
     contact->near_count = 0;
-    for (int32_t i = 0; i < count; i++) {
+    for (int32_t i = 0; i < count; ++i) {
         contact->touching[i] = (int32_t)(contact->offsets[i + 1] - contact->offsets[i]);
         if (contact->touching[i])
             contact->near[contact->near_count++] = i;
@@ -160,7 +160,7 @@ void contact_update(const struct sph *sph, struct contact *contact, const struct
 
 void contact_friction(const struct contact *contact, double strength, struct particles *fluid)
 {
-    for (int32_t i = 0; i < fluid->count; i++) {
+    for (int32_t i = 0; i < fluid->count; ++i) {
         const double share = strength * fluid->rest_density[i] / fluid->density[i];
         const double most = fmin(1, share * contact->filling[i]);
         const double scale = contact->filling[i] > 0 ? most / contact->filling[i] : 0;

@@ -89,7 +89,7 @@ static int shows(const char *file, const char *name)
 int main(int count, char **words)
 {
     const char *const file = count > 2 ? words[1] : "";
-    for (int k = count > 2 ? atoi(words[2]) : 0; k > 0; k--)
+    for (int k = count > 2 ? atoi(words[2]) : 0; k > 0; --k)
         if (run_and_unload(file, (k - 1) % 32))
             return 1;
     int failed = count < 3;

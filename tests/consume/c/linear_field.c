@@ -9,8 +9,8 @@ static const double slope[3] = {2.0, -3.0, 0.5};
 
 static int is_exact(const double (*gradient)[3])
 {
-    for (int i = 0; i < COUNT; i++)
-        for (int a = 0; a < 3; a++)
+    for (int i = 0; i < COUNT; ++i)
+        for (int a = 0; a < 3; ++a)
             if (!(fabs(gradient[i][a] - slope[a]) < 1e-12))
                 return 0;
     return 1;
@@ -19,10 +19,10 @@ static int is_exact(const double (*gradient)[3])
 int main(void)
 {
     static double position[COUNT][3], field[COUNT], gradient[COUNT][3];
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         const int cell[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
         field[i] = 7.0;
-        for (int a = 0; a < 3; a++) {
+        for (int a = 0; a < 3; ++a) {
             position[i][a] = cell[a] + 0.01 * ((i * (a + 3)) % 17);
             field[i] += slope[a] * position[i][a];
             gradient[i][a] = NAN;

@@ -12,7 +12,7 @@ __attribute__((visibility("default"))) int plugin_run(int leave);
 int plugin_run(int leave)
 {
     const float volume = 1;
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < COUNT; ++i) {
         position[i][0] = (float)(i % SIDE);
         position[i][1] = (float)(i / SIDE % SIDE);
         position[i][2] = (float)(i / SIDE / SIDE);
@@ -34,8 +34,8 @@ int plugin_run(int leave)
         sphg_neighbors_destroy(neighbors);
         sphg_context_destroy(context);
     }
-    for (int i = 0; i < COUNT; i++)
-        for (int a = 0; a < 3; a++)
+    for (int i = 0; i < COUNT; ++i)
+        for (int a = 0; a < 3; ++a)
             failed |= !(fabsf(gradient[i][a] - (a == 0)) < 1e-5f);
     return failed;
 }

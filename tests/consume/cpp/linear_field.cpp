@@ -29,7 +29,7 @@ const mat3 slope = {{0, -1, 0.5, 1, 0, 0, 0.25, 0, 2}};
 std::vector<vec3> block(int side)
 {
     std::vector<vec3> positions;
-    for (int i = 0; i < side * side * side; i++)
+    for (int i = 0; i < side * side * side; ++i)
         positions.push_back({{i % side + 0.01 * (i * 3 % 17), i / side % side + 0.01 * (i * 4 % 17),
                               i / side / side + 0.01 * (i * 5 % 17)}});
     return positions;
@@ -38,8 +38,8 @@ std::vector<vec3> block(int side)
 std::vector<vec3> linear(const std::vector<vec3> &positions)
 {
     std::vector<vec3> field(positions.size());
-    for (std::size_t i = 0; i < field.size(); i++)
-        for (std::size_t k = 0; k < 9; k++)
+    for (std::size_t i = 0; i < field.size(); ++i)
+        for (std::size_t k = 0; k < 9; ++k)
             field[i][k / 3] += slope[k] * positions[i][k % 3];
     return field;
 }
@@ -85,7 +85,7 @@ int main()
 
     bool exact = true;
     for (const mat3 &item : jacobians)
-        for (std::size_t k = 0; k < 9; k++)
+        for (std::size_t k = 0; k < 9; ++k)
             exact = exact && std::fabs(item[k] - slope[k]) < 1e-12;
     std::printf("%s, %s\n", sphg_result_string(result), exact ? "exact" : "not exact");
     return result == SPHG_OK && exact ? 0 : 1;
