@@ -154,15 +154,15 @@ static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n
 {
     static const struct sphgi_periods open;
     struct sphgi_grid grid = {.count = 0};
-    const struct sphgi_lattice lattice =
-        sphgi_lattice_of(n->dimension, n->radius, &open, NULL, n->position_type);
+    const struct sphgi_raster raster =
+        sphgi_raster_of(n->dimension, n->radius, &open, NULL, n->position_type);
     struct sphgi_buffer *own[] = {&grid.cell_start, &grid.rows, &grid.order};
     for (int k = 0; k < 3; ++k)
         *own[k] = context->order_grid[k];
     struct sphgi_buffer *tables = &context->order_grid[3];
     sphg_result result = SPHG_ERROR_MEMORY;
     if (sphgi_reserve(&context->allocator, tables, sphgi_grid_tables(n->source_count, false), 1))
-        result = sphgi_grid_build(context, &grid, &context->allocator, &lattice, n->position_type,
+        result = sphgi_grid_build(context, &grid, &context->allocator, &raster, n->position_type,
                                   n->sources.rows.data, n->source_count, tables->data);
     if (!result)
         memcpy(order, grid.order.data, (size_t)n->source_count * sizeof *order);

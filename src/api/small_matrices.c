@@ -101,7 +101,7 @@ static void write_inverses(struct inversion *run, const struct sphgi_verdict *ve
 {
     const struct batch *b = run->batch;
     const struct sphgi_passes *p = b->passes;
-    const int32_t count = verdict->lanes;
+    const int32_t count = verdict->count;
     if (run->factor != 1)
         p->scale(SPHGI_WIDTH, b->in.count, run->correction, run->factor, NULL, run->correction);
     if (b->out[0].count)
@@ -117,7 +117,7 @@ static void decompose_waiting(struct inversion *run)
 {
     const struct batch *b = run->batch;
     struct waiting *w = &run->waiting;
-    struct sphgi_verdict verdict = {.lanes = w->count,
+    struct sphgi_verdict verdict = {.count = w->count,
                                     .decomposed = (uint32_t)(((uint64_t)1 << w->count) - 1)};
     if (!w->count)
         return;
@@ -155,14 +155,14 @@ static void invert_group(struct inversion *run, int32_t g)
 {
     const struct batch *b = run->batch;
     int32_t items[SPHGI_WIDTH];
-    struct sphgi_verdict verdict = {.lanes = items_of(b, g, items)};
+    struct sphgi_verdict verdict = {.count = items_of(b, g, items)};
     read_moments(run, items);
     b->passes->invert(SPHGI_WIDTH, &b->threshold, run->moments,
                       b->volume.count ? run->volume : NULL, run->correction,
                       b->out[1].count ? run->lambda_min : NULL, &verdict);
     write_inverses(run, &verdict, items);
     uint32_t open = verdict.decomposed;
-    verdict.lanes -= __builtin_popcount(open);
+    verdict.count -= __builtin_popcount(open);
     verdict.decomposed = 0;
     sphgi_tally_verdict(run->tally, &verdict, b->dimension);
     for (; open; open &= open - 1)

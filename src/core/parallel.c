@@ -92,32 +92,32 @@ static void openmp_for(sphg_task *task, void *data, int32_t count, int32_t grain
 #endif
 
 /* A task in the default floating-point environment, on whichever thread it runs. */
-struct guarded {
+struct float_task {
     sphg_task *task;
     void *data;
 };
 
-static void run_guarded(void *data, int32_t begin, int32_t end, int32_t worker)
+static void run_in_default_floats(void *data, int32_t begin, int32_t end, int32_t worker)
 {
-    const struct guarded *guarded = data;
+    const struct float_task *own = data;
     const struct sphgi_floats before = sphgi_floats_enter();
-    guarded->task(guarded->data, begin, end, worker);
+    own->task(own->data, begin, end, worker);
     sphgi_floats_leave(before);
 }
 
 /* Executors run in the host's environment: threads that they create inherit it, and keep it. What a
  * host's executor does to it stays; the flags that OpenMP's arithmetic raises do not. */
-static void run_by_executor(sphg_context *context, struct guarded *guarded, int32_t count,
+static void run_by_executor(sphg_context *context, struct float_task *own, int32_t count,
                             int32_t grain)
 {
     const sphg_config *config = &context->config;
     const struct sphgi_floats before = context->host_floats;
     sphgi_floats_leave(before);
     if (config->parallel_for)
-        config->parallel_for(run_guarded, guarded, count, grain, config->user);
+        config->parallel_for(run_in_default_floats, own, count, grain, config->user);
 #ifdef SPHG_USE_OPENMP
     else
-        openmp_for(run_guarded, guarded, count, grain, context->threads);
+        openmp_for(run_in_default_floats, own, count, grain, context->threads);
 #endif
     context->host_floats = sphgi_floats_enter();
     if (!config->parallel_for)
@@ -127,12 +127,12 @@ static void run_by_executor(sphg_context *context, struct guarded *guarded, int3
 void sphgi_parallel_for(sphg_context *context, sphg_task *task, void *data, int32_t count,
                         int32_t grain)
 {
-    struct guarded guarded = {task, data};
+    struct float_task own = {task, data};
     if (count <= 0)
         return;
     if (context->config.parallel_for ||
         (context->threads > 1 && count > grain && may_begin_region()))
-        run_by_executor(context, &guarded, count, grain);
+        run_by_executor(context, &own, count, grain);
     else
         task(data, 0, count, 0);
 }

@@ -66,7 +66,7 @@ typedef real four_reals
     __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
 
 /* Block and local cell of each row, all axes at once. Products are rounded on their own: the same
- * cell must come out wherever it is computed (lattice.c). False: a row is too far away. */
+ * cell must come out wherever it is computed (raster.c). False: a row is too far away. */
 static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                 int32_t (*block)[4], uint8_t *local)
 {

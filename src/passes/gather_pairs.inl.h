@@ -14,7 +14,7 @@ SPHGI_TEMPLATE void OUT_NAME(put)(OUT *at, enum sphgi_array array, vec v)
 
 /* What is known when a loop is compiled. */
 struct OUT_NAME(how) {
-    bool guarded, periodic, three, scaled, volumes;
+    bool masked, periodic, three, scaled, volumes;
 };
 
 /* LANES of the tile's lanes, from `first` on. */
@@ -46,7 +46,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
             dy = wrapped(dy, w.axis[1]);
             dz = wrapped(dz, w.axis[2]);
         }
-        if (how.guarded) {
+        if (how.masked) {
             inside = less(square_distance(dx, dy, dz), cutoff);
             keep_ids(inside, g->dummy, ids, kept);
             dx = where(inside, dx);
@@ -57,7 +57,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
         if (how.three)
             square += dz * dz;
         vec r = vsqrt(square);
-        if (how.guarded)
+        if (how.masked)
             r = select(inside, r, far);
         if (how.scaled) {
             dx *= unit;
@@ -71,7 +71,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
             OUT_NAME(put)(at, SPHGI_Z, dz);
         OUT_NAME(put)(at, SPHGI_R, r);
         if (how.volumes)
-            OUT_NAME(put)(at, SPHGI_V, how.guarded ? where(inside, row.w) : row.w);
+            OUT_NAME(put)(at, SPHGI_V, how.masked ? where(inside, row.w) : row.w);
     }
 }
 
@@ -81,17 +81,17 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const int3
 {
     for (int32_t first = 0; first < lanes; first += LANES)
         OUT_NAME(gather_lanes)(g, targets, lanes, first, tile, how);
-    if (how.guarded) {
+    if (how.masked) {
         tile->ids = tile->own_ids;
         tile->id_stride = lanes;
     }
 }
 
-/* Every combination; periodic ones are always guarded. */
+/* Every combination; periodic ones are always masked. */
 static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *targets, int32_t lanes,
                              struct sphgi_tile *tile)
 {
-    struct OUT_NAME(how) how = {.guarded = false};
+    struct OUT_NAME(how) how = {.masked = false};
 #define WITH(name, value, call)                                                                    \
     do                                                                                             \
         if (value) {                                                                               \
@@ -105,10 +105,10 @@ static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *target
 #define GATHER  OUT_NAME(gather_as)(g, targets, lanes, tile, how)
 #define SHAPED  WITH(three, g->dimension == 3, WITH(scaled, g->unit != 1, GATHER))
 #define WEIGHED WITH(volumes, g->volumes, SHAPED)
-    if (!g->guarded)
+    if (!g->masked)
         WEIGHED;
     else {
-        how.guarded = true;
+        how.masked = true;
         WITH(periodic, g->periodic, WEIGHED);
     }
 #undef WEIGHED

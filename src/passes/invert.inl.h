@@ -280,7 +280,7 @@ SPHGI_TEMPLATE void invert_as(int32_t width, const struct sphgi_threshold *thres
         for (int k = 0; k < numbers; ++k)
             m[k] = scaled_moment(threshold, moments + k * SPHGI_WIDTH, scale, l);
         const mask passed = certified_inverse(m, eps_high, three, c, &square);
-        const mask counts = first_lanes(verdict->lanes - l);
+        const mask counts = first_lanes(verdict->count - l);
         verdict->decomposed |= bits_of(~passed & counts) << l;
         largest = vmax(where(passed & counts, square), largest);
         vec factor = splat(R(1));
@@ -323,7 +323,7 @@ SPHGI_TEMPLATE vec classic_inverse(const struct sphgi_threshold *threshold, cons
     const int numbers = three ? 6 : 3;
     vec square;
     const mask passed = certified_inverse(m, highest_touched(threshold), three, c, &square);
-    const mask counts = first_lanes(verdict->lanes - l);
+    const mask counts = first_lanes(verdict->count - l);
     const uint32_t open = bits_of(~passed & counts) << l, empty = verdict->empty;
     if (lambda_min)
         store(lambda_min + l, R(1) / vsqrt(square));
@@ -407,7 +407,7 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
         }
         store(z, where(some, z0 * inverse));
     }
-    verdict->empty |= bits_of(~some & first_lanes(verdict->lanes - l)) << l;
+    verdict->empty |= bits_of(~some & first_lanes(verdict->count - l)) << l;
 }
 
 static void invert_classic(int32_t width, const struct sphgi_threshold *threshold, double mu2,

@@ -93,7 +93,7 @@ struct sphgi_lane_lists {
 };
 
 /* How pairs become x_ij. Padding is a pair with row `dummy`: farther away than the cutoff, so that
- * its weight is 0, and with fields of 0. Guarded ones test each pair; their dummy may be NaN. */
+ * its weight is 0, and with fields of 0. Masked ones test each pair; their dummy may be NaN. */
 struct sphgi_gather {
     const void *rows;        /* x y z V of the sources */
     const void *target_rows; /* x y z . */
@@ -101,7 +101,7 @@ struct sphgi_gather {
     double cutoff;           /* H, for supersets */
     double period[3];        /* 0: open */
     bool periodic, superset;
-    bool guarded;  /* periodic, superset, or no dummy is far enough */
+    bool masked;   /* periodic, superset, or no dummy is far enough */
     bool volumes;  /* V_j differ: gather the 4th number of the rows */
     bool radii;    /* cutoff and unit are those of the targets: the 4th number of theirs */
     bool all;      /* ... but everybody in the list counts */
@@ -194,7 +194,7 @@ struct sphgi_scales {
 
 /* What became of the matrices of a group. A bit per lane. */
 struct sphgi_verdict {
-    int32_t lanes;         /* in: so many count */
+    int32_t count;         /* in: so many count */
     uint32_t decomposed;   /* the others have full rank */
     uint32_t empty;        /* no neighbour, or none that counts */
     double largest_square; /* of |A^-1|_F over the lanes that were not decomposed */
@@ -204,7 +204,7 @@ struct sphgi_verdict {
     double lambda_min[SPHGI_WIDTH]; /* of the decomposed lanes */
 };
 
-/* How the cells of an open lattice are numbered. Passes cut those from - SPHGI_CUT_MOST up to, and
+/* How the cells of an open raster are numbered. Passes cut those from - SPHGI_CUT_MOST up to, and
  * without, SPHGI_CUT_MOST. */
 #define SPHGI_CUT_MOST (1 << 29)
 struct sphgi_cutting {
@@ -264,8 +264,8 @@ struct sphgi_passes {
     int64_t (*first_not_finite)(const struct sphgi_columns *columns, int64_t begin, int64_t end);
     /* Rows [begin, begin + count) of positions with the volumes, times factor, written into the 4th
      * number. [0]: volumes are f32, [1]: f64. False: a volume is negative or not finite. */
-    bool (*stage[2])(const void *positions, const struct sphgi_columns *volume, double factor,
-                     const int32_t *order, int64_t begin, int64_t count, void *rows);
+    bool (*put_volumes[2])(const void *positions, const struct sphgi_columns *volume, double factor,
+                           const int32_t *order, int64_t begin, int64_t count, void *rows);
     double (*largest_move)(const struct sphgi_periods *periods, const void *then, const void *now,
                            int64_t begin, int64_t end);
 
@@ -290,7 +290,7 @@ struct sphgi_passes {
                          int32_t count, bool pack);
 
     /* Pairs behind tile->ids into the arrays; targets: row number of each lane's; lanes: of the
-     * tile. [0]: f32 arrays, [1]: f64. Guarded: what is no pair gets the dummy's id. */
+     * tile. [0]: f32 arrays, [1]: f64. Masked: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,
                       struct sphgi_tile *tile);
     /* The same for pairs that need no guard, and the factors s_ij instead of the distances. Rows of

@@ -58,10 +58,10 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .cut = cut,
     .first_not_finite = first_not_finite,
 #if REAL_IS_F64
-    .stage = {stage_f32, stage_f64},
+    .put_volumes = {put_volumes_f32, put_volumes_f64},
     .gather = {gather_f32, gather_f64},
 #else
-    .stage = {stage_f32},
+    .put_volumes = {put_volumes_f32},
     .gather = {gather_f32},
 #endif
     .largest_move = largest_move,

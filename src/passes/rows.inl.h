@@ -69,9 +69,9 @@ static int64_t first_not_finite(const struct sphgi_columns *columns, int64_t beg
 }
 
 /* The volume columns hold f32 or f64 fields beside the positions' own type. */
-SPHGI_TEMPLATE bool stage_as(const void *positions, const struct sphgi_columns *volume,
-                             double factor, const int32_t *order, int64_t begin, int64_t count,
-                             void *rows, bool volume_f64)
+SPHGI_TEMPLATE bool put_volumes_as(const void *positions, const struct sphgi_columns *volume,
+                                   double factor, const int32_t *order, int64_t begin,
+                                   int64_t count, void *rows, bool volume_f64)
 {
     const real *from = (const real *)positions + SPHGI_ROW * begin;
     real *to = rows;
@@ -93,17 +93,19 @@ SPHGI_TEMPLATE bool stage_as(const void *positions, const struct sphgi_columns *
     return valid;
 }
 
-static bool stage_f32(const void *positions, const struct sphgi_columns *volume, double factor,
-                      const int32_t *order, int64_t begin, int64_t count, void *rows)
+static bool put_volumes_f32(const void *positions, const struct sphgi_columns *volume,
+                            double factor, const int32_t *order, int64_t begin, int64_t count,
+                            void *rows)
 {
-    return stage_as(positions, volume, factor, order, begin, count, rows, false);
+    return put_volumes_as(positions, volume, factor, order, begin, count, rows, false);
 }
 
 #if REAL_IS_F64
-static bool stage_f64(const void *positions, const struct sphgi_columns *volume, double factor,
-                      const int32_t *order, int64_t begin, int64_t count, void *rows)
+static bool put_volumes_f64(const void *positions, const struct sphgi_columns *volume,
+                            double factor, const int32_t *order, int64_t begin, int64_t count,
+                            void *rows)
 {
-    return stage_as(positions, volume, factor, order, begin, count, rows, true);
+    return put_volumes_as(positions, volume, factor, order, begin, count, rows, true);
 }
 #endif
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "make.h"
-#include "making.h"
+#include "builder.h"
 #include "core/digits.h"
 #include "search/places.h"
 #include "core/view.h"
@@ -17,11 +17,11 @@ static void take_radii_of_set(struct sphgi_plan *plan, const sphg_neighbors *n)
     plan->least = first || n->least < plan->least ? n->least : plan->least;
 }
 
-static sphg_result check_set(struct sphgi_making *making, int32_t s)
+static sphg_result check_set(struct sphgi_plan_builder *builder, int32_t s)
 {
-    const char *f = making->checker.function;
-    struct sphgi_plan *plan = making->plan;
-    const sphg_neighbors *n = making->request->sources[s].neighbors;
+    const char *f = builder->checker.function;
+    struct sphgi_plan *plan = builder->plan;
+    const sphg_neighbors *n = builder->request->sources[s].neighbors;
     if (!n)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].neighbors is NULL", f, (int)s);
     if (!n->kind)
@@ -41,7 +41,7 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
         SPHGI_REFUSE(SPHG_ERROR_SIZE,
                      "%s: sources[%d].neighbors have %d targets, sources[0] has %d", f, (int)s,
                      (int)n->target_count, (int)plan->target_count);
-    if (n->radii != making->request->sources[0].neighbors->radii)
+    if (n->radii != builder->request->sources[0].neighbors->radii)
         SPHGI_REFUSE(SPHG_ERROR_SIZE, "%s: sources[%d].neighbors have %s, unlike sources[0]", f,
                      (int)s, n->radii ? "a radius per particle" : "one radius for all");
     if (n->radii)
@@ -53,72 +53,74 @@ static sphg_result check_set(struct sphgi_making *making, int32_t s)
     if (n->part_of && plan->own_set < 0)
         plan->own_set = s;
     plan->sets[s].neighbors = n;
-    plan->sets[s].same_volumes = making->request->sources[s].same_volumes != 0;
+    plan->sets[s].same_volumes = builder->request->sources[s].same_volumes != 0;
     return SPHG_OK;
 }
 
 /* Sums of all sets are added target by target: each must mean the same ones. In other types, or
  * with other periods, the same place may be another number. */
-static sphg_result check_same_targets(struct sphgi_making *making, int32_t s)
+static sphg_result check_same_targets(struct sphgi_plan_builder *builder, int32_t s)
 {
-    const sphg_neighbors *a = making->plan->sets[0].neighbors, *b = making->plan->sets[s].neighbors;
+    const sphg_neighbors *a = builder->plan->sets[0].neighbors,
+                         *b = builder->plan->sets[s].neighbors;
     if (a->position_type != b->position_type || memcmp(a->period, b->period, sizeof a->period) != 0)
         return SPHG_OK;
-    const int32_t target = sphgi_first_elsewhere(making->checker.context, a, b);
+    const int32_t target = sphgi_first_elsewhere(builder->checker.context, a, b);
     if (target >= 0)
         SPHGI_REFUSE(SPHG_ERROR_SIZE,
                      "%s: target %d of sources[%d].neighbors stands elsewhere than in sources[0]",
-                     making->checker.function, (int)target, (int)s);
+                     builder->checker.function, (int)target, (int)s);
     return SPHG_OK;
 }
 
-static sphg_result take_volume(struct sphgi_making *making, int32_t s)
+static sphg_result take_volume(struct sphgi_plan_builder *builder, int32_t s)
 {
-    struct sphgi_set_plan *set = &making->plan->sets[s];
-    return sphgi_take_input(making, &making->request->sources[s].volume,
-                            sphgi_name_view(making, "sources[%d].volume", s, 0), SPHG_SCALAR, 1,
+    struct sphgi_set_plan *set = &builder->plan->sets[s];
+    return sphgi_take_input(builder, &builder->request->sources[s].volume,
+                            sphgi_name_view(builder, "sources[%d].volume", s, 0), SPHG_SCALAR, 1,
                             set->neighbors->source_count, &set->volume);
 }
 
 /* ---- Targets -------------------------------------------------------------------------------- */
 
-static sphg_result take_targets(struct sphgi_making *making)
+static sphg_result take_targets(struct sphgi_plan_builder *builder)
 {
-    struct sphgi_plan *plan = making->plan;
-    const sphg_request *request = making->request;
+    struct sphgi_plan *plan = builder->plan;
+    const sphg_request *request = builder->request;
     const sphg_sources *own = plan->own_set < 0 ? NULL : &request->sources[plan->own_set];
     const int32_t width = sphgi_plan_width(plan);
     sphg_result result = sphgi_take_target_side(
-        making, &request->target_volume, own ? &own->volume : NULL, "target_volume",
+        builder, &request->target_volume, own ? &own->volume : NULL, "target_volume",
         "sources.volume", SPHG_SCALAR, 1, &plan->target_volume);
     if (!result)
-        result = sphgi_take_target_side(making, &request->target_density,
+        result = sphgi_take_target_side(builder, &request->target_density,
                                         own ? &own->density : NULL, "target_density",
                                         "sources.density", SPHG_SCALAR, 1, &plan->target_density);
     if (!result && width)
-        result = sphgi_take_target_side(
-            making, &request->target_correction, own ? &own->correction : NULL, "target_correction",
-            "sources.correction", (sphg_shape)0, width, &plan->target_correction);
+        result = sphgi_take_target_side(builder, &request->target_correction,
+                                        own ? &own->correction : NULL, "target_correction",
+                                        "sources.correction", (sphg_shape)0, width,
+                                        &plan->target_correction);
     if (own)
         plan->own_volume = plan->sets[plan->own_set].volume;
     return result;
 }
 
-static sphg_result take_wanted(struct sphgi_making *making)
+static sphg_result take_wanted(struct sphgi_plan_builder *builder)
 {
-    struct sphgi_plan *plan = making->plan;
-    const sphg_request *request = making->request;
+    struct sphgi_plan *plan = builder->plan;
+    const sphg_request *request = builder->request;
     const int32_t width = sphgi_plan_width(plan);
-    sphg_result result = sphgi_take_output(making, &request->correction, "correction", plan->type,
+    sphg_result result = sphgi_take_output(builder, &request->correction, "correction", plan->type,
                                            (sphg_shape)0, width, &plan->correction);
     if (!result)
-        result =
-            sphgi_take_output(making, &request->rank, "rank", SPHG_U8, SPHG_SCALAR, 1, &plan->rank);
+        result = sphgi_take_output(builder, &request->rank, "rank", SPHG_U8, SPHG_SCALAR, 1,
+                                   &plan->rank);
     if (!result)
-        result = sphgi_take_output(making, &request->lambda_min, "lambda_min", plan->type,
+        result = sphgi_take_output(builder, &request->lambda_min, "lambda_min", plan->type,
                                    SPHG_SCALAR, 1, &plan->lambda_min);
     if (!result)
-        result = sphgi_take_borrows(making);
+        result = sphgi_take_borrows(builder);
     plan->stats = request->stats;
     if (result)
         return result;
@@ -126,12 +128,12 @@ static sphg_result take_wanted(struct sphgi_making *making)
                         plan->lambda_min.count || plan->borrows.count || plan->stats;
     if (wanted && !width)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: PLAIN has no corrections to report",
-                     making->checker.function);
+                     builder->checker.function);
     if (wanted && plan->target_correction.count)
         SPHGI_REFUSE(
             SPHG_ERROR_ARGUMENT,
             "%s: corrections are given as a table and wanted as a result; leave one absent",
-            making->checker.function);
+            builder->checker.function);
     plan->computes = wanted;
     return SPHG_OK;
 }
@@ -139,10 +141,10 @@ static sphg_result take_wanted(struct sphgi_making *making)
 /* ---- What must be there --------------------------------------------------------------------- */
 
 /* Volumes and densities that the arithmetic will read must be there. */
-static sphg_result check_needed(struct sphgi_making *making)
+static sphg_result check_needed(struct sphgi_plan_builder *builder)
 {
-    const char *f = making->checker.function;
-    const struct sphgi_plan *plan = making->plan;
+    const char *f = builder->checker.function;
+    const struct sphgi_plan *plan = builder->plan;
     const sphg_method method = plan->scheme.method;
     const bool transposes = plan->adjoint || plan->transposes[1];
     const bool in_weight = method != SPHG_MLS && method != SPHG_CMLS;
@@ -154,7 +156,7 @@ static sphg_result check_needed(struct sphgi_making *making)
             SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].volume is absent", f, (int)s);
     if (!plan->target_count)
         return SPHG_OK; /* nobody's volume and density are read */
-    if (!anything && making->purpose == SPHGI_FOR_RESULTS)
+    if (!anything && builder->purpose == SPHGI_FOR_RESULTS)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: nothing is asked for: no field has a result, and correction, rank, "
                      "lambda_min and stats are absent",
@@ -171,17 +173,17 @@ static sphg_result check_needed(struct sphgi_making *making)
 
 /* ---- Memory of the plan --------------------------------------------------------------------- */
 
-static bool make_room(struct sphgi_making *making)
+static bool make_room(struct sphgi_plan_builder *builder)
 {
-    sphg_context *context = making->checker.context;
-    const sphg_request *request = making->request;
+    sphg_context *context = builder->checker.context;
+    const sphg_request *request = builder->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
     size_t each = 0, more = 0; /* views of each set */
     for (int32_t k = 0; k < request->field_count; ++k) {
         each += (size_t)sphgi_streams_of(&request->fields[k]);
         more += sphgi_views_of(&request->fields[k]);
     }
-    const size_t corrections = making->plan->scheme.order == 2 ? 6 : 4;
+    const size_t corrections = builder->plan->scheme.order == 2 ? 6 : 4;
     const size_t streams = sets * (each + corrections + 1);
     const size_t views = sets * (fields + more + 3) + 15 * fields + 8;
     const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
@@ -197,18 +199,18 @@ static bool make_room(struct sphgi_making *making)
         return false;
     char *memory = context->plan.data;
     memset(memory, 0, total);
-    making->plan->sets = (void *)(memory + at[0]);
-    making->plan->fields = (void *)(memory + at[1]);
-    making->streams = (void *)(memory + at[2]);
-    making->extents = (void *)(memory + at[3]);
-    making->names = (void *)(memory + at[4]);
+    builder->plan->sets = (void *)(memory + at[0]);
+    builder->plan->fields = (void *)(memory + at[1]);
+    builder->streams = (void *)(memory + at[2]);
+    builder->extents = (void *)(memory + at[3]);
+    builder->names = (void *)(memory + at[4]);
     return true;
 }
 
-static sphg_result check_counts(struct sphgi_making *making)
+static sphg_result check_counts(struct sphgi_plan_builder *builder)
 {
-    const char *f = making->checker.function;
-    const sphg_request *request = making->request;
+    const char *f = builder->checker.function;
+    const sphg_request *request = builder->request;
     if (request->set_count < 1 || request->set_count > 4096)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: set_count is %d, must be 1 to 4096", f,
                      (int)request->set_count);
@@ -217,61 +219,61 @@ static sphg_result check_counts(struct sphgi_making *making)
                      (int)request->field_count);
     if (request->fields && !request->field_count)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields is set, but field_count is 0", f);
-    const sphg_result missing = sphgi_check_pointer(making->checker, request->sources, "sources");
+    const sphg_result missing = sphgi_check_pointer(builder->checker, request->sources, "sources");
     if (missing || !request->field_count)
         return missing;
-    return sphgi_check_pointer(making->checker, request->fields, "fields");
+    return sphgi_check_pointer(builder->checker, request->fields, "fields");
 }
 
-static sphg_result check_radii(struct sphgi_making *making)
+static sphg_result check_radii(struct sphgi_plan_builder *builder)
 {
-    const struct sphgi_plan *plan = making->plan;
+    const struct sphgi_plan *plan = builder->plan;
     const sphg_neighbors *first = plan->sets[0].neighbors;
     struct sphgi_scheme smallest = plan->scheme;
     smallest.radius = plan->least;
-    const sphg_result result = sphgi_check_range(making->checker, &plan->scheme, plan->type);
+    const sphg_result result = sphgi_check_range(builder->checker, &plan->scheme, plan->type);
     if (result || !plan->graded)
         return result;
     if (plan->quadratic)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: scheme.order is 2, but the neighbours have a radius per particle",
-                     making->checker.function);
-    if (making->purpose != SPHGI_FOR_RESULTS && first->mutual && first->skin > 0)
+                     builder->checker.function);
+    if (builder->purpose != SPHGI_FOR_RESULTS && first->mutual && first->skin > 0)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: pairs of neighbours that are mutual and have a skin",
-                     making->checker.function);
-    return sphgi_check_range(making->checker, &smallest, plan->type);
+                     builder->checker.function);
+    return sphgi_check_range(builder->checker, &smallest, plan->type);
 }
 
-static sphg_result take_everything(struct sphgi_making *making)
+static sphg_result take_everything(struct sphgi_plan_builder *builder)
 {
-    struct sphgi_plan *plan = making->plan;
+    struct sphgi_plan *plan = builder->plan;
     sphg_result result = SPHG_OK;
     for (int32_t s = 0; s < plan->set_count && !result; ++s)
-        result = check_set(making, s);
-    for (int32_t s = 1; s < plan->set_count && !result && !making->checker.context->config.trusted;
+        result = check_set(builder, s);
+    for (int32_t s = 1; s < plan->set_count && !result && !builder->checker.context->config.trusted;
          ++s)
-        result = check_same_targets(making, s);
+        result = check_same_targets(builder, s);
     if (!result)
-        result = check_radii(making);
+        result = check_radii(builder);
     for (int32_t s = 0; s < plan->set_count && !result; ++s)
-        result = take_volume(making, s);
+        result = take_volume(builder, s);
     if (!result)
-        result = take_targets(making);
+        result = take_targets(builder);
     if (!result)
-        result = take_wanted(making);
+        result = take_wanted(builder);
     for (int32_t k = 0; k < plan->field_count && !result; ++k)
-        result = sphgi_take_field(making, k);
+        result = sphgi_take_field(builder, k);
     if (result)
         return result;
-    sphgi_plan_decide(plan, making->purpose);
-    result = check_needed(making);
+    sphgi_plan_decide(plan, builder->purpose);
+    result = check_needed(builder);
     if (!result)
-        result = sphgi_take_streams(making);
+        result = sphgi_take_streams(builder);
     if (!result)
-        result = sphgi_check_subset(making->checker, making->request->subset, plan->target_count);
+        result = sphgi_check_subset(builder->checker, builder->request->subset, plan->target_count);
     if (!result)
-        result = sphgi_check_overlap(making->checker, making->extents, making->extent_count);
+        result = sphgi_check_overlap(builder->checker, builder->extents, builder->extent_count);
     return result;
 }
 
@@ -285,7 +287,7 @@ sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *sch
                             const sphg_request *request, enum sphgi_purpose purpose,
                             struct sphgi_plan *plan)
 {
-    struct sphgi_making making = {
+    struct sphgi_plan_builder builder = {
         .checker = checker, .request = request, .purpose = purpose, .plan = plan};
     *plan = (struct sphgi_plan){.own_set = -1};
     sphg_result result = are_radii_given(request)
@@ -294,10 +296,10 @@ sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *sch
     if (!result)
         result = sphgi_check_pointer(checker, request, "request");
     if (!result)
-        result = check_counts(&making);
+        result = check_counts(&builder);
     if (result)
         return result;
-    if (!make_room(&making))
+    if (!make_room(&builder))
         return sphgi_fail_memory(checker.context, checker.function);
     plan->dimension = plan->scheme.dimension;
     plan->classic = sphgi_is_classic(plan->scheme.method);
@@ -305,5 +307,5 @@ sphg_result sphgi_plan_make(struct sphgi_checker checker, const sphg_scheme *sch
     plan->quadratic = plan->scheme.order == 2;
     plan->set_count = request->set_count;
     plan->field_count = request->field_count;
-    return take_everything(&making);
+    return take_everything(&builder);
 }

@@ -24,10 +24,10 @@ struct sphgi_field_plan {
     sphg_shape shape;
     sphg_form form;
     bool accumulate, differentiates; /* gradient, divergence, curl or square is wanted */
-    bool forward;                    /* summed over G_ij; else over G_ji, too */
+    bool one_sided;                  /* summed over G_ij; else over G_ji, too */
     bool antisymmetric;              /* PLAIN, adjoint: V_i sum (A_j + A_i) G_ij */
     bool diffuses;                   /* the Laplacian of the adjoint form is wanted */
-    bool contracts;                  /* the divergence is summed as such */
+    bool sums_divergence;            /* the divergence is summed as such */
     bool sums_gradient;              /* what gradient and curl are made of is summed */
     bool mirrors;                    /* at any set */
     enum sphgi_fold fold;            /* of a divergence, or a scalar's gradient */
@@ -36,7 +36,7 @@ struct sphgi_field_plan {
     int32_t row, rows;               /* ... as the passes read it; rows 0: they do not ... */
     int32_t folded_row, folded_rows; /* ... and b_j */
     int32_t sum;                     /* first of components * d sums of A times a gradient */
-    int32_t divergence_sum;          /* first of 1 (vector) or d (tensor) sums, if contracts */
+    int32_t divergence_sum;        /* first of 1 (vector) or d (tensor) sums, if sums_divergence */
     int32_t square_sum;            /* of A G G^T its trace, or its triangle where C_i is to come */
     int32_t value_sum;             /* first of components sums of A Phi, -1: not wanted */
     int32_t second_sum;            /* order 2: first of components times pairs of axes */

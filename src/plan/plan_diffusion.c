@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Diffusion, the Laplacian of the adjoint form: what is refused, and the coefficients of both
  * sides. */
-#include "making.h"
+#include "builder.h"
 #include "core/view.h"
 
-sphg_result sphgi_check_diffusion(struct sphgi_making *making, int32_t k)
+sphg_result sphgi_check_diffusion(struct sphgi_plan_builder *builder, int32_t k)
 {
-    const char *f = making->checker.function;
-    const struct sphgi_plan *plan = making->plan;
-    const sphg_field *field = &making->request->fields[k];
+    const char *f = builder->checker.function;
+    const struct sphgi_plan *plan = builder->plan;
+    const sphg_field *field = &builder->request->fields[k];
     const bool diffuses = field->form == SPHG_ADJOINT && !sphgi_is_absent(&field->laplacian);
     const bool at_targets = !sphgi_is_absent(&field->coefficient_at_targets);
     if (diffuses && plan->quadratic)
@@ -33,10 +33,10 @@ sphg_result sphgi_check_diffusion(struct sphgi_making *making, int32_t k)
     return SPHG_OK;
 }
 
-sphg_result sphgi_take_coefficient_at_target(struct sphgi_making *making, int32_t k)
+sphg_result sphgi_take_coefficient_at_target(struct sphgi_plan_builder *builder, int32_t k)
 {
-    struct sphgi_plan *plan = making->plan;
-    const sphg_field *given = &making->request->fields[k];
+    struct sphgi_plan *plan = builder->plan;
+    const sphg_field *given = &builder->request->fields[k];
     struct sphgi_field_plan *field = &plan->fields[k];
     const sphg_view *own = &given->coefficient_at_targets;
     const sphg_view *of_set =
@@ -50,37 +50,38 @@ sphg_result sphgi_take_coefficient_at_target(struct sphgi_making *making, int32_
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: fields[%d].coefficient_at_targets is absent, and the targets are part of "
                      "no source set",
-                     making->checker.function, (int)k);
+                     builder->checker.function, (int)k);
     const bool from_set = sphgi_is_absent(own) && of_set;
     const char *name = sphgi_name_view(
-        making, from_set ? "fields[%d].coefficient[%d]" : "fields[%d].coefficient_at_targets", k,
+        builder, from_set ? "fields[%d].coefficient[%d]" : "fields[%d].coefficient_at_targets", k,
         plan->own_set);
-    return sphgi_take_target_side(making, own, of_set, name, name, SPHG_SCALAR, 1,
+    return sphgi_take_target_side(builder, own, of_set, name, name, SPHG_SCALAR, 1,
                                   &field->coefficient);
 }
 
 /* A set that is mirrored exchanges nothing: its coefficients are not read, unless the targets have
  * theirs there. */
-sphg_result sphgi_take_coefficient_at_sources(struct sphgi_making *making, int32_t s, int32_t k)
+sphg_result sphgi_take_coefficient_at_sources(struct sphgi_plan_builder *builder, int32_t s,
+                                              int32_t k)
 {
-    const struct sphgi_plan *plan = making->plan;
+    const struct sphgi_plan *plan = builder->plan;
     const struct sphgi_field_plan *field = &plan->fields[k];
     if (field->coefficient_stream < 0)
         return SPHG_OK;
-    const sphg_view *view = &making->request->fields[k].coefficient[s];
+    const sphg_view *view = &builder->request->fields[k].coefficient[s];
     const int32_t count = plan->sets[s].neighbors->source_count;
     const struct sphgi_stream *values =
-        making->streams + (ptrdiff_t)s * plan->stream_count + field->stream;
+        builder->streams + (ptrdiff_t)s * plan->stream_count + field->stream;
     struct sphgi_columns columns = {.count = 0};
     const bool of_targets = s == plan->own_set && !field->coefficient.count;
     if (sphgi_is_absent(view) && count > 0 && (!values->mirrored || of_targets))
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: fields[%d].coefficient[%d] is absent; give one value for all, or leave "
                      "coefficient NULL for 1 everywhere",
-                     making->checker.function, (int)k, (int)s);
-    const sphg_result result =
-        sphgi_take_input(making, view, sphgi_name_view(making, "fields[%d].coefficient[%d]", k, s),
-                         SPHG_SCALAR, 1, count, &columns);
-    sphgi_add_streams(making, s, field->coefficient_stream, &columns, 1, 1);
+                     builder->checker.function, (int)k, (int)s);
+    const sphg_result result = sphgi_take_input(
+        builder, view, sphgi_name_view(builder, "fields[%d].coefficient[%d]", k, s), SPHG_SCALAR, 1,
+        count, &columns);
+    sphgi_add_streams(builder, s, field->coefficient_stream, &columns, 1, 1);
     return result;
 }

@@ -27,12 +27,12 @@ static void decide_sums(struct sphgi_plan *plan)
         field->sum = plan->sums;
         plan->sums += field->sums_gradient ? field->components * d : 0;
         field->second_sum = plan->sums;
-        if (plan->quadratic && field->sums_gradient && field->forward)
+        if (plan->quadratic && field->sums_gradient && field->one_sided)
             plan->sums += field->components * d * (d + 1) / 2;
         field->lent_sum = plan->sums;
         plan->sums += field->lent_rows ? 1 + field->components * d * (d + 1) / 2 : 0;
         field->divergence_sum = plan->sums;
-        plan->sums += field->contracts ? field->divergence.count : 0;
+        plan->sums += field->sums_divergence ? field->divergence.count : 0;
         field->square_sum = plan->sums;
         plan->sums += field->square.count ? sphgi_square_sums(plan) : 0;
         field->value_sum = field->value.count ? plan->sums : -1;
@@ -50,12 +50,12 @@ static void decide_field(struct sphgi_field_plan *field, sphg_method method, boo
 {
     const bool plain = method == SPHG_PLAIN;
     field->antisymmetric = plain && field->form == SPHG_ADJOINT && !graded && !field->diffuses;
-    field->forward = field->form <= SPHG_DIRECT || field->antisymmetric;
-    field->contracts = field->divergence.count && (plain || !field->forward);
+    field->one_sided = field->form <= SPHG_DIRECT || field->antisymmetric;
+    field->sums_divergence = field->divergence.count && (plain || !field->one_sided);
     field->sums_gradient = field->gradient.count || field->curl.count || field->hessian[0].count ||
                            field->contraction.count ||
                            (field->laplacian.count && !field->diffuses) || field->curvature.count ||
-                           (field->divergence.count && !field->contracts);
+                           (field->divergence.count && !field->sums_divergence);
 }
 
 /* Classic gradients and those of order 2 hold products of offsets, which do not come apart; a
@@ -64,13 +64,13 @@ static void decide_field(struct sphgi_field_plan *field, sphg_method method, boo
 static enum sphgi_fold fold_of(const struct sphgi_plan *plan, const struct sphgi_field_plan *field)
 {
     const bool plain = plan->scheme.method == SPHG_PLAIN;
-    if (!field->differentiates || field->forward || field->mirrors || field->diffuses ||
+    if (!field->differentiates || field->one_sided || field->mirrors || field->diffuses ||
         plan->classic || plan->quadratic)
         return SPHGI_NOT_FOLDED;
     if (field->shape == SPHG_SCALAR)
         return plain ? SPHGI_FOLDED_NUMBER : SPHGI_FOLDED_SYMMETRIC;
     if (field->shape == SPHG_VECTOR)
-        return field->contracts ? SPHGI_FOLDED_VECTOR : SPHGI_NOT_FOLDED;
+        return field->sums_divergence ? SPHGI_FOLDED_VECTOR : SPHGI_NOT_FOLDED;
     return plain && field->shape == SPHG_SYM_TENSOR ? SPHGI_FOLDED_SYMMETRIC : SPHGI_FOLDED_MATRIX;
 }
 
@@ -105,7 +105,7 @@ static void decide_rows_of(struct sphgi_plan *plan, int32_t k)
     field->row = plan->row_count;
     field->rows = field->streams;
     plan->row_count += field->rows;
-    if (field->differentiates && !field->forward)
+    if (field->differentiates && !field->one_sided)
         plan->sums_transposed[field->form == SPHG_SYMMETRIC] = true;
 }
 
@@ -148,7 +148,8 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
         plan->values_by_volume |= field->value.count && field->volume_stream < 0;
         plan->values_by_own |= field->value.count && field->volume_stream >= 0;
         plan->adjoint |= (field->differentiates || field->diffuses) && field->form == SPHG_ADJOINT;
-        plan->transposes[field->form == SPHG_SYMMETRIC] |= field->differentiates && !field->forward;
+        plan->transposes[field->form == SPHG_SYMMETRIC] |=
+            field->differentiates && !field->one_sided;
         needs_correction |=
             field->differentiates || field->diffuses || (plan->classic && field->value.count);
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What fields have beside their derivatives: sums of values, with volumes of their own and divided
  * by those of the weights, and gradients contracted with a tensor of each target. */
-#include "making.h"
+#include "builder.h"
 #include "core/view.h"
 
 int32_t sphgi_streams_of(const sphg_field *field)
@@ -17,11 +17,11 @@ size_t sphgi_views_of(const sphg_field *field)
            (size_t)(field->value_volume != NULL);
 }
 
-sphg_result sphgi_check_value(struct sphgi_making *making, int32_t k)
+sphg_result sphgi_check_value(struct sphgi_plan_builder *builder, int32_t k)
 {
-    const char *f = making->checker.function;
-    const sphg_field *field = &making->request->fields[k];
-    const bool wanted = !sphgi_is_absent(&field->value), classic = making->plan->classic;
+    const char *f = builder->checker.function;
+    const sphg_field *field = &builder->request->fields[k];
+    const bool wanted = !sphgi_is_absent(&field->value), classic = builder->plan->classic;
     const char *name = field->shepard ? "shepard" : "value_volume";
     if (wanted && field->form >= SPHG_SYMMETRIC)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
@@ -40,10 +40,10 @@ sphg_result sphgi_check_value(struct sphgi_making *making, int32_t k)
 }
 
 /* Of the targets as sources: what they add to their own value. */
-sphg_result sphgi_take_value_volume(struct sphgi_making *making, int32_t k)
+sphg_result sphgi_take_value_volume(struct sphgi_plan_builder *builder, int32_t k)
 {
-    struct sphgi_plan *plan = making->plan;
-    const sphg_field *given = &making->request->fields[k];
+    struct sphgi_plan *plan = builder->plan;
+    const sphg_field *given = &builder->request->fields[k];
     struct sphgi_field_plan *field = &plan->fields[k];
     field->normalises = given->shepard != 0;
     field->own_volume = plan->own_volume;
@@ -54,39 +54,39 @@ sphg_result sphgi_take_value_volume(struct sphgi_making *making, int32_t k)
     if (plan->own_set < 0)
         return SPHG_OK;
     return sphgi_take_input(
-        making, &given->value_volume[plan->own_set],
-        sphgi_name_view(making, "fields[%d].value_volume[%d]", k, plan->own_set), SPHG_SCALAR, 1,
+        builder, &given->value_volume[plan->own_set],
+        sphgi_name_view(builder, "fields[%d].value_volume[%d]", k, plan->own_set), SPHG_SCALAR, 1,
         plan->target_count, &field->own_volume);
 }
 
-sphg_result sphgi_take_value_volume_of_set(struct sphgi_making *making, int32_t s, int32_t k)
+sphg_result sphgi_take_value_volume_of_set(struct sphgi_plan_builder *builder, int32_t s, int32_t k)
 {
-    const struct sphgi_plan *plan = making->plan;
+    const struct sphgi_plan *plan = builder->plan;
     const struct sphgi_field_plan *field = &plan->fields[k];
     if (field->volume_stream < 0)
         return SPHG_OK;
-    const sphg_view *view = &making->request->fields[k].value_volume[s];
+    const sphg_view *view = &builder->request->fields[k].value_volume[s];
     const int32_t count = plan->sets[s].neighbors->source_count;
     struct sphgi_columns columns = {.count = 0};
     if (sphgi_is_absent(view) && count > 0)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields[%d].value_volume[%d] is absent",
-                     making->checker.function, (int)k, (int)s);
-    const sphg_result result =
-        sphgi_take_input(making, view, sphgi_name_view(making, "fields[%d].value_volume[%d]", k, s),
-                         SPHG_SCALAR, 1, count, &columns);
-    sphgi_add_streams(making, s, field->volume_stream, &columns, 1, 1);
+                     builder->checker.function, (int)k, (int)s);
+    const sphg_result result = sphgi_take_input(
+        builder, view, sphgi_name_view(builder, "fields[%d].value_volume[%d]", k, s), SPHG_SCALAR,
+        1, count, &columns);
+    sphgi_add_streams(builder, s, field->volume_stream, &columns, 1, 1);
     return result;
 }
 
-sphg_result sphgi_check_contraction(struct sphgi_making *making, int32_t k)
+sphg_result sphgi_check_contraction(struct sphgi_plan_builder *builder, int32_t k)
 {
-    const char *f = making->checker.function;
-    const sphg_field *field = &making->request->fields[k];
+    const char *f = builder->checker.function;
+    const sphg_field *field = &builder->request->fields[k];
     const bool wanted = !sphgi_is_absent(&field->contraction);
     if (wanted && field->shape != SPHG_VECTOR)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: fields[%d].contraction of what is no vector", f,
                      (int)k);
-    if (wanted && sphgi_is_absent(&field->tensor) && making->plan->target_count > 0)
+    if (wanted && sphgi_is_absent(&field->tensor) && builder->plan->target_count > 0)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: fields[%d].contraction is wanted, but tensor is absent", f, (int)k);
     if (!wanted && !sphgi_is_absent(&field->tensor))
@@ -95,16 +95,16 @@ sphg_result sphgi_check_contraction(struct sphgi_making *making, int32_t k)
     return SPHG_OK;
 }
 
-sphg_result sphgi_take_contraction(struct sphgi_making *making, int32_t k)
+sphg_result sphgi_take_contraction(struct sphgi_plan_builder *builder, int32_t k)
 {
-    struct sphgi_plan *plan = making->plan;
-    const sphg_field *given = &making->request->fields[k];
-    const sphg_result result =
-        sphgi_take_input(making, &given->tensor, sphgi_name_view(making, "fields[%d].tensor", k, 0),
-                         SPHG_TENSOR, 0, plan->target_count, &plan->fields[k].tensor);
+    struct sphgi_plan *plan = builder->plan;
+    const sphg_field *given = &builder->request->fields[k];
+    const sphg_result result = sphgi_take_input(
+        builder, &given->tensor, sphgi_name_view(builder, "fields[%d].tensor", k, 0), SPHG_TENSOR,
+        0, plan->target_count, &plan->fields[k].tensor);
     if (result)
         return result;
-    return sphgi_take_output(making, &given->contraction,
-                             sphgi_name_view(making, "fields[%d].contraction", k, 0), plan->type,
+    return sphgi_take_output(builder, &given->contraction,
+                             sphgi_name_view(builder, "fields[%d].contraction", k, 0), plan->type,
                              SPHG_SCALAR, 0, &plan->fields[k].contraction);
 }

@@ -215,20 +215,20 @@ static size_t tables_most(const sphg_neighbors *n)
 static sphg_result build_grids(sphg_context *context, sphg_neighbors *n,
                                const struct sphgi_geometry *g)
 {
-    struct sphgi_lattice lattice = sphgi_lattice_of(n->dimension, n->radius + n->skin, &g->periods,
-                                                    g->largest, n->position_type);
-    lattice.top = n->radius;
-    lattice.octaves = n->graded ? sphgi_octaves_for(&lattice, n->least, g->largest) : 0;
+    struct sphgi_raster raster = sphgi_raster_of(n->dimension, n->radius + n->skin, &g->periods,
+                                                 g->largest, n->position_type);
+    raster.top = n->radius;
+    raster.octaves = n->graded ? sphgi_octaves_for(&raster, n->least, g->largest) : 0;
     if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
         return SPHG_ERROR_MEMORY;
     char *tables = n->shared.data;
     sphg_result result =
-        sphgi_grid_build(context, &n->sources, &n->allocator, &lattice, n->position_type,
+        sphgi_grid_build(context, &n->sources, &n->allocator, &raster, n->position_type,
                          g->source_rows, n->source_count, tables);
     if (!result && !n->same) {
         tables +=
             sphgi_round_up(sphgi_grid_tables(n->sources.block_count, n->graded), SPHGI_ALIGNMENT);
-        result = sphgi_grid_build(context, &n->targets, &n->allocator, &lattice, n->position_type,
+        result = sphgi_grid_build(context, &n->targets, &n->allocator, &raster, n->position_type,
                                   g->target_rows, n->target_count, tables);
     }
     if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
@@ -339,8 +339,8 @@ static bool open_grids(sphg_neighbors *n, const struct sphgi_geometry *g)
     n->sources.block_count = n->targets.block_count = 0;
     n->sources.count = n->source_count;
     n->targets.count = n->target_count;
-    n->sources.lattice =
-        sphgi_lattice_of(n->dimension, n->radius, &g->periods, g->largest, n->position_type);
+    n->sources.raster =
+        sphgi_raster_of(n->dimension, n->radius, &g->periods, g->largest, n->position_type);
     return number(n, &n->sources.order, n->source_count) &&
            (n->part_of || number(n, &n->targets.order, n->target_count)) &&
            number(n, &n->target_place, n->target_count);

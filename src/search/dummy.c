@@ -12,7 +12,7 @@ static void widen(struct extent *extent, const struct sphgi_grid *grid)
         int64_t at[3];
         sphgi_key_open(grid->blocks[b].key, at);
         for (int32_t a = 0; a < 3; ++a) {
-            const int64_t cells = (int64_t)1 << grid->lattice.axis[a].shift;
+            const int64_t cells = (int64_t)1 << grid->raster.axis[a].shift;
             const int64_t low = at[a] * cells, high = low + cells;
             extent->low[a] = low < extent->low[a] ? low : extent->low[a];
             extent->high[a] = high > extent->high[a] ? high : extent->high[a];
@@ -39,7 +39,7 @@ static void widen_by_rows(struct extent *extent, const sphg_neighbors *n,
             low = x < low ? x : low;
             high = x > high ? x : high;
         }
-        const double inverse = n->sources.lattice.axis[a].inverse, most = 2.0 * SPHGI_CUT_MOST;
+        const double inverse = n->sources.raster.axis[a].inverse, most = 2.0 * SPHGI_CUT_MOST;
         const int64_t from = (int64_t)fmax(floor(low * inverse), -most);
         const int64_t to = (int64_t)fmin(ceil(high * inverse), most);
         extent->low[a] = from < extent->low[a] ? from : extent->low[a];
@@ -58,8 +58,8 @@ static void widen_by(struct extent *extent, const sphg_neighbors *n, const struc
 /* The same where cells have many widths. */
 static double far_from_octaves(const sphg_neighbors *n, double most)
 {
-    const double width = 1 / n->sources.lattice.axis[0].inverse;
-    const bool near = n->far * n->sources.lattice.axis[0].inverse < SPHGI_CUT_MOST;
+    const double width = 1 / n->sources.raster.axis[0].inverse;
+    const bool near = n->far * n->sources.raster.axis[0].inverse < SPHGI_CUT_MOST;
     return near && 0x1p32 * width < most ? -2 * n->far - 64 * width : (double)NAN;
 }
 
@@ -67,7 +67,7 @@ static double far_from_octaves(const sphg_neighbors *n, double most)
  * places, or if squares of differences could leave the range of the type. */
 static double far_x(const sphg_neighbors *n)
 {
-    const struct sphgi_lattice *lattice = &n->sources.lattice;
+    const struct sphgi_raster *raster = &n->sources.raster;
     const double most = n->type == SPHG_F64 ? 0x1p500 : 0x1p60;
     if (n->graded)
         return far_from_octaves(n, most);
@@ -75,8 +75,8 @@ static double far_x(const sphg_neighbors *n)
     widen_by(&extent, n, &n->sources);
     if (!n->same)
         widen_by(&extent, n, &n->targets);
-    const double width = 1 / lattice->axis[0].inverse;
-    for (int32_t a = 0; a < lattice->dimension; ++a)
+    const double width = 1 / raster->axis[0].inverse;
+    for (int32_t a = 0; a < raster->dimension; ++a)
         if (extent.low[a] <= -SPHGI_CUT_MOST || extent.high[a] >= SPHGI_CUT_MOST)
             return NAN;
     return 0x1p32 * width < most ? 2 * (double)extent.low[0] * width - 64 * width : NAN;

@@ -52,7 +52,7 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
                                        .reach = neighbors->radius + neighbors->skin,
                                        .stretch = neighbors->stretch,
                                        .mutual = sphgi_lists_are_mutual(neighbors),
-                                       .slack = neighbors->sources.lattice.slack,
+                                       .slack = neighbors->sources.raster.slack,
                                        .periodic = neighbors->periodic,
                                        .dummy = (uint32_t)neighbors->source_count * SPHGI_ID_STEP,
                                        .scratch = memory,
@@ -73,7 +73,7 @@ static void enter_block(struct sphgi_finder *f, int32_t block)
     f->cell = 0;
     sphgi_cell_starts(targets, block, f->start);
     if (!f->neighbors->graded)
-        sphgi_surroundings_of(&f->neighbors->sources, targets->blocks[block].key, &f->around);
+        sphgi_halo_of(&f->neighbors->sources, targets->blocks[block].key, &f->around);
 }
 
 /* To the cell of the next target. */
@@ -201,7 +201,7 @@ static void find_some(struct sphgi_finder *f)
         find_in_octaves(f);
         return;
     }
-    sphgi_candidate_runs(&n->sources.lattice, &f->around, f->cell, &runs);
+    sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, &runs);
     const int32_t count = sphgi_min32(f->start[f->cell + 1] - f->next, SPHGI_FIND_MOST);
     if (runs.candidates > f->room)
         for (int32_t k = 0; k < count; ++k)
@@ -267,7 +267,7 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
         return;
     }
     enter_cell(f);
-    sphgi_candidate_runs(&n->sources.lattice, &f->around, f->cell, &runs);
+    sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, &runs);
     const int32_t self = row_of_self(f, &runs, target);
     for (int32_t run = 0; run < runs.count; ++run)
         for (int32_t at = 0; at < runs.length[run]; at += f->room) {

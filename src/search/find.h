@@ -3,7 +3,7 @@
 #ifndef SPHGI_FIND_H
 #define SPHGI_FIND_H
 #include "neighbors.h"
-#include "surroundings.h"
+#include "halo.h"
 
 enum {
     SPHGI_CANDIDATES_MOST =
@@ -22,7 +22,7 @@ struct sphgi_finder {
     int32_t next;        /* the first target that has not been looked at */
     int32_t block, cell; /* where it is; block -1: nowhere yet */
     int32_t start[SPHGI_BLOCK_CELLS + 1];
-    struct sphgi_surroundings around;
+    struct sphgi_halo around;
     struct sphgi_nearby
         *nearby; /* of octaves: blocks near the targets looked[0] .. looked[1] - 1 */
     int32_t looked[2];

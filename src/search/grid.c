@@ -17,7 +17,7 @@ void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables)
 {
     grid->blocks = tables;
     grid->hash = (int32_t *)(void *)(grid->blocks + grid->block_count + 1);
-    if (grid->lattice.octaves)
+    if (grid->raster.octaves)
         sphgi_tree_use(&grid->tree, grid->block_count,
                        (char *)grid->hash + hash_bytes((size_t)grid->block_count));
 }

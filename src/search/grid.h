@@ -7,14 +7,14 @@
 #define SPHGI_GRID_H
 #include "core/context.h"
 #include "block.h"
-#include "lattice.h"
+#include "raster.h"
 #include "tree.h"
 
 /* Blocks may be as many as particles: what there is per block must be small. The starts of a
  * block's occupied cells, and the end of the last one, stand in cell_start from the number of its
  * first particle on. */
 struct sphgi_grid {
-    struct sphgi_lattice lattice;
+    struct sphgi_raster raster;
     int32_t count; /* particles */
     int32_t block_count;
     int32_t fullest; /* particles in the fullest cell */
@@ -47,7 +47,7 @@ void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);
  * the host's order is another one. */
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
-                             const struct sphgi_lattice *lattice, sphg_type type, const void *rows,
+                             const struct sphgi_raster *raster, sphg_type type, const void *rows,
                              int32_t count, void *tables);
 void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allocator);
 

@@ -276,7 +276,7 @@ static void find_groups(struct build *build, int32_t step)
 
 static size_t tables_of(const struct sphgi_grid *grid)
 {
-    return sphgi_round_up(sphgi_grid_tables(grid->block_count, grid->lattice.octaves > 0),
+    return sphgi_round_up(sphgi_grid_tables(grid->block_count, grid->raster.octaves > 0),
                           SPHGI_ALIGNMENT);
 }
 

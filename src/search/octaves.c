@@ -13,12 +13,11 @@ static int32_t octaves_between(double large, double small)
     return (int32_t)((a - b) >> 52);
 }
 
-int32_t sphgi_octaves_for(const struct sphgi_lattice *lattice, double least,
-                          const double *largest_x)
+int32_t sphgi_octaves_for(const struct sphgi_raster *raster, double least, const double *largest_x)
 {
-    int32_t octaves = sphgi_min32(octaves_between(lattice->top, least) + 1, SPHGI_OCTAVES_MOST);
-    for (int32_t a = 0; a < lattice->dimension; ++a) {
-        const struct sphgi_axis *axis = &lattice->axis[a];
+    int32_t octaves = sphgi_min32(octaves_between(raster->top, least) + 1, SPHGI_OCTAVES_MOST);
+    for (int32_t a = 0; a < raster->dimension; ++a) {
+        const struct sphgi_axis *axis = &raster->axis[a];
         double cells = axis->cells ? (double)axis->cells : largest_x[a] * axis->inverse;
         cells *= (double)((int64_t)1 << (octaves - 1));
         for (; octaves > 1 && !(cells < 0x1p36); cells /= 2)
@@ -27,9 +26,9 @@ int32_t sphgi_octaves_for(const struct sphgi_lattice *lattice, double least,
     return octaves;
 }
 
-int32_t sphgi_octave_of(const struct sphgi_lattice *lattice, double radius)
+int32_t sphgi_octave_of(const struct sphgi_raster *raster, double radius)
 {
-    return sphgi_min32(octaves_between(lattice->top, radius), lattice->octaves - 1);
+    return sphgi_min32(octaves_between(raster->top, radius), raster->octaves - 1);
 }
 
 /* An only octave may reach as far as keys do. */

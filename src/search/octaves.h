@@ -4,15 +4,14 @@
  * of them are in one grid, one octave behind the other. */
 #ifndef SPHGI_OCTAVES_H
 #define SPHGI_OCTAVES_H
-#include "lattice.h"
+#include "raster.h"
 
 enum { SPHGI_OCTAVES_MOST = 32 };
 
 /* How many octaves radii of these sizes need: no more than keys of blocks have room for, where
  * coordinates go as far as that. */
-int32_t sphgi_octaves_for(const struct sphgi_lattice *lattice, double least,
-                          const double *largest_x);
-int32_t sphgi_octave_of(const struct sphgi_lattice *lattice, double radius);
+int32_t sphgi_octaves_for(const struct sphgi_raster *raster, double least, const double *largest_x);
+int32_t sphgi_octave_of(const struct sphgi_raster *raster, double radius);
 
 /* Key of a block of that octave from its place there, and back. */
 void sphgi_raise_octave(int32_t octave, int64_t *at);

@@ -96,7 +96,7 @@ static void refresh_rows(sphg_context *context, struct sphgi_grid *grid, const c
 static double skin_reserve(const sphg_neighbors *n, const struct sphgi_geometry *g)
 {
     const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
-    const double then = n->sources.lattice.slack;
+    const double then = n->sources.raster.slack;
     const double now = sphgi_slack_of(&g->periods, g->largest, g->position_type);
     return (n->skin / 2 + n->radius) * unit + 2 * (then > now ? then : now);
 }
@@ -170,7 +170,7 @@ static double largest_share(sphg_context *context, const struct sphgi_geometry *
 static double share_reserve(const sphg_neighbors *n, const struct sphgi_geometry *g)
 {
     const double unit = g->position_type == SPHG_F64 ? 0x1p-50 : 0x1p-21;
-    const double then = n->sources.lattice.slack;
+    const double then = n->sources.raster.slack;
     const double now = sphgi_slack_of(&g->periods, g->largest, g->position_type);
     const double least = n->least < g->least ? n->least : g->least;
     return n->stretch * unit + 2 * (then > now ? then : now) / least;
@@ -185,7 +185,7 @@ static double left_of_shares(sphg_context *context, const sphg_neighbors *n,
             largest_share(context, g, n->targets_then.data, g->target_rows, g->target_count);
         share = targets > share ? targets : share;
     }
-    return n->sources.lattice.top * ((n->stretch - 1) / 2 - share - share_reserve(n, g));
+    return n->sources.raster.top * ((n->stretch - 1) / 2 - share - share_reserve(n, g));
 }
 
 /* ---- Both ------------------------------------------------------------------------------------ */

@@ -25,7 +25,7 @@ struct chunk {
 };
 
 struct sort {
-    const struct sphgi_lattice *lattice;
+    const struct sphgi_raster *raster;
     struct sphgi_cutting cutting;
     const struct sphgi_passes *passes;
     sphg_type type;
@@ -101,14 +101,14 @@ static double number_of(const struct sort *sort, int32_t i, int32_t number)
 /* The same for particles of any coordinates. */
 static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t begin, int32_t count)
 {
-    const struct sphgi_axis *axis = sort->lattice->axis;
+    const struct sphgi_axis *axis = sort->raster->axis;
     for (int32_t i = begin; i < begin + count; ++i) {
         double x[3];
         int64_t cell[3];
         for (int32_t a = 0; a < 3; ++a)
             x[a] = number_of(sort, i, a);
-        sphgi_cell_of(sort->lattice, x, cell);
-        sort->cell[i] = (uint8_t)sphgi_local_cell(sort->lattice, cell);
+        sphgi_cell_of(sort->raster, x, cell);
+        sort->cell[i] = (uint8_t)sphgi_local_cell(sort->raster, cell);
         for (int32_t a = 0; a < 3; ++a)
             cell[a] >>= axis[a].shift;
         sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
@@ -121,19 +121,19 @@ static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t be
 static void collect_octaves(const struct sort *sort, struct chunk *chunk, int32_t begin,
                             int32_t count)
 {
-    const struct sphgi_lattice *lattice = sort->lattice;
+    const struct sphgi_raster *raster = sort->raster;
     for (int32_t i = begin; i < begin + count; ++i) {
-        const int32_t octave = sphgi_octave_of(lattice, number_of(sort, i, 3));
+        const int32_t octave = sphgi_octave_of(raster, number_of(sort, i, 3));
         int64_t cell[3] = {0};
         int32_t part = 0;
-        for (int32_t a = 0; a < lattice->dimension; ++a) {
+        for (int32_t a = 0; a < raster->dimension; ++a) {
             const double place =
-                sphgi_place_on_axis(&lattice->axis[a], octave, number_of(sort, i, a), &cell[a]);
+                sphgi_place_on_axis(&raster->axis[a], octave, number_of(sort, i, a), &cell[a]);
             part |= (place - (double)cell[a] >= 0.5) << a;
         }
-        sort->cell[i] = (uint8_t)(sphgi_local_cell(lattice, cell) * PARTS + part);
+        sort->cell[i] = (uint8_t)(sphgi_local_cell(raster, cell) * PARTS + part);
         for (int32_t a = 0; a < 3; ++a)
-            cell[a] >>= lattice->axis[a].shift;
+            cell[a] >>= raster->axis[a].shift;
         sphgi_raise_octave(octave, cell);
         sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
         ++chunk->counts[sort->block[i]];
@@ -152,9 +152,9 @@ static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
         for (int32_t i = chunk->begin; i < chunk->end; i += BATCH) {
             const int32_t count = sphgi_min32(BATCH, chunk->end - i);
             const char *rows = (const char *)sort->rows + (size_t)i * row_size;
-            if (sort->lattice->octaves)
+            if (sort->raster->octaves)
                 collect_octaves(sort, chunk, i, count);
-            else if (!sort->lattice->periodic &&
+            else if (!sort->raster->periodic &&
                      sort->passes->cut(&sort->cutting, rows, count, block, sort->cell + i))
                 collect_cut(sort, chunk, i, count, block);
             else
@@ -347,7 +347,7 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
     (void)worker;
     for (int32_t b = begin; b < end; ++b) {
         int32_t most;
-        if (sort->lattice->octaves)
+        if (sort->raster->octaves)
             most = sort_block(sort, b, SPHGI_ROW * sphgi_size_of_type(sort->type), PARTS);
         else
             most = sort->type == SPHG_F64 ? sort_block(sort, b, SPHGI_ROW * sizeof(double), 1)
@@ -418,12 +418,12 @@ static size_t carve_sort(struct sort *sort, char *base, int32_t count)
 
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
-                             const struct sphgi_lattice *lattice, sphg_type type, const void *rows,
+                             const struct sphgi_raster *raster, sphg_type type, const void *rows,
                              int32_t count, void *tables)
 {
     const size_t n = (size_t)count, row_size = SPHGI_ROW * sphgi_size_of_type(type);
-    struct sort sort = {.lattice = lattice,
-                        .cutting = sphgi_cutting_of(lattice),
+    struct sort sort = {.raster = raster,
+                        .cutting = sphgi_cutting_of(raster),
                         .passes = sphgi_passes_of(context, type),
                         .type = type,
                         .rows = rows,
@@ -435,7 +435,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
         !sphgi_reserve(allocator, &grid->order, n, sizeof(int32_t)))
         return SPHG_ERROR_MEMORY;
     carve_sort(&sort, context->sort.data, count);
-    grid->lattice = *lattice;
+    grid->raster = *raster;
     grid->count = count;
     sphgi_parallel_for(context, collect_task, &sort, sort.chunk_count, 1);
     number_blocks(&sort, merge_keys(&sort, tables), tables); /* the tables are scratch at first */
@@ -445,7 +445,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     sphgi_parallel_for(context, cells_task, &sort, grid->block_count, BLOCK_GRAIN);
     memset((char *)grid->rows.data + n * row_size, 0, SPHGI_LANES_MOST * row_size);
     grid->fullest = (int32_t)atomic_load(&sort.fullest);
-    if (lattice->octaves)
-        sphgi_tree_build(&grid->tree, grid->blocks, grid->block_count, lattice->octaves);
+    if (raster->octaves)
+        sphgi_tree_build(&grid->tree, grid->blocks, grid->block_count, raster->octaves);
     return SPHG_OK;
 }

@@ -113,17 +113,17 @@ static struct sphgi_span cells_between(const struct sphgi_axis *axis, int32_t oc
  * for the last one stands in it, too. */
 static void enter_octave(struct sphgi_walk *walk, int32_t octave)
 {
-    const struct sphgi_lattice *lattice = &walk->sources->lattice;
+    const struct sphgi_raster *raster = &walk->sources->raster;
     walk->octave = octave;
     walk->part = 0;
-    if (octave >= lattice->octaves)
+    if (octave >= raster->octaves)
         return;
-    const double theirs = walk->stretch * lattice->top / (double)((int64_t)1 << octave);
+    const double theirs = walk->stretch * raster->top / (double)((int64_t)1 << octave);
     walk->octave_reach = theirs > walk->reach ? theirs : walk->reach;
-    const double reach = with_margin(walk->octave_reach, lattice->slack);
+    const double reach = with_margin(walk->octave_reach, raster->slack);
     for (int32_t a = 0; a < 3; ++a)
-        if (a < lattice->dimension)
-            walk->span[a] = cells_between(&lattice->axis[a], octave, walk->low[a] - reach,
+        if (a < raster->dimension)
+            walk->span[a] = cells_between(&raster->axis[a], octave, walk->low[a] - reach,
                                           walk->high[a] + reach);
         else
             walk->span[a] = (struct sphgi_span){.count = 1};
@@ -154,7 +154,7 @@ void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, 
 static bool box_of_part(const struct sphgi_walk *walk, struct box *box)
 {
     for (int32_t a = 0; a < 3; ++a) {
-        const int32_t k = walk->part >> a & 1, shift = walk->sources->lattice.axis[a].shift;
+        const int32_t k = walk->part >> a & 1, shift = walk->sources->raster.axis[a].shift;
         const struct sphgi_span *span = &walk->span[a];
         if (k >= span->count)
             return false;
@@ -201,7 +201,7 @@ static int32_t next_of_walk(struct sphgi_walk *walk)
     const struct sphgi_tree *tree = &walk->sources->tree;
     if (walk->octave < 0)
         enter_octave(walk, 0);
-    for (; walk->octave < walk->sources->lattice.octaves; enter_octave(walk, walk->octave + 1)) {
+    for (; walk->octave < walk->sources->raster.octaves; enter_octave(walk, walk->octave + 1)) {
         const int32_t begin = tree->first[walk->octave], end = tree->first[walk->octave + 1];
         struct box box;
         for (; walk->part < 8; ++walk->part, walk->block = begin) {
@@ -219,7 +219,7 @@ static int32_t next_of_walk(struct sphgi_walk *walk)
 static void place_of(const struct sphgi_walk *walk, int32_t block, int64_t *at)
 {
     sphgi_key_open(walk->sources->blocks[block].key, at);
-    if (walk->sources->lattice.octaves > 1)
+    if (walk->sources->raster.octaves > 1)
         sphgi_lower_octave(at);
 }
 

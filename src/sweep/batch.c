@@ -11,25 +11,25 @@
 
 void sphgi_put_to_work(struct sphgi_worker *w, int32_t first)
 {
-    struct sphgi_group *group = &w->group;
+    struct sphgi_bundle *bundle = &w->bundle;
     w->batch.first = first;
-    w->batch.targets = group->lanes - first;
+    w->batch.targets = bundle->count - first;
     w->batch.width = (int32_t)sphgi_round_up((size_t)w->batch.targets, (size_t)w->passes->lanes);
-    for (int32_t l = group->lanes; l < first + w->batch.width; ++l) {
-        group->target[l] = group->target[first];
-        group->place[l] = group->place[first];
+    for (int32_t l = bundle->count; l < first + w->batch.width; ++l) {
+        bundle->target[l] = bundle->target[first];
+        bundle->place[l] = bundle->place[first];
     }
 }
 
 void sphgi_batch_begin(struct sphgi_worker *w)
 {
-    sphgi_put_to_work(w, w->group.summed);
+    sphgi_put_to_work(w, w->bundle.summed);
     sphgi_read_lane_radii(w);
     w->own.loaded = false;
     w->batch.tiles = 0;
     if (w->sweep->pairs)
-        memset(w->group.written + w->batch.first, 0,
-               (size_t)w->batch.targets * sizeof w->group.written[0]);
+        memset(w->bundle.written + w->batch.first, 0,
+               (size_t)w->batch.targets * sizeof w->bundle.written[0]);
     w->batch.summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
     if (w->coefficients_first) {
         if (w->batch.summing & SPHGI_SUM_MOMENTS)
@@ -147,7 +147,7 @@ bool sphgi_batch_again(struct sphgi_worker *w)
 
 void sphgi_batch_end(struct sphgi_worker *w)
 {
-    w->group.summed = w->group.lanes;
+    w->bundle.summed = w->bundle.count;
     if (!w->sweep->pairs && (w->batch.summing & SPHGI_SUM_FIELDS))
         sphgi_load_targets(w);
 }
@@ -177,7 +177,7 @@ void sphgi_batch_keep(struct sphgi_worker *w, uint32_t kept)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
-    struct sphgi_group *group = &w->group;
+    struct sphgi_bundle *bundle = &w->bundle;
     sphgi_keep_lane_radii(w, kept);
     p->pack_lanes(kept, plan->sums, sphgi_lane(w, w->reduced, 0));
     p->pack_lanes(kept, plan->target_lanes, sphgi_lane(w, w->own.field, 0));
@@ -186,10 +186,10 @@ void sphgi_batch_keep(struct sphgi_worker *w, uint32_t kept)
         p->pack_lanes(kept, 1, sphgi_lane(w, w->own.density, 0));
     }
     int32_t to = w->batch.first;
-    for (int32_t l = w->batch.first; l < group->lanes; ++l, kept >>= 1) {
-        group->target[to] = group->target[l];
-        group->place[to] = group->place[l];
+    for (int32_t l = w->batch.first; l < bundle->count; ++l, kept >>= 1) {
+        bundle->target[to] = bundle->target[l];
+        bundle->place[to] = bundle->place[l];
         to += (int32_t)(kept & 1);
     }
-    group->lanes = w->group.summed = to;
+    bundle->count = w->bundle.summed = to;
 }

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* A batch: the lanes of a group that are at work, from their lists to their sums. */
+/* A batch: the targets of a bundle that are at work, from their lists to their sums. */
 #ifndef SPHGI_BATCH_H
 #define SPHGI_BATCH_H
 #include "worker.h"
 
-/* The lanes of the group from `first` on go to work. Those without a target repeat one: they are
+/* The lanes of the bundle from `first` on go to work. Those without a target repeat one: they are
  * read like the others, and never written. */
 void sphgi_put_to_work(struct sphgi_worker *worker, int32_t first);
 
-/* Sums the targets whose lists stand in worker->batch.lists, those of the group that are not summed
- * yet. */
+/* Sums the targets whose lists stand in worker->batch.lists, those of the bundle that are not
+ * summed yet. */
 void sphgi_batch_run(struct sphgi_worker *worker);
 
 /* Of the lanes that were summed last, those with a bit in `kept` stay; the others' targets drop

@@ -84,7 +84,7 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
                (const char *)n->sources.rows.data + (size_t)rows[k] * position, position);
         items[k] = order ? order[rows[k]] : (int32_t)rows[k];
     }
-    if (!sweep->position_passes->stage[sweep->plan->type == SPHG_F64](
+    if (!sweep->position_passes->put_volumes[sweep->plan->type == SPHG_F64](
             positions, &sweep->set->volume, sphgi_volume_unit(sweep), items, 0, used, positions))
         w->tally->bad_volume = true;
     sphgi_fill_rows(sweep, items, 0, used, w->rows.numbers + (size_t)at * row,

@@ -57,7 +57,7 @@ static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *ve
 void sphgi_finish_corrections(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    struct sphgi_verdict verdict = {.lanes = w->batch.targets};
+    struct sphgi_verdict verdict = {.count = w->batch.targets};
     if (plan->classic) {
         sphgi_self_weight(w, w->self);
         w->passes->invert_classic(

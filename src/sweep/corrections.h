@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From the moments of a group to its corrections. */
+/* From the moments of a bundle to its corrections. */
 #ifndef SPHGI_CORRECTIONS_H
 #define SPHGI_CORRECTIONS_H
 #include "worker.h"

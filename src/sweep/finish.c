@@ -16,7 +16,7 @@ static void add_self_gradient(struct sphgi_worker *w, const struct sphgi_field_p
                          w->jacobian);
 }
 
-static void finish_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+static void finish_one_sided(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const bool multiply = plan->corrects && !plan->classic;
@@ -43,7 +43,7 @@ static void finish_plain(struct sphgi_worker *w, const struct sphgi_field_plan *
     if (field->sums_gradient)
         w->passes->scale(w->batch.width, field->components * d,
                          sphgi_lane(w, w->reduced, field->sum), factor, each, w->jacobian);
-    if (field->contracts)
+    if (field->sums_divergence)
         w->passes->scale(w->batch.width, field->divergence.count,
                          sphgi_lane(w, w->reduced, field->divergence_sum), factor, each,
                          w->contracted);
@@ -126,7 +126,7 @@ static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_p
     own_side(w, w->sweep->plan->vector_sum[symmetric], w->extra);
     if (field->sums_gradient)
         join_sides(w, field, field->rows ? &sides : &folded, false);
-    if (field->contracts)
+    if (field->sums_divergence)
         join_sides(w, field, field->fold ? &folded : &sides, true);
 }
 
@@ -165,7 +165,7 @@ static void store_results(struct sphgi_worker *w, const struct sphgi_field_plan 
     const struct sphgi_plan *plan = w->sweep->plan;
     char *divergence = w->contracted, *curl = sphgi_lane(w, w->contracted, 3);
     w->passes->contract(w->batch.width, plan->dimension, field->shape, w->jacobian,
-                        field->divergence.count && !field->contracts ? divergence : NULL,
+                        field->divergence.count && !field->sums_divergence ? divergence : NULL,
                         field->curl.count ? curl : NULL);
     const struct sphgi_columns *columns[3] = {&field->gradient, &field->divergence, &field->curl};
     const char *lanes[3] = {w->jacobian, divergence, curl};
@@ -183,14 +183,14 @@ void sphgi_finish_fields(struct sphgi_worker *w)
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates) {
-            if (!field->forward)
+            if (!field->one_sided)
                 finish_transposed(w, field);
             else if (plan->quadratic)
                 sphgi_finish_quadratic(w, field);
             else if (plan->scheme.method == SPHG_PLAIN)
                 finish_plain(w, field);
             else
-                finish_forward(w, field);
+                finish_one_sided(w, field);
             store_results(w, field);
         }
         if (field->diffuses)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From the sums of a group to the results of its fields. */
+/* From the sums of a bundle to the results of its fields. */
 #ifndef SPHGI_FINISH_H
 #define SPHGI_FINISH_H
 #include "worker.h"

@@ -4,7 +4,7 @@
 #include "table.h"
 #include <string.h>
 
-/* As many sources as a group has targets, [number][SPHGI_WIDTH] of either type. */
+/* As many sources as a bundle has targets, [number][SPHGI_WIDTH] of either type. */
 struct folding {
     const struct sphgi_sweep *sweep;
     const struct sphgi_field_plan *field;

@@ -16,7 +16,7 @@ bool sphgi_is_superset(const struct sphgi_sweep *sweep)
     return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
 }
 
-bool sphgi_is_guarded(const struct sphgi_sweep *sweep)
+bool sphgi_is_masked(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
     return sphgi_is_superset(sweep) || n->periodic || !n->dummy_is_far;
@@ -25,7 +25,7 @@ bool sphgi_is_guarded(const struct sphgi_sweep *sweep)
 bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
-    return sweep->packed && plan->radius_row < 0 && !sphgi_is_guarded(sweep) && !plan->classic &&
+    return sweep->packed && plan->radius_row < 0 && !sphgi_is_masked(sweep) && !plan->classic &&
            !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
            (plan->differentiates || plan->computes) &&
            sweep->set->neighbors->position_type == plan->type;

@@ -9,7 +9,7 @@
 enum sphgi_step {
     SPHGI_SUM_MOMENTS = 1,
     SPHGI_SUM_FIELDS = 2,
-    SPHGI_FINISH = 4 /* write results at once; otherwise add the sums to the arena */
+    SPHGI_FINISH = 4 /* write results at once; otherwise add the sums to those of other sets */
 };
 
 /* Where pairs go that are wanted one by one (sphg_pair_gradients). */
@@ -35,7 +35,7 @@ struct sphgi_sweep {
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
     struct sphgi_kept_weights kept;           /* s_ij that this sweep reads and writes */
-    char *arena;                              /* sums, plan->sums numbers a target */
+    char *set_sums;                           /* sums, plan->sums numbers a target */
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
     char *memory;
@@ -52,6 +52,6 @@ bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep);
 /* Lists may hold pairs with r >= H: these are cut. */
 bool sphgi_is_superset(const struct sphgi_sweep *sweep);
 /* Pairs that are none of this sweep must be told from others by looking at each. */
-bool sphgi_is_guarded(const struct sphgi_sweep *sweep);
+bool sphgi_is_masked(const struct sphgi_sweep *sweep);
 
 #endif

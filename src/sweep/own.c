@@ -44,7 +44,7 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
         columns.stride = (ptrdiff_t)row;
         columns.count = SPHGI_ROW;
         columns.together = true;
-        w->passes->load_lanes(w->batch.width, &columns, w->group.place + w->batch.first, to);
+        w->passes->load_lanes(w->batch.width, &columns, w->bundle.place + w->batch.first, to);
     } else if (field->target.count) {
         w->passes->load_lanes(w->batch.width, &field->target, sphgi_targets(w), to);
     } else {

@@ -8,7 +8,7 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
     const int32_t lanes = w->passes->lanes, count = w->batch.pairs[lane];
     const uint32_t *id = w->tile.ids + lane;
     int32_t kept = 0;
-    if (!w->gather.guarded && w->sweep->set->neighbors->kind == SPHGI_SEARCHED) { /* no gaps */
+    if (!w->gather.masked && w->sweep->set->neighbors->kind == SPHGI_SEARCHED) { /* no gaps */
         for (int32_t k = 0; k < count; ++k) {
             at[k] = k * lanes + lane;
             ids[k] = id[k * w->tile.id_stride];
@@ -53,12 +53,12 @@ static void copy_gradients(const struct sphgi_worker *w, const int32_t *at, int3
 void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
 {
     const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    const int32_t row = pairs->row_of_target[w->group.target[of]];
+    const int32_t row = pairs->row_of_target[w->bundle.target[of]];
     int32_t at[SPHGI_CHUNK + 1];
     uint32_t ids[SPHGI_CHUNK + 1];
     const int32_t count = pairs_of_lane(w, lane, at, ids);
-    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->group.written[of] : 0;
-    w->group.written[of] += count;
+    const int64_t place = pairs->offsets ? pairs->offsets[row] + w->bundle.written[of] : 0;
+    w->bundle.written[of] += count;
     if (!pairs->offsets)
         return;
     int32_t *to = pairs->indices + place;

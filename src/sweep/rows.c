@@ -31,7 +31,7 @@ static void use_local_rows(struct sphgi_worker *w)
     }
     w->gather.rows = w->rows.positions;
     w->gather.dummy = SPHGI_ID_STEP * SPHGI_TILE;
-    w->gather.guarded = true;
+    w->gather.masked = true;
     w->rows.items = w->rows.own_items;
 }
 
@@ -133,7 +133,7 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
         fill_radii(sweep, begin, end,
                    packing->rows + ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);
     if (packing->positions &&
-        !sweep->position_passes->stage[type == SPHG_F64](
+        !sweep->position_passes->put_volumes[type == SPHG_F64](
             n->sources.rows.data, &sweep->set->volume, sphgi_volume_unit(sweep), packing->order,
             begin, end - begin, packing->positions + (size_t)begin * row_size(n->position_type)))
         atomic_store(&packing->bad_volume, true);

@@ -21,7 +21,7 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
                      enum sphgi_vectors vectors, const char *at_target)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    if (field->contracts && !field->fold)
+    if (field->sums_divergence && !field->fold)
         w->passes->sum_divergence(&w->tile, plan->dimension, field->shape, vectors,
                                   w->rows.at + field->row, at_target,
                                   sphgi_lane(w, w->reduced, field->divergence_sum));
@@ -46,7 +46,7 @@ static const char *subtracted(const struct sphgi_worker *w, const struct sphgi_f
                                               : w->zeros;
 }
 
-static void sum_forward(struct sphgi_worker *w, const struct sphgi_field_plan *field)
+static void sum_one_sided(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     if (w->sweep->plan->quadratic) {
         sphgi_sum_quadratic(w, field, subtracted(w, field));
@@ -89,7 +89,7 @@ static void sum_folded(struct sphgi_worker *w, int32_t number)
     const struct sphgi_field_plan *field = &plan->fields[number];
     const bool symmetric = field->form == SPHG_SYMMETRIC,
                carrier = plan->carrier[symmetric] == number;
-    const int32_t sum = field->contracts ? field->divergence_sum : field->sum;
+    const int32_t sum = field->sums_divergence ? field->divergence_sum : field->sum;
     w->passes->sum_folded(&w->tile, plan->dimension, field->fold, symmetric && carrier,
                           w->rows.at + field->folded_row, sphgi_lane(w, w->reduced, sum),
                           carrier ? sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]) : NULL);
@@ -115,7 +115,7 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         form_transposed(w, symmetric);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (!field->differentiates || field->forward ||
+        if (!field->differentiates || field->one_sided ||
             symmetric != (field->form == SPHG_SYMMETRIC))
             continue;
         if (field->fold)
@@ -145,8 +145,8 @@ static void sum_fields(struct sphgi_worker *w)
                                    sphgi_lane(w, w->coefficients, 0));
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
-        if (field->differentiates && field->forward)
-            sum_forward(w, field);
+        if (field->differentiates && field->one_sided)
+            sum_one_sided(w, field);
         if (field->value_sum >= 0 && field->volume_row < 0)
             sphgi_sum_value(w, field, subtracted(w, field));
     }

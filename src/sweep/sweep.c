@@ -117,7 +117,7 @@ static sphg_result finish_all(struct sphgi_task *task, const struct sphgi_select
     return SPHG_OK;
 }
 
-/* One step over all sets: at once for a single one, through the arena for several. */
+/* One step over all sets: at once for a single one, by way of memory for several. */
 static sphg_result sweep_sets(struct sphgi_task *task, struct sphgi_selection *selection,
                               unsigned steps, struct sphgi_tally *tally)
 {
@@ -147,7 +147,7 @@ static sphg_result sweep_all(struct sphgi_task *task, struct sphgi_selection *se
         return sweep_sets(task, selection, moments | fields, tally);
     if (!sphgi_reserve(&context->allocator, &context->sums, targets * (size_t)plan->sums, size))
         return SPHG_ERROR_MEMORY;
-    sweep->arena = context->sums.data;
+    sweep->set_sums = context->sums.data;
     if (!(plan->classic || plan->diffuses) || !moments || !fields)
         return sweep_sets(task, selection, moments | fields, tally);
     /* Classic gradients and diffusion of several sets: all moments first. */

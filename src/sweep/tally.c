@@ -34,11 +34,11 @@ void sphgi_tally_verdict(struct sphgi_tally *tally, const struct sphgi_verdict *
     if (verdict->largest_square > tally->largest_square)
         tally->largest_square = verdict->largest_square;
     if (!verdict->decomposed && !verdict->empty) {
-        stats->rank[dimension] += verdict->lanes;
-        stats->certified += verdict->lanes;
+        stats->rank[dimension] += verdict->count;
+        stats->certified += verdict->count;
         return;
     }
-    for (int32_t l = 0; l < verdict->lanes; ++l) {
+    for (int32_t l = 0; l < verdict->count; ++l) {
         const bool decomposed = verdict->decomposed >> l & 1;
         ++stats->rank[decomposed ? verdict->rank[l] : dimension];
         stats->certified += !decomposed;

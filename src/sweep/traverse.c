@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "traverse.h"
 #include "batch.h"
-#include "group.h"
+#include "bundle.h"
 #include "own.h"
 #include "pieces.h"
 #include "waiting.h"
@@ -95,13 +95,13 @@ static void targets_of_group(const struct sphgi_worker *w, int32_t place, uint32
 /* A vector of them. */
 static void put_into_lanes(struct sphgi_worker *w, const int32_t *targets, int32_t place)
 {
-    int32_t *const target = w->group.target + w->group.lanes;
-    int32_t *const places = w->group.place + w->group.lanes;
+    int32_t *const target = w->bundle.target + w->bundle.count;
+    int32_t *const places = w->bundle.place + w->bundle.count;
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
         target[l] = targets[l];
         places[l] = place + l;
     }
-    w->group.lanes += w->passes->lanes;
+    w->bundle.count += w->passes->lanes;
 }
 
 /* A group whose lists stand side by side, and no others wait. All its targets are summed, and those
@@ -114,7 +114,7 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
     const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + place;
     const int32_t group = place / SPHGI_GROUP, lanes = w->passes->lanes;
     const uint32_t all = (1u << lanes) - 1;
-    if (w->group.lanes > SPHGI_WIDTH - SPHGI_GROUP)
+    if (w->bundle.count > SPHGI_WIDTH - SPHGI_GROUP)
         sphgi_finish_lanes(w);
     int32_t targets[SPHGI_GROUP];
     targets_of_group(w, place, active, targets);
@@ -135,7 +135,7 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
     w->batch.kept = NULL;
     if (kept->number)
         kept->marks[group] = kept->number;
-    if (w->group.summed == SPHGI_WIDTH)
+    if (w->bundle.summed == SPHGI_WIDTH)
         sphgi_finish_lanes(w);
 }
 
@@ -199,7 +199,7 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
     const bool whole =
         active == (1u << SPHGI_GROUP) - 1 ||
         (active && sphgi_targets_in(n, group) == SPHGI_GROUP && are_summed_whole(task, w));
-    if (whole && !w->rows.local && w->group.lanes == w->group.summed) { /* no lists wait */
+    if (whole && !w->rows.local && w->bundle.count == w->bundle.summed) { /* no lists wait */
         add_group(w, first, ids, active);
         return;
     }
@@ -241,7 +241,7 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     if (!active)
         return;
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
-    const bool all = active == (1u << SPHGI_GROUP) - 1 && w->group.lanes == w->group.summed;
+    const bool all = active == (1u << SPHGI_GROUP) - 1 && w->bundle.count == w->bundle.summed;
     for (uint32_t left = active; left; left &= left - 1) {
         const int32_t k = __builtin_ctz(left), place = first + k, target = target_at(n, place);
         if (!collected)
@@ -339,8 +339,8 @@ void sphgi_finish_task(void *data, int32_t begin, int32_t end, int32_t number)
     for (int32_t k = begin; k < end; ++k) {
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
         if (target >= 0)
-            w.group.target[w.group.lanes++] = target;
-        if (w.group.lanes == SPHGI_WIDTH || (k + 1 == end && w.group.lanes))
-            sphgi_group_finish_from_arena(&w);
+            w.bundle.target[w.bundle.count++] = target;
+        if (w.bundle.count == SPHGI_WIDTH || (k + 1 == end && w.bundle.count))
+            sphgi_bundle_finish_from_sums(&w);
     }
 }

@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 #include "waiting.h"
 #include "batch.h"
-#include "group.h"
+#include "bundle.h"
 #include <string.h>
 
 int32_t sphgi_add_target(struct sphgi_worker *w, int32_t target, int32_t place)
 {
-    const int32_t lane = w->group.lanes++;
-    w->group.target[lane] = target;
-    w->group.place[lane] = place;
+    const int32_t lane = w->bundle.count++;
+    w->bundle.target[lane] = target;
+    w->bundle.place[lane] = place;
     return lane;
 }
 
 void sphgi_finish_lanes(struct sphgi_worker *w)
 {
-    if (w->group.lanes)
-        sphgi_group_finish(w);
+    if (w->bundle.count)
+        sphgi_bundle_finish(w);
 }
 
 void sphgi_run_rest(struct sphgi_worker *w)
 {
-    if (w->group.lanes > w->group.summed)
+    if (w->bundle.count > w->bundle.summed)
         sphgi_batch_run(w);
     sphgi_finish_lanes(w);
     w->waiting.used = 0;
@@ -29,17 +29,17 @@ void sphgi_run_rest(struct sphgi_worker *w)
 void sphgi_add_list(struct sphgi_worker *w, int32_t target, int32_t place, const uint32_t *ids,
                     int32_t count, int32_t stride)
 {
-    if (w->group.lanes == w->group.summed && w->group.summed > SPHGI_WIDTH - w->passes->lanes)
+    if (w->bundle.count == w->bundle.summed && w->bundle.summed > SPHGI_WIDTH - w->passes->lanes)
         sphgi_finish_lanes(w); /* no room for a vector more */
-    const int32_t lane = sphgi_add_target(w, target, place) - w->group.summed;
+    const int32_t lane = sphgi_add_target(w, target, place) - w->bundle.summed;
     w->batch.lists.ids[lane] = ids;
     w->batch.lists.count[lane] = count;
     w->batch.lists.stride[lane] = stride;
     if (lane + 1 == w->passes->lanes)
         sphgi_batch_run(w);
-    if (w->group.summed == SPHGI_WIDTH)
+    if (w->bundle.summed == SPHGI_WIDTH)
         sphgi_finish_lanes(w);
-    if (w->group.lanes == w->group.summed)
+    if (w->bundle.count == w->bundle.summed)
         w->waiting.used = 0;
 }
 

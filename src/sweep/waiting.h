@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Targets wait until the lanes of a batch are full, and batches until their group is. */
+/* Targets wait until the lanes of a batch are full, and batches until their bundle is. */
 #ifndef SPHGI_WAITING_H
 #define SPHGI_WAITING_H
 #include "worker.h"
 
-/* A lane for a target of that place in storage order; its number in the group. */
+/* A lane for a target of that place in storage order; its number in the bundle. */
 int32_t sphgi_add_target(struct sphgi_worker *worker, int32_t target, int32_t place);
 
 /* The same with its list, which stays where it is until the batch is summed. */

@@ -115,7 +115,7 @@ static void open_scheme(struct sphgi_worker *w)
     if (plan->graded && scaled)
         w->gather.unit = 0;
     w->gather.superset = sphgi_is_superset(w->sweep);
-    w->gather.guarded = sphgi_is_guarded(w->sweep);
+    w->gather.masked = sphgi_is_masked(w->sweep);
     w->shape = (struct sphgi_shape){
         .kernel = scheme->kernel,
         .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,

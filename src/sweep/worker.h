@@ -9,15 +9,15 @@
 #include "tally.h"
 
 /* Targets whose results are written together. */
-struct sphgi_group {
-    int32_t lanes;  /* that have a target */
+struct sphgi_bundle {
+    int32_t count;  /* of them */
     int32_t summed; /* of these, whose sums are done */
     int32_t target[SPHGI_WIDTH];
     int32_t place[SPHGI_WIDTH];   /* in storage order */
     int64_t written[SPHGI_WIDTH]; /* pairs of each target so far, where pairs are wanted */
 };
 
-/* The lanes of the group that are at work, and their pairs. */
+/* The targets of the bundle that are at work, and their pairs. */
 struct sphgi_batch {
     int32_t first, width, targets; /* the first of them, how many, and how many have a target */
     struct sphgi_lane_lists lists;
@@ -93,7 +93,7 @@ struct sphgi_worker {
     bool coefficients_first; /* they must be known before fields can be summed */
 
     struct sphgi_source_rows rows;
-    struct sphgi_group group;
+    struct sphgi_bundle bundle;
     struct sphgi_batch batch;
     struct sphgi_waiting waiting;
     struct sphgi_tile tile;
@@ -104,7 +104,7 @@ struct sphgi_worker {
     struct sphgi_tally *tally;
     char *finder_memory;
 
-    /* Numbers of the group, [number][SPHGI_WIDTH]: from sums to results. */
+    /* Numbers of the bundle, [number][SPHGI_WIDTH]: from sums to results. */
     char *reduced, *raw, *coefficients, *lambda_min, *jacobian, *contracted;
     char *self, *extra, *zeros;
 };
@@ -128,12 +128,12 @@ static inline char *sphgi_lane(const struct sphgi_worker *worker, char *base, in
 /* The targets at work, and their rows. */
 static inline const int32_t *sphgi_targets(const struct sphgi_worker *worker)
 {
-    return worker->group.target + worker->batch.first;
+    return worker->bundle.target + worker->batch.first;
 }
 
 static inline const int32_t *sphgi_places(const struct sphgi_worker *worker)
 {
-    return worker->group.place + worker->batch.first;
+    return worker->bundle.place + worker->batch.first;
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What is near a block: the bars of cells beside it, and from these the candidates of a cell. */
-#ifndef SPHGI_SURROUNDINGS_H
-#define SPHGI_SURROUNDINGS_H
+#ifndef SPHGI_HALO_H
+#define SPHGI_HALO_H
 #include "grid.h"
 
 enum { SPHGI_BARS_MOST = 9 /* a block and the bars beside it */ };
@@ -16,17 +16,16 @@ struct sphgi_bar {
 };
 
 /* The bars around a block, its own first. */
-struct sphgi_surroundings {
+struct sphgi_halo {
     int32_t bars, cells; /* cells: along x, in a period what the block has of it */
     struct sphgi_bar bar[SPHGI_BARS_MOST];
 };
 
-void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key block,
-                           struct sphgi_surroundings *around);
+void sphgi_halo_of(const struct sphgi_grid *sources, struct sphgi_key block,
+                   struct sphgi_halo *around);
 
 /* The rows of the candidates of a cell. */
-void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                          const struct sphgi_surroundings *around, int32_t cell,
-                          struct sphgi_runs *runs);
+void sphgi_candidate_runs(const struct sphgi_raster *raster, const struct sphgi_halo *around,
+                          int32_t cell, struct sphgi_runs *runs);
 
 #endif

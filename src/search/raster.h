@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* How space is cut into cells a little wider than the search radius, and these into blocks, bars of
  * cells along x: shared by the grids of sources and targets. */
-#ifndef SPHGI_LATTICE_H
-#define SPHGI_LATTICE_H
+#ifndef SPHGI_RASTER_H
+#define SPHGI_RASTER_H
 #include "passes/passes.h"
 
 enum { SPHGI_BLOCK_SHIFT = 5, SPHGI_BLOCK_CELLS = 1 << SPHGI_BLOCK_SHIFT };
@@ -16,7 +16,7 @@ struct sphgi_axis {
                           period holds less than three */
 };
 
-struct sphgi_lattice {
+struct sphgi_raster {
     struct sphgi_axis axis[3];
     int32_t dimension;
     bool periodic;
@@ -31,14 +31,14 @@ struct sphgi_periods sphgi_periods_of(int32_t dimension, double radius, const do
 /* Bounds how far rounding brings images apart or together along any periodic axis [L]. largest[a]:
  * the largest |coordinate|. */
 double sphgi_slack_of(const struct sphgi_periods *periods, const double *largest, sphg_type type);
-struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
-                                      const struct sphgi_periods *periods, const double *largest,
-                                      sphg_type type);
-struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice);
+struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach,
+                                    const struct sphgi_periods *periods, const double *largest,
+                                    sphg_type type);
+struct sphgi_cutting sphgi_cutting_of(const struct sphgi_raster *raster);
 /* Cells of octave k are 2^-k as wide. */
 double sphgi_place_on_axis(const struct sphgi_axis *axis, int32_t octave, double x, int64_t *cell);
-void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell);
+void sphgi_cell_of(const struct sphgi_raster *raster, const double *x, int64_t *cell);
 /* Its number in its block. */
-int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell);
+int32_t sphgi_local_cell(const struct sphgi_raster *raster, const int64_t *cell);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What lies around a block of the grid. */
-#include "surroundings.h"
+#include "halo.h"
 
 /* ---- Bars ----------------------------------------------------------------------------------- */
 
@@ -57,7 +57,7 @@ static void bar_at(const struct sphgi_grid *grid, const int64_t *at, struct sphg
 /* What a period puts before the first cell of the axis and behind its last. */
 static void wrap_bar(const struct sphgi_grid *grid, const int64_t *at, struct sphgi_bar *bar)
 {
-    const int64_t last = grid->lattice.axis[0].cells - 1;
+    const int64_t last = grid->raster.axis[0].cells - 1;
     const int64_t begin[3] = {0, at[1], at[2]};
     const int64_t end[3] = {last >> SPHGI_BLOCK_SHIFT, at[1], at[2]};
     bar->before[0] = bar->before[1] = bar->behind[0] = bar->behind[1] = 0;
@@ -80,10 +80,10 @@ static int32_t cells_along(const struct sphgi_axis *axis, int64_t block)
     return axis->cells && left < SPHGI_BLOCK_CELLS ? (int32_t)left : SPHGI_BLOCK_CELLS;
 }
 
-void sphgi_surroundings_of(const struct sphgi_grid *sources, struct sphgi_key block,
-                           struct sphgi_surroundings *around)
+void sphgi_halo_of(const struct sphgi_grid *sources, struct sphgi_key block,
+                   struct sphgi_halo *around)
 {
-    const struct sphgi_axis *axis = sources->lattice.axis;
+    const struct sphgi_axis *axis = sources->raster.axis;
     int64_t own[3];
     sphgi_key_open(block, own);
     around->cells = cells_along(&axis[0], own[0]);
@@ -110,11 +110,10 @@ static void add_run(struct sphgi_runs *runs, int32_t begin, int32_t end)
     runs->candidates += end - begin;
 }
 
-void sphgi_candidate_runs(const struct sphgi_lattice *lattice,
-                          const struct sphgi_surroundings *around, int32_t cell,
-                          struct sphgi_runs *runs)
+void sphgi_candidate_runs(const struct sphgi_raster *raster, const struct sphgi_halo *around,
+                          int32_t cell, struct sphgi_runs *runs)
 {
-    const struct sphgi_axis *x = &lattice->axis[0];
+    const struct sphgi_axis *x = &raster->axis[0];
     const int32_t low = cell + x->low, high = cell + x->high;
     runs->count = runs->candidates = 0;
     runs->own = around->bar[0].first[cell + 1];

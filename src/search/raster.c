@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* How space is cut into cells and blocks. */
-#include "lattice.h"
+#include "raster.h"
 #include <math.h>
 #include <string.h>
 
@@ -99,58 +99,58 @@ double sphgi_place_on_axis(const struct sphgi_axis *axis, int32_t octave, double
     return place;
 }
 
-void sphgi_cell_of(const struct sphgi_lattice *lattice, const double *x, int64_t *cell)
+void sphgi_cell_of(const struct sphgi_raster *raster, const double *x, int64_t *cell)
 {
     for (int32_t a = 0; a < 3; ++a)
-        if (a < lattice->dimension)
-            sphgi_place_on_axis(&lattice->axis[a], 0, x[a], &cell[a]);
+        if (a < raster->dimension)
+            sphgi_place_on_axis(&raster->axis[a], 0, x[a], &cell[a]);
         else
             cell[a] = 0;
 }
 
-struct sphgi_lattice sphgi_lattice_of(int32_t dimension, double reach,
-                                      const struct sphgi_periods *periods, const double *largest,
-                                      sphg_type type)
+struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach,
+                                    const struct sphgi_periods *periods, const double *largest,
+                                    sphg_type type)
 {
-    struct sphgi_lattice lattice = {.dimension = dimension,
-                                    .slack = sphgi_slack_of(periods, largest, type)};
+    struct sphgi_raster raster = {.dimension = dimension,
+                                  .slack = sphgi_slack_of(periods, largest, type)};
     const double wide = reach * (1 + 0x1p-9);
     for (int32_t a = 0; a < 3; ++a) {
-        struct sphgi_axis *axis = &lattice.axis[a];
+        struct sphgi_axis *axis = &raster.axis[a];
         *axis = (struct sphgi_axis){.inverse = 1 / wide, .low = -1, .high = 1};
         axis->shift = a ? 0 : SPHGI_BLOCK_SHIFT;
         if (a >= dimension)
             *axis = (struct sphgi_axis){.shift = 0};
         else if (periods->length[a] > 0) {
             const double cells = periods->length[a] / (wide + axis_slack(largest[a], type));
-            lattice.periodic = true;
+            raster.periodic = true;
             axis->length = periods->length[a];
             axis->cells = cells < 1 ? 1 : cells < 0x1p40 ? (int64_t)cells : (int64_t)1 << 40;
             axis->low = axis->cells >= 3 ? -1 : 0;
             axis->high = axis->cells >= 2 ? 1 : 0;
         }
     }
-    return lattice;
+    return raster;
 }
 
-struct sphgi_cutting sphgi_cutting_of(const struct sphgi_lattice *lattice)
+struct sphgi_cutting sphgi_cutting_of(const struct sphgi_raster *raster)
 {
     struct sphgi_cutting cutting = {.inverse = {0}};
     int32_t local = 0;
     for (int32_t a = 0; a < 3; ++a) {
-        cutting.inverse[a] = lattice->axis[a].inverse;
-        cutting.shift[a] = lattice->axis[a].shift;
+        cutting.inverse[a] = raster->axis[a].inverse;
+        cutting.shift[a] = raster->axis[a].shift;
         cutting.local_shift[a] = local;
-        local += lattice->axis[a].shift;
+        local += raster->axis[a].shift;
     }
     return cutting;
 }
 
-int32_t sphgi_local_cell(const struct sphgi_lattice *lattice, const int64_t *cell)
+int32_t sphgi_local_cell(const struct sphgi_raster *raster, const int64_t *cell)
 {
     int32_t local = 0;
     for (int32_t a = 2; a >= 0; --a) {
-        const int32_t shift = lattice->axis[a].shift;
+        const int32_t shift = raster->axis[a].shift;
         local = local << shift | (int32_t)(cell[a] & ((1 << shift) - 1));
     }
     return local;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "group.h"
+#include "bundle.h"
 #include "batch.h"
 #include "core/view.h"
 #include "corrections.h"
@@ -9,9 +9,9 @@
 #include "table.h"
 #include <string.h>
 
-/* ---- The arena: sums of several source sets ------------------------------------------------- */
+/* ---- Sums that wait for other source sets ------------------------------------------------- */
 
-static void each_arena_part(struct sphgi_worker *w, bool load)
+static void each_part(struct sphgi_worker *w, bool load)
 {
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_plan *plan = sweep->plan;
@@ -19,7 +19,7 @@ static void each_arena_part(struct sphgi_worker *w, bool load)
     for (int32_t s = 0; s < plan->sums; s += SPHGI_COLUMNS_MOST) {
         const int32_t count = sphgi_min32(SPHGI_COLUMNS_MOST, plan->sums - s);
         const struct sphgi_columns columns =
-            sphgi_dense_columns(sweep->arena + (size_t)s * size, count, plan->sums, plan->type);
+            sphgi_dense_columns(sweep->set_sums + (size_t)s * size, count, plan->sums, plan->type);
         char *lanes = sphgi_lane(w, w->reduced, s);
         if (load)
             w->passes->load_lanes(w->batch.width, &columns, sphgi_targets(w), lanes);
@@ -47,8 +47,8 @@ static void write_self(struct sphgi_worker *w, int32_t lane)
 {
     const struct sphgi_pair_sink *pairs = w->sweep->pairs;
     const struct sphgi_plan *plan = w->sweep->plan;
-    const int32_t target = w->group.target[lane], d = plan->dimension;
-    const int64_t place = pairs->offsets[pairs->row_of_target[target]] + w->group.written[lane];
+    const int32_t target = w->bundle.target[lane], d = plan->dimension;
+    const int64_t place = pairs->offsets[pairs->row_of_target[target]] + w->bundle.written[lane];
     const size_t size = sphgi_size_of_type(plan->type);
     pairs->indices[place] = target;
     if (!pairs->gradient.count)
@@ -62,18 +62,18 @@ static void write_self(struct sphgi_worker *w, int32_t lane)
 static void finish_pairs(struct sphgi_worker *w)
 {
     const struct sphgi_pair_sink *pairs = w->sweep->pairs;
-    for (int32_t l = 0; l < w->group.lanes; ++l) {
+    for (int32_t l = 0; l < w->bundle.count; ++l) {
         if (w->sweep->plan->classic && w->sweep->plan->own_set >= 0) {
             if (pairs->offsets)
                 write_self(w, l);
-            ++w->group.written[l];
+            ++w->bundle.written[l];
         }
         if (!pairs->offsets)
-            pairs->counts[pairs->row_of_target[w->group.target[l]]] = w->group.written[l];
+            pairs->counts[pairs->row_of_target[w->bundle.target[l]]] = w->bundle.written[l];
     }
 }
 
-void sphgi_group_finish(struct sphgi_worker *w)
+void sphgi_bundle_finish(struct sphgi_worker *w)
 {
     sphgi_put_to_work(w, 0);
     if (w->sweep->pairs)
@@ -81,18 +81,18 @@ void sphgi_group_finish(struct sphgi_worker *w)
     else if (w->sweep->steps & SPHGI_FINISH)
         finish(w);
     else
-        each_arena_part(w, false);
-    w->group.lanes = w->group.summed = 0;
+        each_part(w, false);
+    w->bundle.count = w->bundle.summed = 0;
 }
 
-void sphgi_group_finish_from_arena(struct sphgi_worker *w)
+void sphgi_bundle_finish_from_sums(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     sphgi_put_to_work(w, 0);
     sphgi_find_lane_radii(w);
     w->own.loaded = false;
     sphgi_load_targets(w);
-    each_arena_part(w, true);
+    each_part(w, true);
     if ((w->sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);
     else if (plan->corrects)
@@ -102,5 +102,5 @@ void sphgi_group_finish_from_arena(struct sphgi_worker *w)
                                w->coefficients, false);
     if (w->sweep->steps & SPHGI_SUM_FIELDS)
         sphgi_finish_fields(w);
-    w->group.lanes = 0;
+    w->bundle.count = 0;
 }
