@@ -772,7 +772,7 @@ static void what_order_2_lacks_is_refused_by_name(const test_case *test)
     field.hessian = sphg_absent();
     field.form = SPHG_SYMMETRIC;
     field.laplacian = setup_view(&found.laplacian);
-    require_refused(&on, field, on.scheme, "laplacian outside the difference form");
+    require_refused(&on, field, on.scheme, "laplacian outside the difference and adjoint forms");
     field = (sphg_field){.shape = SPHG_SYM_TENSOR, .hessian = setup_view(&found.hessian)};
     require_refused(&on, field, on.scheme, "hessian of a tensor");
     sphg_scheme other = on.scheme;
