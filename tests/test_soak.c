@@ -364,7 +364,7 @@ static world *world_of(const test_case *test)
     world *own = test_memory(sizeof *own);
     own->test = test;
     own->dimension = test->dimension;
-    own->random = random_seeded(223 + (uint64_t)test->dimension);
+    own->random = random_seeded(227 + (uint64_t)test->dimension);
     fake_host_open(&own->host);
     own->hostile = valid_call_create(test, 0);
     own->position = setup_output(type, MOST, own->dimension);
