@@ -45,7 +45,7 @@ int main(void)
         const int own = d == &whole ? COUNT : OWN, ghosts = d == &whole ? 0 : GHOSTS;
         for (int k = 0; k < own + ghosts; ++k) { /* ghosts are there by the first exchange */
             const int place = d == &upper ? mirrored(k) : k;
-            for (int a = 0, rest = place; a < 3; a++, rest /= SIDE)
+            for (int a = 0, rest = place; a < 3; ++a, rest /= SIDE)
                 d->x[k][a] = rest % SIDE;
             d->pressure[k] = sin(d->x[k][0] + 2 * d->x[k][2]);
         }

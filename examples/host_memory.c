@@ -37,7 +37,7 @@ int main(void)
 {
     const double volume = 1;
     for (int i = 0; i < COUNT; ++i) { /* a lattice with spacing 1, and the field 2 x + 3 y - z */
-        for (int k = 0, rest = i; k < 3; k++, rest /= SIDE)
+        for (int k = 0, rest = i; k < 3; ++k, rest /= SIDE)
             x[i][k] = rest % SIDE;
         a[i] = 2 * x[i][0] + 3 * x[i][1] - x[i][2];
     }

@@ -25,7 +25,7 @@ int main(void)
     const double volume = 1;
     const sphg_scheme scheme = {.support_radius = 2};
     for (int i = 0; i < COUNT; ++i) /* a lattice with spacing 1 */
-        for (int k = 0, rest = i; k < 3; k++, rest /= SIDE)
+        for (int k = 0, rest = i; k < 3; ++k, rest /= SIDE)
             x[i][k] = rest % SIDE;
     const sphg_geometry block = sphg_all(sphg_view_f64(x[0], sizeof x[0]), COUNT);
     sphg_neighbors *neighbors = NULL;

@@ -30,7 +30,7 @@ void lattice_fill(const struct lattice *lattice, struct numbers *positions)
     uint64_t state = 1;
     for (int32_t i = 0; i < count; ++i) {
         int32_t rest = i;
-        for (int32_t axis = 0; axis < lattice->dimension; axis++, rest /= lattice->side) {
+        for (int32_t axis = 0; axis < lattice->dimension; ++axis, rest /= lattice->side) {
             const double place = rest % lattice->side;
             const double moved = step > 0 ? round(4096 * step * next_displacement(&state)) : 0;
             const double offset = (place + moved / 4096) * lattice->spacing;

@@ -129,7 +129,7 @@ static void compare_correction(const comparison *on, const setup_array *table, i
     if (point->undecided)
         return;
     for (int a = 0; a < d; ++a)
-        for (int b = a; b < d; b++, ++k) {
+        for (int b = a; b < d; ++b, ++k) {
             quad error = (quad)setup_get(table, i, k) - point->correction[a][b];
             square += error * error * (a == b ? 1 : 2);
         }

@@ -34,7 +34,7 @@ static cloud crowds(int dimension, random_state *random)
     cloud made = {.dimension = dimension, .count = COUNT};
     made.x = test_memory((size_t)(COUNT * dimension) * sizeof *made.x);
     double centre[3] = {0};
-    for (int i = 0, left = 0; i < COUNT; i++, left--) {
+    for (int i = 0, left = 0; i < COUNT; ++i, --left) {
         if (!left) {
             left = i ? 1 + random_index(random, 90) : BIG;
             for (int c = 0; c < dimension; ++c)

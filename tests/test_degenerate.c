@@ -195,7 +195,7 @@ static closing_step step_at(const test_case *test, sphg_policy policy, double ga
     const oracle_point *point = oracle_at(on.reference, i);
     closing_step step = {{0}, {0}};
     for (int a = 0; a < d; ++a)
-        for (int b = a; b < d; b++, ++k) {
+        for (int b = a; b < d; ++b, ++k) {
             double scale = (double)point->scale;
             step.c[a * 3 + b] = step.c[b * 3 + a] = setup_get(&table, i, k) * scale;
             step.m[a * 3 + b] = step.m[b * 3 + a] = (double)(point->moment[a][b] / point->scale);

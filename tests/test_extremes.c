@@ -195,7 +195,7 @@ static setup_array positions_of(const test_case *test, crowd all)
     const float *from = one.data;
     float *to = made.data;
     for (int c = 0; c < all.clumps; ++c)
-        for (int k = 0; k < all.each; k++, to += 3) {
+        for (int k = 0; k < all.each; ++k, to += 3) {
             to[0] = from[3 * k] + (float)(c % ROW * APART);
             to[1] = from[3 * k + 1] + (float)(c / ROW * APART);
             to[2] = from[3 * k + 2];

@@ -120,7 +120,7 @@ static void disguise(draft *lists)
 {
     lists->mask = 0x1fffffff;
     for (int i = 0; i < lists->count; ++i)
-        for (int a = 0, b = lists->lengths[i] - 1; a <= b; a++, b--) {
+        for (int a = 0, b = lists->lengths[i] - 1; a <= b; ++a, b--) {
             const int32_t first = lists->rows[i][a];
             lists->rows[i][a] = lists->rows[i][b] | (a % 4) << 29;
             lists->rows[i][b] = first | 1 << 30;

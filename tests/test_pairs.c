@@ -96,7 +96,7 @@ static void require_searched(const targets *own, const rows *found)
     const int self = own->are_sources && test_is_classic(on->test);
     for (int i = 0; i < own->count; ++i) {
         int64_t at = found->offsets[i];
-        for (int64_t k = expected.offsets[i]; k < expected.offsets[i + 1]; k++, ++at) {
+        for (int64_t k = expected.offsets[i]; k < expected.offsets[i + 1]; ++k, ++at) {
             at += self && found->indices[at] == i;
             assert_int_equal(found->indices[at], expected.indices[k]);
         }
@@ -178,7 +178,7 @@ static void masked_targets_have_the_pairs_they_have_among_all(const test_case *t
         const pair_rows all = pairs_of(&own, NULL, 1), some = pairs_of(&own, &subset, 1);
         for (int i = 0, row = 0; i < own.count; ++i)
             if (mask[i])
-                require_row(&all, i, &some, ++row);
+                require_row(&all, i, &some, row++);
     }
 }
 

@@ -303,7 +303,7 @@ static void write_heads(FILE *file, const struct table *table)
         if (!column->key)
             continue;
         const bool time = is_time(table, c);
-        for (int k = 0; k < (time ? 3 : 1); k++, comma = ",")
+        for (int k = 0; k < (time ? 3 : 1); ++k, comma = ",")
             fprintf(file, "%s%s%s%s%s", comma, column->key, time && *column->key ? "_" : "",
                     !time          ? ""
                     : column->unit ? column->unit

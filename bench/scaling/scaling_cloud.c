@@ -44,7 +44,7 @@ static void scatter(struct numbers *positions, int32_t side, double support)
     const double width = positions->width == 3 ? radius * cbrt(4 * pi / 9) : radius * sqrt(pi / 3);
     for (int32_t i = 0; i < positions->count; ++i) {
         int32_t rest = i;
-        for (int32_t axis = 0; axis < positions->width; axis++, rest /= side)
+        for (int32_t axis = 0; axis < positions->width; ++axis, rest /= side)
             numbers_set(positions, i, axis,
                         width * (rest % side + lattice_random(3 * (int64_t)i + axis)));
     }

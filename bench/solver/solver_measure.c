@@ -139,7 +139,7 @@ static void matrix_of(const struct numbers *table, int32_t item, int32_t d, doub
     int32_t n = 0;
     for (int32_t r = 0; r < d; ++r)
         for (int32_t c = symmetric ? r : 0; c < d; ++c) {
-            a[r][c] = numbers_get(table, item, ++n);
+            a[r][c] = numbers_get(table, item, n++);
             if (symmetric)
                 a[c][r] = a[r][c];
         }

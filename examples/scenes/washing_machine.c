@@ -344,7 +344,7 @@ static void simulate(const struct run *run)
             note_share(&shares, sph.spent, seconds);
         run_progress(run, machine.time, duration);
         if (run->options->output && machine.time >= apart * frame) {
-            write_machine(run, &machine, ++frame);
+            write_machine(run, &machine, frame++);
             write_state(series, &machine);
         }
     }

@@ -28,7 +28,7 @@ awk '
     { blank = /^$/ }
 
     # Where the value of an increment is not used, it stands in front.
-    /(; |^[ \t]*)[a-z_][a-z_0-9>.\[\]-]*(\+\+|--)[;)]/ { complain("k++, where everyone has ++k") }
+    /(; |^[ \t]*)[a-z_][a-z_0-9>.\[\]-]*(\+\+|--)[;),]/ { complain("k++, where everyone has ++k") }
 
     # Includes of ours, then those of others, without a blank line between.
     /^#include </ && after_blank { complain("a blank line among the includes") }

@@ -70,7 +70,7 @@ static void try_eigen(batch *on)
         if (largest(on, on->in, i * width, width) > top)
             continue;
         for (int r = 0, k = i * width; r < d; ++r)
-            for (int c = r; c < d; c++, ++k)
+            for (int c = r; c < d; ++c, ++k)
                 a[r * d + c] = a[c * d + r] = fuzz_get(on->type, on->in, k);
         require_orthogonal(on, on->second, i);
         require_product(on, a, on->second, on->first, on->second, i);

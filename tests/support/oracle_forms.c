@@ -72,7 +72,7 @@ static item read_item(int d, sphg_shape shape, const double *numbers, int i)
     if (shape == SPHG_SYM_TENSOR) {
         full.count = d * d;
         for (int a = 0, k = 0; a < d; ++a)
-            for (int b = a; b < d; b++, ++k)
+            for (int b = a; b < d; ++b, ++k)
                 full.a[a * d + b] = full.a[b * d + a] = first[k];
         return full;
     }

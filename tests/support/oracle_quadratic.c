@@ -54,7 +54,7 @@ oracle_basis oracle_basis_of(const oracle_scene *scene)
     const sphg_scheme *scheme = &scene->scheme;
     oracle_basis made = {.d = scheme->dimension};
     for (int a = 0; a < made.d; ++a)
-        for (int b = a; b < made.d; b++, ++made.n)
+        for (int b = a; b < made.d; ++b, ++made.n)
             made.a[made.n] = a, made.b[made.n] = b;
     quad mu2 = oracle_mu2(scheme->kernel, made.d);
     quad m4 = scheme->method == SPHG_KGC ? mu2 : oracle_mu4(scheme->kernel, made.d) / mu2;

@@ -119,7 +119,7 @@ double *second_order_polynomial(const cloud *points, int degree)
         const double *x = points->x + i * d;
         for (int a = 0, k = 0; a < d; ++a) {
             numbers[i] += second_order_slopes[a] * x[a];
-            for (int b = a; degree == 2 && b < d; b++, ++k)
+            for (int b = a; degree == 2 && b < d; ++b, ++k)
                 numbers[i] += second_order_second[k] * x[a] * x[b] * (a == b ? .5 : 1);
         }
     }
@@ -132,7 +132,7 @@ void second_order_slope_at(const cloud *points, int i, double *gradient)
     const double *x = points->x + i * d;
     memcpy(gradient, second_order_slopes, (size_t)d * sizeof *gradient);
     for (int a = 0, k = 0; a < d; ++a)
-        for (int b = a; b < d; b++, ++k) {
+        for (int b = a; b < d; ++b, ++k) {
             gradient[a] += second_order_second[k] * x[b];
             gradient[b] += a == b ? 0 : second_order_second[k] * x[a];
         }
