@@ -49,6 +49,7 @@ run_long() {
     done
     cat build/release/f32.log build/release/f64.log
     unset SPHG_TEST_LONG
+    ctest --preset release -C long -L '^long$' -j "$(nproc)" || status=1
     build_preset asan -DSPHG_BUILD_TESTS=ON -DSPHG_BUILD_BENCH=ON &&
         ctest --preset asan -j "$(nproc)" || status=1
     build_preset clang -DSPHG_BUILD_TESTS=ON -DSPHG_BUILD_BENCH=ON -DSPHG_BUILD_SCENES=ON &&
