@@ -197,8 +197,7 @@ static void ranks_and_smallest_moments_match_the_oracle(const test_case *test)
     }
 }
 
-/* ---- Pairs ------------------------------------------------------------------------------------
- */
+/* ---- Pairs ----------------------------------------------------------------------------------- */
 
 typedef struct pair_list {
     int64_t *offsets;
@@ -302,8 +301,7 @@ static void one_pair_at_a_time_matches_the_oracle(const test_case *test)
     }
 }
 
-/* ---- The same by other ways --------------------------------------------------------------------
- */
+/* ---- The same by other ways ------------------------------------------------------------------ */
 
 static void fused_sweep_equals_table_to_the_bit(const test_case *test)
 {

@@ -3,8 +3,7 @@
  * linear exactness in the directions that are kept, Shepard's average in the others. */
 #include "support/comparison.h"
 
-/* ---- Scenes: what full neighbourhoods, sheets, strings and loners look like ---------------------
- */
+/* ---- Scenes: what full neighbourhoods, sheets, strings and loners look like ------------------ */
 
 typedef struct classic_scene {
     const char *name;
@@ -50,8 +49,7 @@ static double *ones(const comparison *on)
     return numbers;
 }
 
-/* ---- Partition of unity -----------------------------------------------------------------------
- */
+/* ---- Partition of unity ---------------------------------------------------------------------- */
 
 static void shape_functions_sum_to_one_and_their_gradients_to_zero(const test_case *test)
 {
@@ -183,8 +181,7 @@ static void values_of_linear_fields_are_exact_at_full_rank(const test_case *test
     }
 }
 
-/* ---- Self term ----------------------------------------------------------------------------------
- */
+/* ---- Self term ------------------------------------------------------------------------------- */
 
 /* The direct gradient of the field that is 1 at i alone is G_ii at i: it must be there. */
 static void own_shape_function_has_a_gradient(const test_case *test)

@@ -66,8 +66,7 @@ static void require_full_rank(const comparison *on)
     assert_true(has_full_rank(on));
 }
 
-/* ---- Momentum ---------------------------------------------------------------------------------
- */
+/* ---- Momentum -------------------------------------------------------------------------------- */
 
 /* V_i^weigh times the vector result of a form; weigh = 1 turns a SYMMETRIC or DIFFERENCE
  * derivative into a force. */
@@ -229,8 +228,7 @@ static void symmetric_is_adjoint_at_equal_density(const test_case *test)
     TEST_WITHIN(adjointness, error / largest / on.scene.unit, "symmetric against adjoint");
 }
 
-/* ---- Adjointness ------------------------------------------------------------------------------
- */
+/* ---- Adjointness ----------------------------------------------------------------------------- */
 
 /* <S, grad w> with volumes, and <w, f>: their sum vanishes for every S and w. */
 static double work_imbalance(const comparison *on, sphg_shape shape)
@@ -293,8 +291,7 @@ static void adjoint_divergence_of_vectors_is_the_adjoint_of_the_gradient(const t
     TEST_WITHIN(adjointness, fabs(work) / size / on.scene.unit, "flux");
 }
 
-/* ---- Order 2 ---------------------------------------------------------------------------------
- */
+/* ---- Order 2 --------------------------------------------------------------------------------- */
 
 /* Its tables are symmetric, and M2 P + M3 Q^T = M2 C: what order 1 conserves, it does. */
 static void order_2_conserves_what_order_1_does(const test_case *test)
@@ -318,8 +315,7 @@ static void order_2_conserves_what_order_1_does(const test_case *test)
     require_angular_lost(&stages[1], SPHG_SYM_TENSOR, SPHG_ADJOINT);
 }
 
-/* ---- Lists that lack pairs -------------------------------------------------------------------
- */
+/* ---- Lists that lack pairs ------------------------------------------------------------------- */
 
 static void lists_cut_at_both_ends_conserve(const test_case *test)
 {

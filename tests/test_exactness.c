@@ -70,8 +70,7 @@ static double size_of(const double *numbers, int count)
     return sqrt(square);
 }
 
-/* ---- Where the rank is full --------------------------------------------------------------------
- */
+/* ---- Where the rank is full ------------------------------------------------------------------ */
 
 typedef struct quality {
     setup_array rank, lambda;
@@ -125,8 +124,7 @@ static void require_full_ranks(const comparison *on, const quality *good, const 
                  good->full, on->points.count, scene->name);
 }
 
-/* ---- Linear fields -----------------------------------------------------------------------------
- */
+/* ---- Linear fields --------------------------------------------------------------------------- */
 
 static const double jacobians[2][9] = {{2, -1, 3, -2}, {2, -1, 0, 3, -2, 1, 1, 0, 3}};
 static const double start[] = {1, -2, .5};
@@ -219,8 +217,7 @@ static void linear_scalars_and_tensors_are_exact(const test_case *test)
     }
 }
 
-/* ---- Rigid rotation -----------------------------------------------------------------------------
- */
+/* ---- Rigid rotation -------------------------------------------------------------------------- */
 
 static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_case *test)
 {
@@ -249,8 +246,7 @@ static void rotation_gives_no_strain_and_twice_the_angular_velocity(const test_c
     }
 }
 
-/* ---- Constants ----------------------------------------------------------------------------------
- */
+/* ---- Constants ------------------------------------------------------------------------------- */
 
 static void require_zero(const setup_array *found, const char *what)
 {

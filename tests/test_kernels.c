@@ -233,8 +233,7 @@ static void values_equal_the_closed_form(const test_case *test)
     }
 }
 
-/* ---- The same from the centre to the rim, in the passes, too ----------------------------------
- */
+/* ---- The same from the centre to the rim, in the passes, too --------------------------------- */
 
 /* Where sums of truncated powers would cancel, near 0, the places stand close. f32 holds them all.
  */

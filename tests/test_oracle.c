@@ -250,8 +250,7 @@ static void two_sided_forms_conserve_momentum_in_quad(const test_case *test)
     }
 }
 
-/* ---- Derivatives of the classic interpolant ----------------------------------------------------
- */
+/* ---- Derivatives of the classic interpolant -------------------------------------------------- */
 
 static quad value_near(const test_case *test, const bench *on, const double *field, const double *x)
 {

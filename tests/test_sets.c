@@ -300,8 +300,7 @@ static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *tes
                          "target %d, number %d", i, c);
 }
 
-/* ---- Targets unlike sources ---------------------------------------------------------------------
- */
+/* ---- Targets unlike sources ------------------------------------------------------------------ */
 
 typedef struct probe {
     comparison on;

@@ -11,8 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- What all cases of a sweep and method come to ---------------------------------------------
- */
+/* ---- What all cases of a sweep and method come to -------------------------------------------- */
 
 struct summary {
     int cases;
@@ -85,8 +84,7 @@ static void print_summaries(const struct stability *stability)
     table_print(table);
 }
 
-/* ---- What one sweep alone comes to, place by place ---------------------------------------------
- */
+/* ---- What one sweep alone comes to, place by place ------------------------------------------- */
 
 /* The same case in another precision. */
 static const struct stability_case *beside(const struct stability *stability,
@@ -133,8 +131,7 @@ static void print_places(const struct stability *stability)
     table_print(table);
 }
 
-/* ---- All of it --------------------------------------------------------------------------------
- */
+/* ---- All of it ------------------------------------------------------------------------------- */
 
 static struct table *table_of_cases(const struct stability *stability)
 {

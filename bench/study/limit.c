@@ -43,8 +43,7 @@ static const char *describe_arrangement(int index)
                       how.in_passes ? "weights first" : "one loop");
 }
 
-/* ---- On a terminal ----------------------------------------------------------------------------
- */
+/* ---- On a terminal --------------------------------------------------------------------------- */
 
 static void print_times(const struct limit *limit)
 {
@@ -127,8 +126,7 @@ static void print_results(const struct limit *limit, const struct table *probe)
     print_arrangements(limit);
 }
 
-/* ---- For programs -----------------------------------------------------------------------------
- */
+/* ---- For programs ---------------------------------------------------------------------------- */
 
 static struct table *table_of_probe(const struct limit *limit)
 {

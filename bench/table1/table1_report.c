@@ -9,8 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* ---- What was measured ------------------------------------------------------------------------
- */
+/* ---- What was measured ----------------------------------------------------------------------- */
 
 static void print_lattice(const struct table1 *table)
 {
@@ -96,8 +95,7 @@ static void print_probe(const struct table1 *table)
            over_probe(table, TABLE1_GRADIENT, PROBE_GRADIENT));
 }
 
-/* ---- The table --------------------------------------------------------------------------------
- */
+/* ---- The table ------------------------------------------------------------------------------- */
 
 static bool some_are_deficient(const struct table1 *table)
 {
@@ -178,8 +176,7 @@ static void add_method(struct table *rows, const struct table1 *table,
     table_add(rows, cells, (size_t)count);
 }
 
-/* ---- What it means ----------------------------------------------------------------------------
- */
+/* ---- What it means --------------------------------------------------------------------------- */
 
 /* Volumes are what a file gets wrong most easily, and what lambda takes as it is. */
 static void print_suspect(const struct table1 *table)

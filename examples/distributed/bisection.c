@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <zoltan.h>
 
-/* ---- What Zoltan asks --------------------------------------------------------------------------
- */
+/* ---- What Zoltan asks ------------------------------------------------------------------------ */
 
 static int dimension(void *data, int *error)
 {
@@ -47,8 +46,7 @@ static void tell_places(void *data, int global_size, int local_size, int count,
     *error = ZOLTAN_OK;
 }
 
-/* ---- What it answers ---------------------------------------------------------------------------
- */
+/* ---- What it answers ------------------------------------------------------------------------- */
 
 static void need(int result)
 {

@@ -7,8 +7,7 @@
 /* Density is linear: 1 + slope . x. */
 static const double slope[3] = {.02, .03, -.01};
 
-/* ---- Particles ---------------------------------------------------------------------------------
- */
+/* ---- Particles ------------------------------------------------------------------------------- */
 
 /* A number from -1 to 1 that belongs to a particle. */
 static double scattered(int name, int which)
@@ -47,8 +46,7 @@ void cloud_make(struct domain *domain, MPI_Comm ranks, int side)
     free(particles);
 }
 
-/* ---- Sums --------------------------------------------------------------------------------------
- */
+/* ---- Sums ------------------------------------------------------------------------------------ */
 
 static double dot(const double *a, const double *b)
 {
@@ -98,8 +96,7 @@ struct cloud_errors cloud_judge(const struct cloud_forces *forces, int side, enu
                                  fabs(sums.work - sums.expected) / sums.size_of_work};
 }
 
-/* ---- Differences -------------------------------------------------------------------------------
- */
+/* ---- Differences ----------------------------------------------------------------------------- */
 
 static void widen(double *largest, const double *number, const double *other)
 {

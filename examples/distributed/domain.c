@@ -50,8 +50,7 @@ static void refuse_bad_places(const struct domain *domain)
                 stop("the position of a particle is not a finite number");
 }
 
-/* ---- Owners ------------------------------------------------------------------------------------
- */
+/* ---- Owners ---------------------------------------------------------------------------------- */
 
 static void add_parcel(struct parcels *parcels, int32_t item, int rank)
 {
@@ -93,8 +92,7 @@ static void send_home(struct domain *domain)
     domain->own = domain->home.received;
 }
 
-/* ---- Ghosts ------------------------------------------------------------------------------------
- */
+/* ---- Ghosts ---------------------------------------------------------------------------------- */
 
 /* So that particles look at a few boxes only, however many ranks there are. */
 static void find_near_boxes(struct domain *domain, double reach)

@@ -29,8 +29,7 @@ double drop_mass(const struct drop *drop)
     return (double)drop->volume; /* the density at rest is 1 */
 }
 
-/* ---- The beginning -----------------------------------------------------------------------------
- */
+/* ---- The beginning --------------------------------------------------------------------------- */
 
 static struct particle particle_at(const double x[3], int name)
 {
@@ -103,8 +102,7 @@ void drop_free(struct drop *drop)
     free(drop->force);
 }
 
-/* ---- Ghosts and neighbours ---------------------------------------------------------------------
- */
+/* ---- Ghosts and neighbours ------------------------------------------------------------------- */
 
 static struct particle *particles(const struct drop *drop)
 {
@@ -187,8 +185,7 @@ static void bring_positions(struct drop *drop, int step)
     finish(drop);
 }
 
-/* ---- A step ------------------------------------------------------------------------------------
- */
+/* ---- A step ---------------------------------------------------------------------------------- */
 
 static sphg_view of_second(const float *first)
 {

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- Plans -------------------------------------------------------------------------------------
- */
+/* ---- Plans ----------------------------------------------------------------------------------- */
 
 /* Sorts the items by rank; those of one rank keep their order. */
 static void sort_parcels(struct plan *plan, const struct parcel *parcels, int count)
@@ -49,8 +48,7 @@ void plan_free(struct plan *plan)
     *plan = (struct plan){0};
 }
 
-/* ---- Transfers ---------------------------------------------------------------------------------
- */
+/* ---- Transfers ------------------------------------------------------------------------------- */
 
 static int bytes_of(int items, size_t size)
 {

@@ -29,8 +29,7 @@ static const struct {
 } methods[] = {{SPHG_KGC, "KGC"}, {SPHG_MLS, "MLS"}, {SPHG_RKPM, "RKPM"}};
 enum { METHODS = sizeof methods / sizeof *methods };
 
-/* ---- Forces ------------------------------------------------------------------------------------
- */
+/* ---- Forces ---------------------------------------------------------------------------------- */
 
 struct work {
     struct domain domain;
@@ -130,8 +129,7 @@ static struct cloud_forces *forces_of(struct work *work, sphg_method method,
     return gather_by_name(work->domain.ranks, work->forces, sizeof *work->forces, own, all);
 }
 
-/* ---- Verdict -----------------------------------------------------------------------------------
- */
+/* ---- Verdict --------------------------------------------------------------------------------- */
 
 static bool is_small(double error)
 {

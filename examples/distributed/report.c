@@ -6,8 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* ---- Over all ranks ----------------------------------------------------------------------------
- */
+/* ---- Over all ranks -------------------------------------------------------------------------- */
 
 static double most(const struct drop *drop, double value)
 {
@@ -77,8 +76,7 @@ static struct sums sums_of(const struct drop *drop, double (*const first)[3])
     return sums;
 }
 
-/* ---- Places by name ----------------------------------------------------------------------------
- */
+/* ---- Places by name -------------------------------------------------------------------------- */
 
 static struct placed *places(const struct drop *drop, int count)
 {
@@ -94,8 +92,7 @@ static struct placed *places(const struct drop *drop, int count)
     return all;
 }
 
-/* ---- The report --------------------------------------------------------------------------------
- */
+/* ---- The report ------------------------------------------------------------------------------ */
 
 struct report report_of(const struct drop *drop)
 {

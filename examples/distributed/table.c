@@ -4,8 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* ---- Print -------------------------------------------------------------------------------------
- */
+/* ---- Print ----------------------------------------------------------------------------------- */
 
 static void row(const char *name, const char *format, double many, double one)
 {
@@ -48,8 +47,7 @@ void table_print(const struct report *many, const struct report *one, double spa
            many->exact_angle, report_difference(many, one) / spacing);
 }
 
-/* ---- Judge -------------------------------------------------------------------------------------
- */
+/* ---- Judge ----------------------------------------------------------------------------------- */
 
 /* A limit that NaN does not pass. */
 static bool within(const char *what, double value, double limit)

@@ -94,8 +94,7 @@ SPHGI_TEMPLATE vec vabs(vec v)
     return (vec)((bit_pattern)v & ~(bit_pattern)splat(R(-0.0)));
 }
 
-/* ---- Masks: which lanes. They are joined by & | ~ ---------------------------------------------
- */
+/* ---- Masks: which lanes. They are joined by & | ~ -------------------------------------------- */
 
 #if defined(__AVX512F__)
 typedef uint32_t mask; /* a bit a lane; those beyond the lanes mean nothing */

@@ -40,8 +40,7 @@ void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi
     }
 }
 
-/* ---- The host's memory: tables of order 2 do not fit the columns of one view ------------------
- */
+/* ---- The host's memory: tables of order 2 do not fit the columns of one view ----------------- */
 
 static void store_long_table(struct sphgi_worker *w)
 {

@@ -92,8 +92,7 @@ static double random_number(void) /* in [-1/2, 1/2), of 24 bits: exact in f32 */
     return (double)(state >> 8) / 16777216.0 - 0.5;
 }
 
-/* ---- One scene --------------------------------------------------------------------------------
- */
+/* ---- One scene ------------------------------------------------------------------------------- */
 
 static struct numbers position, velocity, scalar, volume, jacobian, gradient, correction, force,
     minus_divergence;
@@ -223,8 +222,7 @@ static void compute(sphg_context *context, const sphg_scheme *scheme, sphg_type 
     sphg_neighbors_destroy(neighbors);
 }
 
-/* ---- What has no scene ------------------------------------------------------------------------
- */
+/* ---- What has no scene ----------------------------------------------------------------------- */
 
 static void decompose(sphg_context *context)
 {

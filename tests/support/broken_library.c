@@ -99,8 +99,7 @@ static void *real(const char *name)
         memcpy(&(function), &address, sizeof address);                                             \
     } while (0)
 
-/* ---- Results ----------------------------------------------------------------------------------
- */
+/* ---- Results --------------------------------------------------------------------------------- */
 
 static void spoil_number(const sphg_view *view, const void *part, int32_t item, int32_t number)
 {
@@ -152,8 +151,7 @@ static int32_t numbers_of_curl(const sphg_scheme *scheme)
     return dimension_of(scheme) == 2 ? 1 : 3;
 }
 
-/* ---- The calls --------------------------------------------------------------------------------
- */
+/* ---- The calls ------------------------------------------------------------------------------- */
 
 static void spoil_field(sphg_context *context, const sphg_scheme *scheme,
                         const sphg_request *request, const sphg_field *field)

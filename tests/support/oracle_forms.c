@@ -161,8 +161,7 @@ static void one_sided(const oracle_scene *scene, const oracle_field *field, int 
     result->undecided = point->undecided;
 }
 
-/* ---- Two-sided forms: w_i A_i G_ij - w_j A_j G_ji ---------------------------------------------
- */
+/* ---- Two-sided forms: w_i A_i G_ij - w_j A_j G_ji -------------------------------------------- */
 
 typedef struct side_weights {
     quad own, other;

@@ -92,8 +92,7 @@ quad oracle_weight_unit(const oracle_scene *scene, const oracle_point *point)
     return h * h / point->scale;
 }
 
-/* ---- Small matrices ---------------------------------------------------------------------------
- */
+/* ---- Small matrices -------------------------------------------------------------------------- */
 
 /* Gauss and Jordan with pivots; 0 where the matrix is singular to 100 bits. */
 int oracle_inverse_of(int n, oracle_block given, quad shift, oracle_block inverse)
@@ -141,8 +140,7 @@ quad oracle_norm_of(int n, oracle_block a)
     return quad_sqrt(sum);
 }
 
-/* ---- Omega -------------------------------------------------------------------------------------
- */
+/* ---- Omega ----------------------------------------------------------------------------------- */
 
 quad oracle_smooth(quad x, quad low, quad high, quad *slope)
 {
@@ -168,8 +166,7 @@ static void keep(const oracle_scene *scene, const oracle_point *point, oracle_se
     }
 }
 
-/* ---- One target ---------------------------------------------------------------------------------
- */
+/* ---- One target ------------------------------------------------------------------------------ */
 
 typedef struct moments {
     quad third[3][oracle_pairs];
