@@ -74,6 +74,36 @@ static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
     assert_true(pairs > 50000);
 }
 
+/* Where cells are small beside the period their numbers are too large for the tree, and large
+ * particles near its ends look at both of them. */
+static void tiny_particles_near_the_ends_of_a_period_are_found_once(const test_case *test)
+{
+    enum { COUNT = 24, PERIOD = 8 };
+    sphg_context *context = setup_context_of(2);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
+    random_state random = random_seeded(313 + (uint64_t)test->precision);
+    int64_t pairs = 0;
+    for (int k = 0; k < 120; ++k) {
+        scene particles = scene_empty(test, COUNT);
+        particles.support = test_memory(COUNT * sizeof *particles.support);
+        for (int c = 0; c < COUNT * test->dimension; ++c)
+            particles.sources[c] =
+                scene_rounded(&particles, (random_index(&random, 5) - 2) * PERIOD +
+                                              random_between(&random, -1, 1));
+        for (int i = 0; i < COUNT; ++i)
+            particles.support[i] = i % 4 ? 1 : scene_rounded(&particles, ldexp(1, -20 - i));
+        particles.target_count =
+            random_index(&random, 2) ? COUNT : 1 + random_index(&random, COUNT);
+        for (int a = 0; a < test->dimension; ++a)
+            particles.period[a] = random_index(&random, 3) ? PERIOD : 0;
+        particles.list_free = random_index(&random, 2);
+        particles.mutual = random_index(&random, 2);
+        pairs +=
+            rows_require_search_exact(context, neighbors, &particles, 1, test_text("cloud %d", k));
+    }
+    assert_true(pairs > 2000);
+}
+
 /* ---- Clouds ---------------------------------------------------------------------------------- */
 
 typedef struct graded {
@@ -555,6 +585,8 @@ static void half_given_radii_are_refused(const test_case *test)
 
 static const test_entry entries[] = {
     TEST_ENTRY(random_clouds_have_the_pairs_of_brute_force, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(tiny_particles_near_the_ends_of_a_period_are_found_once, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(operators_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),

@@ -223,6 +223,18 @@ static void place_of(const struct sphgi_walk *walk, int32_t block, int64_t *at)
         sphgi_lower_octave(at);
 }
 
+/* Is that place in the spans across the bars that the walk is at? Far out the tree cannot tell: where
+ * a period has two spans, it finds the same block in both. */
+static bool is_in_part(const struct sphgi_walk *walk, const int64_t *at)
+{
+    for (int32_t a = 1; a < 3; ++a) {
+        const int32_t k = walk->part >> a & 1;
+        if (at[a] < walk->span[a].low[k] || at[a] > walk->span[a].high[k])
+            return false;
+    }
+    return true;
+}
+
 bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs)
 {
     runs->count = runs->candidates = 0;
@@ -231,7 +243,8 @@ bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs)
         if (runs->count == SPHGI_RUNS_MOST)
             return true;
         place_of(walk, block, at);
-        add_block(walk, block, at[0], walk->part & 1, runs);
+        if (is_in_part(walk, at))
+            add_block(walk, block, at[0], walk->part & 1, runs);
     }
     return false;
 }
@@ -257,7 +270,7 @@ bool sphgi_look_nearby(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
         }
         *near = (struct sphgi_near){.block = block, .octave = walk->octave};
         place_of(walk, block, near->at);
-        nearby->count += !is_found_again(walk, near->at[0]);
+        nearby->count += is_in_part(walk, near->at) && !is_found_again(walk, near->at[0]);
     }
     return true;
 }

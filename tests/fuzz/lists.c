@@ -181,7 +181,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         result = evaluate(&from, &on);
     FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
                      result == SPHG_ERROR_NOT_FINITE || result == SPHG_ERROR_INDEX ||
-                     result == SPHG_ERROR_VOLUME,
+                     result == SPHG_ERROR_VOLUME || result == SPHG_ERROR_UNSUPPORTED,
                  "%s", sphg_last_message(context));
     free(copy);
     return 0;
