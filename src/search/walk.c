@@ -223,8 +223,8 @@ static void place_of(const struct sphgi_walk *walk, int32_t block, int64_t *at)
         sphgi_lower_octave(at);
 }
 
-/* Is that place in the spans across the bars that the walk is at? Far out the tree cannot tell: where
- * a period has two spans, it finds the same block in both. */
+/* Is that place in the spans across the bars that the walk is at? Far out the tree cannot tell:
+ * where a period has two spans, it finds the same block in both. */
 static bool is_in_part(const struct sphgi_walk *walk, const int64_t *at)
 {
     for (int32_t a = 1; a < 3; ++a) {
