@@ -42,6 +42,13 @@ sphg_result sphgi_take_target_side(struct sphgi_plan_builder *builder, const sph
 sphg_result sphgi_take_field(struct sphgi_plan_builder *builder, int32_t k);
 sphg_result sphgi_take_streams(struct sphgi_plan_builder *builder);
 
+/* A view of set s with `numbers` an item (shape 0: flat), `width` of them a stream from stream
+ * `first` on. `missing`: refused if it is absent and the set is not empty, with these words; NULL:
+ * it may be absent. */
+sphg_result sphgi_take_of_set(struct sphgi_plan_builder *builder, int32_t s, const sphg_view *view,
+                              const char *name, sphg_shape shape, int32_t numbers, int32_t first,
+                              int32_t width, const char *missing);
+
 /* What set s has of `columns`, `width` numbers a stream from stream `first` on. */
 void sphgi_add_streams(struct sphgi_plan_builder *builder, int32_t s, int32_t first,
                        const struct sphgi_columns *columns, int32_t components, int32_t width);

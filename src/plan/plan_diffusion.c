@@ -68,20 +68,14 @@ sphg_result sphgi_take_coefficient_at_sources(struct sphgi_plan_builder *builder
     const struct sphgi_field_plan *field = &plan->fields[k];
     if (field->coefficient_stream < 0)
         return SPHG_OK;
-    const sphg_view *view = &builder->request->fields[k].coefficient[s];
-    const int32_t count = plan->sets[s].neighbors->source_count;
     const struct sphgi_stream *values =
         builder->streams + (ptrdiff_t)s * plan->stream_count + field->stream;
-    struct sphgi_columns columns = {.count = 0};
     const bool of_targets = s == plan->own_set && !field->coefficient.count;
-    if (sphgi_is_absent(view) && count > 0 && (!values->mirrored || of_targets))
-        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
-                     "%s: fields[%d].coefficient[%d] is absent; give one value for all, or leave "
-                     "coefficient NULL for 1 everywhere",
-                     builder->checker.function, (int)k, (int)s);
-    const sphg_result result = sphgi_take_input(
-        builder, view, sphgi_name_view(builder, "fields[%d].coefficient[%d]", k, s), SPHG_SCALAR, 1,
-        count, &columns);
-    sphgi_add_streams(builder, s, field->coefficient_stream, &columns, 1, 1);
-    return result;
+    return sphgi_take_of_set(
+        builder, s, &builder->request->fields[k].coefficient[s],
+        sphgi_name_view(builder, "fields[%d].coefficient[%d]", k, s), SPHG_SCALAR, 1,
+        field->coefficient_stream, 1,
+        values->mirrored && !of_targets
+            ? NULL
+            : "; give one value for all, or leave coefficient NULL for 1 everywhere");
 }

@@ -255,6 +255,21 @@ void sphgi_add_streams(struct sphgi_plan_builder *builder, int32_t s, int32_t fi
     }
 }
 
+sphg_result sphgi_take_of_set(struct sphgi_plan_builder *builder, int32_t s, const sphg_view *view,
+                              const char *name, sphg_shape shape, int32_t numbers, int32_t first,
+                              int32_t width, const char *missing)
+{
+    const int32_t count = builder->plan->sets[s].neighbors->source_count;
+    struct sphgi_columns columns = {.count = 0};
+    if (missing && sphgi_is_absent(view) && count > 0)
+        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s is absent%s", builder->checker.function, name,
+                     missing);
+    const sphg_result result =
+        sphgi_take_input(builder, view, name, shape, numbers, count, &columns);
+    sphgi_add_streams(builder, s, first, &columns, numbers, width);
+    return result;
+}
+
 static sphg_result take_field_at_sources(struct sphgi_plan_builder *builder, int32_t s, int32_t k)
 {
     const struct sphgi_plan *plan = builder->plan;
@@ -316,18 +331,9 @@ static sphg_result take_correction_of_set(struct sphgi_plan_builder *builder, in
 
 static sphg_result take_density_of_set(struct sphgi_plan_builder *builder, int32_t s)
 {
-    struct sphgi_plan *plan = builder->plan;
-    const sphg_view *view = &builder->request->sources[s].density;
-    struct sphgi_columns columns = {.count = 0};
-    if (sphgi_is_absent(view) && plan->sets[s].neighbors->source_count > 0)
-        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
-                     "%s: sources[%d].density is absent; the symmetric form reads it",
-                     builder->checker.function, (int)s);
-    const sphg_result result =
-        sphgi_take_input(builder, view, sphgi_name_view(builder, "sources[%d].density", s, 0),
-                         SPHG_SCALAR, 1, plan->sets[s].neighbors->source_count, &columns);
-    sphgi_add_streams(builder, s, plan->density_stream, &columns, 1, 1);
-    return result;
+    return sphgi_take_of_set(builder, s, &builder->request->sources[s].density,
+                             sphgi_name_view(builder, "sources[%d].density", s, 0), SPHG_SCALAR, 1,
+                             builder->plan->density_stream, 1, "; the symmetric form reads it");
 }
 
 sphg_result sphgi_take_streams(struct sphgi_plan_builder *builder)

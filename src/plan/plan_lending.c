@@ -57,16 +57,12 @@ sphg_result sphgi_take_lenders(struct sphgi_plan_builder *builder, int32_t s, in
 {
     const struct sphgi_plan *plan = builder->plan;
     const struct sphgi_field_plan *field = &plan->fields[k];
-    struct sphgi_columns columns = {.count = 0};
     if (!field->lent_rows)
         return SPHG_OK;
-    const int32_t numbers = numbers_lent(field->components, plan->dimension);
-    const sphg_result result =
-        sphgi_take_input(builder, &builder->request->fields[k].lenders[s],
-                         sphgi_name_view(builder, "fields[%d].lenders[%d]", k, s), (sphg_shape)0,
-                         numbers, plan->sets[s].neighbors->source_count, &columns);
-    sphgi_add_streams(builder, s, field->lent_stream, &columns, numbers, SPHGI_ROW);
-    return result;
+    return sphgi_take_of_set(builder, s, &builder->request->fields[k].lenders[s],
+                             sphgi_name_view(builder, "fields[%d].lenders[%d]", k, s),
+                             (sphg_shape)0, numbers_lent(field->components, plan->dimension),
+                             field->lent_stream, SPHGI_ROW, NULL);
 }
 
 sphg_result sphgi_take_borrows(struct sphgi_plan_builder *builder)

@@ -61,21 +61,12 @@ sphg_result sphgi_take_value_volume(struct sphgi_plan_builder *builder, int32_t 
 
 sphg_result sphgi_take_value_volume_of_set(struct sphgi_plan_builder *builder, int32_t s, int32_t k)
 {
-    const struct sphgi_plan *plan = builder->plan;
-    const struct sphgi_field_plan *field = &plan->fields[k];
+    const struct sphgi_field_plan *field = &builder->plan->fields[k];
     if (field->volume_stream < 0)
         return SPHG_OK;
-    const sphg_view *view = &builder->request->fields[k].value_volume[s];
-    const int32_t count = plan->sets[s].neighbors->source_count;
-    struct sphgi_columns columns = {.count = 0};
-    if (sphgi_is_absent(view) && count > 0)
-        SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: fields[%d].value_volume[%d] is absent",
-                     builder->checker.function, (int)k, (int)s);
-    const sphg_result result = sphgi_take_input(
-        builder, view, sphgi_name_view(builder, "fields[%d].value_volume[%d]", k, s), SPHG_SCALAR,
-        1, count, &columns);
-    sphgi_add_streams(builder, s, field->volume_stream, &columns, 1, 1);
-    return result;
+    return sphgi_take_of_set(builder, s, &builder->request->fields[k].value_volume[s],
+                             sphgi_name_view(builder, "fields[%d].value_volume[%d]", k, s),
+                             SPHG_SCALAR, 1, field->volume_stream, 1, "");
 }
 
 sphg_result sphgi_check_contraction(struct sphgi_plan_builder *builder, int32_t k)
