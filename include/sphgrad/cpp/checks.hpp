@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Before a call: does every view have the items and numbers that are read or written? Part of sphgrad.hpp, which includes it. */
+/* Before a call: does every view have the items and numbers that are read or written? Part of
+ * sphgrad.hpp, which includes it. */
 #ifndef SPHGRAD_CPP_CHECKS_HPP
 #define SPHGRAD_CPP_CHECKS_HPP
 #include "errors.hpp"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Errors of calls: thrown, or returned and to be looked at. Part of sphgrad.hpp, which includes it. */
+/* Errors of calls: thrown, or returned and to be looked at. Part of sphgrad.hpp, which includes it.
+ */
 #ifndef SPHGRAD_CPP_ERRORS_HPP
 #define SPHGRAD_CPP_ERRORS_HPP
 #include <sphgrad/sphgrad.h>

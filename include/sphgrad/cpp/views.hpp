@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Views of the memory of the host that know their length: arrays, ranges, matrices of Eigen. Part of sphgrad.hpp, which includes it. */
+/* Views of the memory of the host that know their length: arrays, ranges, matrices of Eigen. Part
+ * of sphgrad.hpp, which includes it. */
 #ifndef SPHGRAD_CPP_VIEWS_HPP
 #define SPHGRAD_CPP_VIEWS_HPP
 #include <sphgrad/sphgrad.h>
