@@ -31,7 +31,9 @@ enum {
                                                          the arrays share lines of the cache */
     SPHGI_WIDTH = 32,                                 /* targets that are finished together */
     SPHGI_GROUP = 16,                                 /* targets whose lists stand side by side */
-    SPHGI_FIND_MOST = 16                              /* targets that share one set of candidates */
+    SPHGI_FIND_MOST = 16,                             /* targets that share one set of candidates */
+    SPHGI_FIND_SLACK =
+        2 * SPHGI_LANES_MOST /* candidates, and ids, that are written beyond the last */
 };
 
 /* Where the components of the items of a view stand. */
@@ -270,18 +272,17 @@ struct sphgi_passes {
                            int64_t begin, int64_t end);
 
     /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: row of the
-     * first, if it is a source of the first run, those of the others follow; else -1. Lists stand
-     * one after the other, each in the order of the runs and padded to SPHGI_PAD. Returns the
-     * number of ids written. */
-    int64_t (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                    const void *targets, int32_t count, int32_t self, uint32_t *ids,
-                    int32_t *lengths);
+     * first, if it is a source of the first run, those of the others follow; else -1. Each list is
+     * in the order of the runs and padded to SPHGI_PAD; there is room for all candidates and
+     * SPHGI_FIND_SLACK more. */
+    void (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs, const void *targets,
+                 int32_t count, int32_t self, uint32_t *const *lists, int32_t *lengths);
 
     /* The same for targets, and sources, with radii of their own, the 4th numbers of rows. Runs
      * stand in any order; self may be in any of them. */
-    int64_t (*find_by_radii)(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                             const void *targets, int32_t count, int32_t self, uint32_t *ids,
-                             int32_t *lengths);
+    void (*find_by_radii)(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                          const void *targets, int32_t count, int32_t self, uint32_t *const *lists,
+                          int32_t *lengths);
 
     /* Of `count` ids of a list, those within reach of the target's row stay: they move together, or
      * if `pack` is not set, the dummy takes the place of the others. Padded to SPHGI_LANES_MOST

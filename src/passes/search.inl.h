@@ -62,10 +62,10 @@ SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing lanes)
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, ids));
 }
 SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
-                                     const uint32_t *ids, uint16_t bits)
+                                     const uint32_t *ids, unsigned bits)
 {
     (void)find;
-    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(bits, _mm512_loadu_si512(ids)));
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)bits, _mm512_loadu_si512(ids)));
     return to + __builtin_popcount(bits);
 }
 #elif defined(__aarch64__)
@@ -96,7 +96,7 @@ SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing moved)
 #endif
 }
 SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
-                                     const uint32_t *ids, uint16_t bits)
+                                     const uint32_t *ids, unsigned bits)
 {
     static const uint8_t items[16] = {0,   3,   12,  15,  48,  51,  60,  63,
                                       192, 195, 204, 207, 240, 243, 252, 255};
@@ -169,7 +169,7 @@ SPHGI_TEMPLATE uint32_t *pack_ids(const struct sphgi_find *find, uint32_t *to, c
 #endif
 #if !defined(__AVX512F__) && !defined(__aarch64__)
 SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
-                                     const uint32_t *ids, uint16_t bits)
+                                     const uint32_t *ids, unsigned bits)
 {
     to = pack_ids(find, to, ids, bits & 255);
     return pack_ids(find, to, ids + SPHGI_PAD, bits >> SPHGI_PAD);
@@ -178,26 +178,33 @@ SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to
 
 /* ---- Candidates ----------------------------------------------------------------------------- */
 
-/* The packed candidates of a few targets. If these are sources, they follow one another from `self`
+/* The packed candidates of some targets. If these are sources, they follow one another from `self`
  * on. */
 struct candidates {
     real *x, *y, *z;
+    real *squares; /* of their radii, where these count; or NULL */
     uint32_t *ids;
-    uint16_t *bits; /* of the target in hand, one number for TESTED candidates */
+    uint16_t *bits; /* of the targets in hand, one number for TESTED candidates */
     int32_t count;  /* rounded up to TESTED with NaN */
     int32_t self;
 };
 
-SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most)
+enum { FEW = 4 /* targets that are tested together */ };
+
+SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most, bool squares)
 {
     const size_t room = sphgi_round_up((size_t)most + 2 * TESTED, SPHGI_ALIGNMENT);
     struct candidates c = {.x = scratch};
     c.y = c.x + room;
     c.z = c.y + room;
-    c.ids = (uint32_t *)(void *)(c.z + room);
+    c.squares = squares ? c.z + room : NULL;
+    c.ids = (uint32_t *)(void *)(c.z + (squares ? 2 : 1) * room);
     c.bits = (uint16_t *)(void *)(c.ids + room);
     return c;
 }
+
+typedef lane_int quad_bits
+    __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
 
 struct box {
     vec low[3], high[3], middle[3], half[3];
@@ -206,23 +213,35 @@ struct box {
 
 /* Margins: rounding of the predicate, of distances to the box and of the box itself is relative, a
  * few units in 2^-24, against 2^-16 here; between periodic images it is absolute: the slack. */
+SPHGI_TEMPLATE quad least_of(quad a, quad b)
+{
+    const quad_bits first = (quad_bits)(a < b);
+    return (quad)((first & (quad_bits)a) | (~first & (quad_bits)b));
+}
+
+SPHGI_TEMPLATE quad most_of(quad a, quad b)
+{
+    const quad_bits first = (quad_bits)(a < b);
+    return (quad)((first & (quad_bits)b) | (~first & (quad_bits)a));
+}
+
 SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real *targets,
                                        int32_t count)
 {
+    quad low = *(const quad *)targets, high = low;
+    for (int32_t k = 1; k < count; ++k) {
+        const quad row = *(const quad *)(targets + SPHGI_ROW * k);
+        low = least_of(low, row);
+        high = most_of(high, row);
+    }
+    const quad middle = low / 2 + high / 2;
+    const quad half = most_of(middle - low, high - middle) * R(1 + 0x1p-20);
     struct box box;
     for (int a = 0; a < 3; ++a) {
-        real low = targets[a], high = low;
-        for (int32_t k = 1; k < count; ++k) {
-            const real x = targets[SPHGI_ROW * k + a];
-            low = x < low ? x : low;
-            high = x > high ? x : high;
-        }
-        const real middle = low / 2 + high / 2;
-        const real below = middle - low, above = high - middle;
-        box.low[a] = splat(low);
-        box.high[a] = splat(high);
-        box.middle[a] = splat(middle);
-        box.half[a] = splat((below > above ? below : above) * R(1 + 0x1p-20));
+        box.low[a] = splat(low[a]);
+        box.high[a] = splat(high[a]);
+        box.middle[a] = splat(middle[a]);
+        box.half[a] = splat(half[a]);
     }
     const double reach = find->reach * (1 + 0x1p-16) + 2 * find->slack;
     box.square_reach = splat(R(reach * reach));
@@ -272,8 +291,9 @@ SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
                                          const struct sphgi_runs *runs, const struct box *box,
                                          int32_t self, const struct wraps *w, bool periodic)
 {
-    struct candidates c = carve(find->scratch, runs->candidates);
+    struct candidates c = carve(find->scratch, runs->candidates, false);
     int32_t n = 0;
+    c.self = -1;
     for (int32_t run = 0; run < runs->count; ++run) {
         int32_t begin = runs->begin[run];
         const int32_t end = begin + runs->length[run];
@@ -323,68 +343,140 @@ SPHGI_TEMPLATE uint16_t bits_of_tested(const mask *m)
 #endif
 }
 
-/* Which of TESTED candidates from k on are neighbours. */
-SPHGI_TEMPLATE uint16_t bits_within(const struct candidates *c, int32_t k, const vec *x,
-                                    vec square_reach, const struct wraps *w, bool periodic)
+/* A target among the candidates. square: of the radius that counts */
+struct seeker {
+    vec x[3], square;
+};
+
+SPHGI_TEMPLATE struct seeker seeker_of(const real *row, vec square)
+{
+    return (struct seeker){{splat(row[0]), splat(row[1]), splat(row[2])}, square};
+}
+
+/* Which of TESTED candidates from k on are neighbours of a target. */
+SPHGI_TEMPLATE uint16_t bits_within(const struct candidates *c, int32_t k,
+                                    const struct seeker *target, const struct wraps *w,
+                                    bool periodic, bool mutual)
 {
     mask within[TESTED / LANES];
     for (int l = 0; l < TESTED; l += LANES) {
-        vec dx = x[0] - load(c->x + k + l);
-        vec dy = x[1] - load(c->y + k + l);
-        vec dz = x[2] - load(c->z + k + l);
+        vec dx = target->x[0] - load(c->x + k + l);
+        vec dy = target->x[1] - load(c->y + k + l);
+        vec dz = target->x[2] - load(c->z + k + l);
         if (periodic) {
             dx = wrapped(dx, w->axis[0]);
             dy = wrapped(dy, w->axis[1]);
             dz = wrapped(dz, w->axis[2]);
         }
-        within[l / LANES] = less(square_distance(dx, dy, dz), square_reach);
+        const vec square = mutual ? vmax(target->square, load(c->squares + k + l)) : target->square;
+        within[l / LANES] = less(square_distance(dx, dy, dz), square);
     }
     return bits_of_tested(within);
 }
 
-SPHGI_TEMPLATE void test(const struct candidates *c, const vec *x, vec square_reach,
-                         const struct wraps *w, bool periodic)
+/* Tests and packs are loops of their own, over `many` targets at a time: a candidate is loaded once
+ * for all of them, and so is the end of the loop foreseen. */
+SPHGI_TEMPLATE void test_few(const struct candidates *c, const struct seeker *targets,
+                             const struct wraps *w, bool periodic, bool mutual, int32_t many)
 {
+    const int32_t stride = c->count / TESTED;
     uint16_t *bits = c->bits;
-    for (int32_t k = 0; k < c->count; k += TESTED)
-        *bits++ = bits_within(c, k, x, square_reach, w, periodic);
+    for (int32_t k = 0; k < c->count; k += TESTED, ++bits) {
+        unsigned own[FEW];
+        for (int32_t t = 0; t < many; ++t)
+            own[t] = bits_within(c, k, &targets[t], w, periodic, mutual);
+        for (int32_t t = 0; t < many; ++t)
+            bits[t * stride] = (uint16_t)own[t];
+    }
 }
 
-SPHGI_TEMPLATE uint32_t *pack(const struct sphgi_find *find, const struct candidates *c,
-                              uint32_t *to)
+typedef uint32_t padding __attribute__((vector_size(4 * SPHGI_PAD), aligned(4), may_alias));
+
+/* No target is its own neighbour. */
+SPHGI_TEMPLATE void leave_out_selves(const struct candidates *c, int32_t first, int32_t many)
 {
-    for (int32_t k = 0; k < c->count; k += TESTED)
-        to = pack_tested(find, to, c->ids + k, c->bits[k / TESTED]);
-    for (int32_t k = 0; k < SPHGI_PAD; ++k)
-        to[k] = find->dummy;
-    return to;
+    const int32_t stride = c->count / TESTED;
+    for (int32_t t = 0; t < many; ++t) {
+        const int32_t at = c->self + first + t;
+        c->bits[t * stride + at / TESTED] &= (uint16_t) ~(1u << at % TESTED);
+    }
 }
 
-SPHGI_TEMPLATE int64_t find_as(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                               const real *targets, int32_t count, int32_t self, uint32_t *ids,
-                               int32_t *lengths, bool periodic)
+SPHGI_TEMPLATE void pack_few(const struct sphgi_find *find, const struct candidates *c,
+                             uint32_t *const *lists, int32_t *lengths, int32_t many)
+{
+    const int32_t stride = c->count / TESTED;
+    uint32_t *to[FEW];
+    for (int32_t t = 0; t < many; ++t)
+        to[t] = lists[t];
+    for (int32_t k = 0; k < stride; ++k)
+        for (int32_t t = 0; t < many; ++t)
+            to[t] = pack_tested(find, to[t], c->ids + k * TESTED, c->bits[t * stride + k]);
+    for (int32_t t = 0; t < many; ++t) {
+        *(padding *)to[t] = (padding){0} + find->dummy;
+        lengths[t] = (int32_t)(to[t] - lists[t]);
+    }
+}
+
+/* The lists of `many` of the targets, of which `first` come before these. */
+SPHGI_TEMPLATE void find_few(const struct sphgi_find *find, const struct candidates *c,
+                             const struct seeker *targets, const struct wraps *w,
+                             uint32_t *const *lists, int32_t *lengths, int32_t first, bool periodic,
+                             bool mutual, int32_t many)
+{
+    test_few(c, targets, w, periodic, mutual, many);
+    if (c->self >= 0)
+        leave_out_selves(c, first, many);
+    pack_few(find, c, lists + first, lengths + first, many);
+}
+
+/* Squares of the radii that count, rounded like those of distances. */
+SPHGI_TEMPLATE vec square_of_radius(vec radius, vec stretch)
+{
+    const vec reach = rounded(radius * stretch);
+    return rounded(reach * reach);
+}
+
+/* radii: targets have their own, in the 4th number of their rows. */
+SPHGI_TEMPLATE void find_among(const struct sphgi_find *find, const struct candidates *c,
+                               const real *targets, int32_t count, const struct wraps *w,
+                               uint32_t *const *lists, int32_t *lengths, bool periodic, bool radii,
+                               bool mutual)
+{
+    const vec square = square_of(find->reach), stretch = splat(R(find->stretch));
+    for (int32_t t = 0, many; t < count; t += many, targets += many * SPHGI_ROW) {
+        struct seeker few[FEW];
+        many = count - t < FEW ? count - t : FEW;
+        for (int32_t k = 0; k < many; ++k) {
+            const real *row = targets + k * SPHGI_ROW;
+            few[k] = seeker_of(row, radii ? square_of_radius(splat(row[3]), stretch) : square);
+        }
+        if (many == 4)
+            find_few(find, c, few, w, lists, lengths, t, periodic, mutual, 4);
+        else if (many == 3)
+            find_few(find, c, few, w, lists, lengths, t, periodic, mutual, 3);
+        else if (many == 2)
+            find_few(find, c, few, w, lists, lengths, t, periodic, mutual, 2);
+        else
+            find_few(find, c, few, w, lists, lengths, t, periodic, mutual, 1);
+    }
+}
+
+SPHGI_TEMPLATE void find_as(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                            const real *targets, int32_t count, int32_t self,
+                            uint32_t *const *lists, int32_t *lengths, bool periodic)
 {
     const struct wraps w = wraps_of(find->period);
-    const vec square_reach = square_of(find->reach);
     const struct box box = bounding_box(find, targets, count);
     const struct candidates c = collect(find, runs, &box, self, &w, periodic);
-    uint32_t *out = ids;
-    for (int32_t t = 0; t < count; ++t, targets += SPHGI_ROW) {
-        const vec x[3] = {splat(targets[0]), splat(targets[1]), splat(targets[2])};
-        test(&c, x, square_reach, &w, periodic);
-        if (self >= 0)
-            c.bits[(c.self + t) / TESTED] &= (uint16_t) ~(1u << (c.self + t) % TESTED);
-        const uint32_t *end = pack(find, &c, out);
-        lengths[t] = (int32_t)(end - out);
-        out += sphgi_round_up((size_t)(end - out), SPHGI_PAD);
-    }
-    return out - ids;
+    find_among(find, &c, targets, count, &w, lists, lengths, periodic, false, false);
 }
 
-static int64_t find(const struct sphgi_find *find, const struct sphgi_runs *runs,
-                    const void *targets, int32_t count, int32_t self, uint32_t *ids,
-                    int32_t *lengths)
+static void find(const struct sphgi_find *find, const struct sphgi_runs *runs, const void *targets,
+                 int32_t count, int32_t self, uint32_t *const *lists, int32_t *lengths)
 {
-    return find->periodic ? find_as(find, runs, targets, count, self, ids, lengths, true)
-                          : find_as(find, runs, targets, count, self, ids, lengths, false);
+    if (find->periodic)
+        find_as(find, runs, targets, count, self, lists, lengths, true);
+    else
+        find_as(find, runs, targets, count, self, lists, lengths, false);
 }

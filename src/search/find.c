@@ -6,7 +6,8 @@
 enum {
     CROWDED = -1,
     TOGETHER = 8, /* targets of an octave: more of them stand too far apart to share candidates */
-    SLACK = 2 * SPHGI_LANES_MOST /* candidates, and ids, that passes write beyond the last */
+    SLOT = 512 /* candidates of a list in a slot that is not wide. Slots stand close together: the
+                  few lines that lists take of each must stay in the L1 cache */
 };
 
 /* ---- Scratch -------------------------------------------------------------------------------- */
@@ -21,7 +22,7 @@ static int32_t room_of(const sphg_neighbors *neighbors)
 static size_t candidate_bytes(const sphg_neighbors *neighbors)
 {
     const size_t size = sphgi_size_of_type(neighbors->position_type);
-    const size_t candidates = (size_t)room_of(neighbors) + SLACK + 2 * SPHGI_ALIGNMENT;
+    const size_t candidates = (size_t)room_of(neighbors) + SPHGI_FIND_SLACK + 2 * SPHGI_ALIGNMENT;
     const size_t numbers = neighbors->graded ? 4 : 3;
     return sphgi_round_up(candidates * (numbers * size + sizeof(uint32_t) + 1), SPHGI_ALIGNMENT);
 }
@@ -31,16 +32,21 @@ static size_t nearby_bytes(const sphg_neighbors *neighbors)
     return neighbors->graded ? sphgi_round_up(sizeof(struct sphgi_nearby), SPHGI_ALIGNMENT) : 0;
 }
 
-/* Of all lists that can wait. */
-static size_t id_bytes(const sphg_neighbors *neighbors)
+static size_t slot_of(int32_t candidates)
 {
-    const size_t list = (size_t)room_of(neighbors) + SPHGI_PAD;
-    return (SPHGI_LISTS_MOST * list + SLACK) * sizeof(uint32_t);
+    return (size_t)candidates + SPHGI_FIND_SLACK;
+}
+
+static size_t slot_bytes(const sphg_neighbors *neighbors)
+{
+    const int32_t room = room_of(neighbors);
+    return SPHGI_LISTS_MOST * (slot_of(SLOT) + (room > SLOT ? slot_of(room) : 0)) *
+           sizeof(uint32_t);
 }
 
 size_t sphgi_finder_size(const sphg_neighbors *neighbors)
 {
-    return candidate_bytes(neighbors) + nearby_bytes(neighbors) + id_bytes(neighbors);
+    return candidate_bytes(neighbors) + nearby_bytes(neighbors) + slot_bytes(neighbors);
 }
 
 void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
@@ -60,7 +66,10 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
                                        .pack_bytes = context->pack_bytes};
     memcpy(finder->find.period, neighbors->period, sizeof finder->find.period);
     finder->nearby = (void *)((char *)memory + candidate_bytes(neighbors));
-    finder->ids = (uint32_t *)(void *)((char *)finder->nearby + nearby_bytes(neighbors));
+    finder->slots = (uint32_t *)(void *)((char *)finder->nearby + nearby_bytes(neighbors));
+    finder->wide_slots = finder->slots + SPHGI_LISTS_MOST * slot_of(SLOT);
+    for (int32_t s = 0; s < SPHGI_LISTS_MOST; ++s)
+        finder->list[s] = finder->slots; /* none is nowhere */
     finder->block = -1;
 }
 
@@ -88,12 +97,10 @@ static void enter_cell(struct sphgi_finder *f)
 
 static void go_to(struct sphgi_finder *f, int32_t target)
 {
-    f->lists = f->taken = 0;
-    f->used = 0;
     if (f->block < 0 || target < f->start[0] || target >= f->start[SPHGI_BLOCK_CELLS])
         enter_block(f, sphgi_block_of_place(sphgi_target_grid(f->neighbors), target));
     f->cell = 0;
-    f->next = target;
+    f->first = f->next = target;
 }
 
 /* Row of a target of the cell, if it is a source, or -1. Targets that are part of the sources come
@@ -102,6 +109,35 @@ static int32_t row_of_self(const struct sphgi_finder *f, const struct sphgi_runs
                            int32_t target)
 {
     return f->neighbors->part_of ? runs->own + target - f->start[f->cell] : -1;
+}
+
+static int32_t slot_number(int32_t target)
+{
+    return target & (SPHGI_LISTS_MOST - 1);
+}
+
+/* Slots for the next targets, that share so many candidates. */
+static void open_slots(struct sphgi_finder *f, int32_t count, int32_t candidates, uint32_t **lists)
+{
+    const bool wide = candidates > SLOT;
+    for (int32_t k = 0; k < count; ++k) {
+        const int32_t s = slot_number(f->next + k);
+        f->length[s] = CROWDED;
+        f->list[s] = lists[k] = wide ? f->wide_slots + (size_t)s * slot_of(f->room)
+                                     : f->slots + (size_t)s * slot_of(SLOT);
+    }
+}
+
+/* Where any list fits, for one that does not wait. */
+static uint32_t *wide_slot(const struct sphgi_finder *f)
+{
+    return f->room > SLOT ? f->wide_slots : f->slots;
+}
+
+static void close_slots(struct sphgi_finder *f, int32_t count, const int32_t *lengths)
+{
+    for (int32_t k = 0; k < count; ++k)
+        f->length[slot_number(f->next + k)] = lengths[k];
 }
 
 /* ---- Octaves -------------------------------------------------------------------------------- */
@@ -145,23 +181,23 @@ static void find_in_octaves(struct sphgi_finder *f)
     const sphg_neighbors *n = f->neighbors;
     struct sphgi_walk walk;
     struct sphgi_runs runs;
-    int32_t selves[SPHGI_FIND_MOST];
+    uint32_t *lists[SPHGI_FIND_MOST];
+    int32_t selves[SPHGI_FIND_MOST], lengths[SPHGI_FIND_MOST];
     const int32_t left = f->start[f->cell + 1] - f->next;
     const int32_t count = left > TOGETHER + TOGETHER / 2 ? TOGETHER : left;
     const bool looked = look_nearby(f);
     open_walk(f, &walk, f->next, count);
     const bool more =
         looked ? sphgi_walk_nearby(&walk, f->nearby, &runs) : sphgi_walk_on(&walk, &runs);
-    for (int32_t k = 0; k < count; ++k) {
-        f->length[f->lists + k] = CROWDED;
+    for (int32_t k = 0; k < count; ++k)
         selves[k] = n->part_of ? row_of_source(n, f->next + k) : -1;
-    }
     f->find.selves = n->part_of && !n->same ? selves : NULL;
-    if (!more && runs.candidates <= f->room)
-        f->used += f->passes->find_by_radii(&f->find, &runs, sphgi_target_row(n, f->next), count,
-                                            n->same ? f->next : -1, f->ids + f->used,
-                                            f->length + f->lists);
-    f->lists += count;
+    open_slots(f, count, runs.candidates, lists);
+    if (!more && runs.candidates <= f->room) {
+        f->passes->find_by_radii(&f->find, &runs, sphgi_target_row(n, f->next), count,
+                                 n->same ? f->next : -1, lists, lengths);
+        close_slots(f, count, lengths);
+    }
     f->next += count;
 }
 
@@ -173,6 +209,7 @@ static void find_target_in_octaves(struct sphgi_finder *f, int32_t target, sphgi
     const int32_t self = n->part_of ? row_of_source(n, target) : -1;
     struct sphgi_walk walk;
     struct sphgi_runs runs, slice = {.count = 1};
+    uint32_t *ids = wide_slot(f);
     f->find.selves = NULL;
     open_walk(f, &walk, target, 1);
     for (bool more = true; more;) {
@@ -185,8 +222,8 @@ static void find_target_in_octaves(struct sphgi_finder *f, int32_t target, sphgi
                 slice.length[0] = slice.candidates;
                 slice.reach[0] = runs.reach[run];
                 f->passes->find_by_radii(&f->find, &slice, sphgi_target_row(n, target), 1, self,
-                                         f->ids, &found);
-                take(data, f->ids, found);
+                                         &ids, &found);
+                take(data, ids, found);
             }
     }
 }
@@ -196,6 +233,8 @@ static void find_some(struct sphgi_finder *f)
 {
     const sphg_neighbors *n = f->neighbors;
     struct sphgi_runs runs;
+    uint32_t *lists[SPHGI_FIND_MOST];
+    int32_t lengths[SPHGI_FIND_MOST];
     enter_cell(f);
     if (n->graded) {
         find_in_octaves(f);
@@ -203,55 +242,33 @@ static void find_some(struct sphgi_finder *f)
     }
     sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, &runs);
     const int32_t count = sphgi_min32(f->start[f->cell + 1] - f->next, SPHGI_FIND_MOST);
-    if (runs.candidates > f->room)
-        for (int32_t k = 0; k < count; ++k)
-            f->length[f->lists + k] = CROWDED;
-    else
-        f->used +=
-            f->passes->find(&f->find, &runs, sphgi_target_row(n, f->next), count,
-                            row_of_self(f, &runs, f->next), f->ids + f->used, f->length + f->lists);
-    f->lists += count;
+    open_slots(f, count, runs.candidates, lists);
+    if (runs.candidates <= f->room) {
+        f->passes->find(&f->find, &runs, sphgi_target_row(n, f->next), count,
+                        row_of_self(f, &runs, f->next), lists, lengths);
+        close_slots(f, count, lengths);
+    }
     f->next += count;
 }
 
 /* ---- Groups --------------------------------------------------------------------------------- */
 
-static int64_t padded(int32_t length)
-{
-    return length < 0 ? 0 : (int64_t)sphgi_round_up((size_t)length, SPHGI_PAD);
-}
-
-/* The lists that were handed out make room for those behind them. */
-static void drop_taken(struct sphgi_finder *f)
-{
-    int64_t out = 0;
-    for (int32_t k = 0; k < f->taken; ++k)
-        out += padded(f->length[k]);
-    f->lists -= f->taken;
-    f->used -= out;
-    memmove(f->length, f->length + f->taken, (size_t)f->lists * sizeof *f->length);
-    memmove(f->ids, f->ids + out, (size_t)f->used * sizeof *f->ids);
-    f->taken = 0;
-}
-
 bool sphgi_find_group(struct sphgi_finder *f, int32_t group, const uint32_t **lists,
                       int32_t *lengths)
 {
     const int32_t first = group * SPHGI_GROUP, count = sphgi_targets_in(f->neighbors, group);
+    const int32_t slot = slot_number(first);
     bool collected = true;
-    drop_taken(f);
-    if (f->block < 0 || f->next - f->lists != first)
+    if (f->block < 0 || first < f->first || first > f->next)
         go_to(f, first);
-    while (f->lists < count)
+    f->first = first;
+    while (f->next < first + count)
         find_some(f);
-    const uint32_t *list = f->ids;
     for (int32_t k = 0; k < SPHGI_GROUP; ++k) {
-        lists[k] = list;
-        lengths[k] = k < count ? f->length[k] : 0;
+        lists[k] = f->list[slot + k];
+        lengths[k] = k < count ? f->length[slot + k] : 0;
         collected &= lengths[k] != CROWDED;
-        list += padded(lengths[k]);
     }
-    f->taken = count;
     return collected;
 }
 
@@ -269,6 +286,7 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
     enter_cell(f);
     sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, &runs);
     const int32_t self = row_of_self(f, &runs, target);
+    uint32_t *ids = wide_slot(f);
     for (int32_t run = 0; run < runs.count; ++run)
         for (int32_t at = 0; at < runs.length[run]; at += f->room) {
             const int32_t begin = runs.begin[run] + at;
@@ -278,7 +296,7 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
                 .count = 1, .candidates = count, .own = begin, .begin = {begin}, .length = {count}};
             int32_t found;
             f->passes->find(&f->find, &slice, sphgi_target_row(n, target), 1, inside ? self : -1,
-                            f->ids, &found);
-            take(data, f->ids, found);
+                            &ids, &found);
+            take(data, ids, found);
         }
 }

@@ -27,9 +27,11 @@ struct sphgi_finder {
         *nearby; /* of octaves: blocks near the targets looked[0] .. looked[1] - 1 */
     int32_t looked[2];
 
-    uint32_t *ids; /* of the lists that wait, one after the other */
-    int64_t used;
-    int32_t lists, taken;             /* those that wait; the first of them have been handed out */
+    /* Lists of targets from `first` up to `next`. That of target t stands in slot t modulo
+     * SPHGI_LISTS_MOST, so that those of a group follow one another and nobody moves them. */
+    int32_t first;
+    uint32_t *slots, *wide_slots; /* for lists of few candidates, and of up to `room` */
+    uint32_t *list[SPHGI_LISTS_MOST];
     int32_t length[SPHGI_LISTS_MOST]; /* CROWDED: not collected */
 };
 

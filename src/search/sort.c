@@ -8,6 +8,7 @@ enum {
     CHUNK_LEAST = 4096, /* particles */
     SLOTS_LEAST = 1024,
     BATCH = 256,
+    RECENT = 4, /* blocks that are not looked up again: one for each of four beside each other */
     BLOCK_GRAIN = 16,
     PARTS = 8 /* of a cell of octaves, in which its particles follow one another */
 };
@@ -76,18 +77,22 @@ static int32_t block_in_chunk(struct chunk *chunk, struct sphgi_key key)
     return b;
 }
 
-/* Particles [begin, begin + count) of the chunk, whose blocks and cells the pass has found. */
+/* Particles [begin, begin + count) of the chunk, whose blocks and cells the pass has found. Those
+ * that follow one another along x often change between the blocks on either side of a face. */
 static void collect_cut(const struct sort *sort, struct chunk *chunk, int32_t begin, int32_t count,
                         int32_t (*block)[4])
 {
-    int32_t b = -1;
+    int32_t seen[RECENT][4], number[RECENT];
+    memset(number, -1, sizeof number);
     for (int32_t k = 0; k < count; ++k) {
-        if (!k || memcmp(block[k], block[k - 1], sizeof block[k]) != 0) {
+        const uint32_t r = ((uint32_t)block[k][1] & 1) | ((uint32_t)block[k][2] & 1) << 1;
+        if (number[r] < 0 || memcmp(block[k], seen[r], sizeof *seen) != 0) {
             const int64_t at[3] = {block[k][0], block[k][1], block[k][2]};
-            b = block_in_chunk(chunk, sphgi_key_of(at));
+            number[r] = block_in_chunk(chunk, sphgi_key_of(at));
+            memcpy(seen[r], block[k], sizeof *seen);
         }
-        sort->block[begin + k] = b;
-        ++chunk->counts[b];
+        sort->block[begin + k] = number[r];
+        ++chunk->counts[number[r]];
     }
 }
 
