@@ -306,7 +306,7 @@ static void neighbours_stay_as_they_are(const test_case *test)
 static void empty_sets_pass(const test_case *test)
 {
     place own = place_of(test, OWN);
-    const sphg_view none = {NULL, NULL, NULL, 0, test_position_type(test)};
+    const sphg_view none = {NULL, NULL, NULL, 0, test_position_type(test), SPHG_AS_SHAPE};
     static const int64_t zeros[COUNT + 1] = {0};
     static const int32_t nothing[1] = {0};
     const sphg_lists lists = {.offsets = zeros, .indices = nothing};

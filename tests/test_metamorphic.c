@@ -71,7 +71,7 @@ static sphg_view numbers(const rig *own, void *memory, const double *values, int
             ((float *)memory)[k] = (float)values[k];
     }
     const ptrdiff_t size = own->type == SPHG_F64 ? 8 : 4;
-    return (sphg_view){memory, NULL, NULL, width * size, own->type};
+    return (sphg_view){memory, NULL, NULL, width * size, own->type, SPHG_AS_SHAPE};
 }
 
 /* Offsets of the host are read by operators: build and evaluation stand in one function. */

@@ -17,23 +17,32 @@ typedef enum layout {
     SEPARATE,       /* components, or rows of a tensor, in arrays of their own */
     SEPARATE_BACK,  /* these, back to front */
     THREE_BY_THREE, /* rows three numbers apart: 2 x 2 results in 3 x 3 storage */
+    BY_COLUMNS,     /* tensors column by column, symmetric ones and linear corrections in full */
+    COLUMNS_APART,  /* columns of a tensor in arrays of their own, back to front */
     LAYOUTS
 } layout;
 
-static const char *const layout_names[LAYOUTS] = {"packed",   "record",         "reversed",
-                                                  "separate", "separate, back", "3 x 3"};
+static const char *const layout_names[LAYOUTS] = {"packed",     "record",         "reversed",
+                                                  "separate",   "separate, back", "3 x 3",
+                                                  "by columns", "columns apart"};
 
 /* Memory of count items of height x columns numbers, and the view that finds them. */
 typedef struct placed {
     sphg_view view;
     int height, columns;
+    int side; /* of symmetric matrices, of which `columns` numbers count */
     unsigned char *memory;
     size_t bytes, size;
 } placed;
 
 static int has_rows(layout kind, int height)
 {
-    return kind >= SEPARATE && height > 1;
+    return kind >= SEPARATE && kind != BY_COLUMNS && height > 1;
+}
+
+static int is_full(layout kind, int side)
+{
+    return kind == BY_COLUMNS && side > 0;
 }
 
 /* Where the first item's row starts, in numbers, and how far apart items are. */
@@ -49,43 +58,85 @@ static ptrdiff_t item_step(layout kind, int height, int columns)
     return kind == PACKED ? (ptrdiff_t)height * columns : (ptrdiff_t)height * columns + 3;
 }
 
-static placed place(sphg_type type, int height, int columns, layout kind)
+static placed place_matrix(sphg_type type, int height, int columns, int side, layout kind)
 {
-    placed own = {.height = height, .columns = columns};
+    placed own = {.height = height, .columns = columns, .side = side};
     own.size = type == SPHG_F64 ? 8 : type == SPHG_F32 ? 4 : 1;
     own.bytes = (size_t)COUNT * 20 * own.size;
     own.memory = memset(test_memory(own.bytes), CANARY, own.bytes);
-    const int backwards = kind == REVERSED || kind == SEPARATE_BACK;
-    const ptrdiff_t size = (ptrdiff_t)own.size, step = item_step(kind, height, columns) * size;
+    const int backwards = kind == REVERSED || kind == SEPARATE_BACK || kind == COLUMNS_APART;
+    const int full = is_full(kind, side);
+    const ptrdiff_t size = (ptrdiff_t)own.size;
+    const ptrdiff_t step = item_step(kind, full ? side : height, full ? side : columns) * size;
     unsigned char *first = own.memory + size + (backwards ? (COUNT - 1) * step : 0);
-    own.view = (sphg_view){first, NULL, NULL, backwards ? -step : step, type};
+    own.view = (sphg_view){first, NULL, NULL, backwards ? -step : step, type, SPHG_AS_SHAPE};
     if (has_rows(kind, height)) {
         const void *y = first + row_start(kind, 1, columns) * size;
         const void *z = height > 2 ? first + row_start(kind, 2, columns) * size : NULL;
         own.view = type == SPHG_F64 ? sphg_xyz_f64((const void *)first, y, z, own.view.stride)
                                     : sphg_xyz_f32((const void *)first, y, z, own.view.stride);
     }
+    if (kind >= BY_COLUMNS && height > 1 && columns == height)
+        own.view.layout = SPHG_COLUMN_MAJOR;
+    if (full)
+        own.view.layout = SPHG_FULL;
     return own;
 }
 
-static unsigned char *address(const placed *own, int item, int component)
+static placed place(sphg_type type, int height, int columns, layout kind)
+{
+    return place_matrix(type, height, columns, 0, kind);
+}
+
+/* Number of the item, in its memory, that is this component of a symmetric matrix; mirrored: below
+ * the diagonal. */
+static int number_in_full(int component, int side, int mirrored)
+{
+    int row = 0;
+    while (component >= side - row)
+        component -= side - row++;
+    return mirrored ? (row + component) * side + row : row * side + row + component;
+}
+
+static int number_of(const placed *own, int component, int mirrored)
+{
+    if (own->view.layout == SPHG_COLUMN_MAJOR)
+        return component % own->columns * own->columns + component / own->columns;
+    if (own->view.layout == SPHG_FULL)
+        return number_in_full(component, own->side, mirrored);
+    return component;
+}
+
+static unsigned char *address_of(const placed *own, int item, int component, int mirrored)
 {
     const void *const starts[3] = {own->view.x, own->view.y, own->view.z};
-    const int row = own->view.y ? component / own->columns : 0;
-    const int column = component - row * own->columns;
+    const int number = number_of(own, component, mirrored);
+    const int row = own->view.y ? number / own->columns : 0;
+    const int column = number - row * own->columns;
     return (unsigned char *)(uintptr_t)starts[row] + item * own->view.stride +
            (ptrdiff_t)own->size * column;
 }
 
-/* A copy of packed numbers in another layout. */
-static sphg_view laid_out(const setup_array *array, int height, layout kind)
+static unsigned char *address(const placed *own, int item, int component)
 {
-    const placed own = place(array->type, height, array->width / height, kind);
+    return address_of(own, item, component, 0);
+}
+
+/* A copy of packed numbers in another layout. What a symmetric matrix holds below its diagonal is
+ * not read. */
+static sphg_view laid_out_matrix(const setup_array *array, int height, int side, layout kind)
+{
+    const placed own = place_matrix(array->type, height, array->width / height, side, kind);
     for (int i = 0; i < COUNT; ++i)
         for (int k = 0; k < array->width; ++k)
             memcpy(address(&own, i, k),
                    (const char *)array->data + (size_t)(i * array->width + k) * own.size, own.size);
     return own.view;
+}
+
+static sphg_view laid_out(const setup_array *array, int height, layout kind)
+{
+    return laid_out_matrix(array, height, 0, kind);
 }
 
 /* Equal to the packed results where the view points, canaries elsewhere. */
@@ -96,8 +147,13 @@ static void require_placed(const placed *found, const placed *packed, const char
         for (int k = 0; k < width; ++k) {
             TEST_REQUIRE(memcmp(address(found, i, k), address(packed, i, k), found->size) == 0,
                          "%s: item %d, number %d", where, i, k);
-            memset(address(found, i, k), CANARY, found->size);
+            TEST_REQUIRE(memcmp(address_of(found, i, k, 1), address(packed, i, k), found->size) ==
+                             0,
+                         "%s: item %d, number %d below the diagonal", where, i, k);
         }
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < 2 * width; ++k)
+            memset(address_of(found, i, k / 2, k % 2), CANARY, found->size);
     for (size_t k = 0; k < found->bytes; ++k)
         TEST_REQUIRE(found->memory[k] == CANARY, "%s: byte %zu is not part of the view", where, k);
 }
@@ -109,7 +165,7 @@ typedef struct comparison {
     int dimension;
     sphg_scheme scheme;
     scene particles;
-    setup_array positions, scalar, vector, tensor, volume;
+    setup_array positions, scalar, vector, symmetric, tensor, volume;
 } comparison;
 
 static setup_array numbers_of(const test_case *test, int width, double low, random_state *random)
@@ -132,11 +188,24 @@ static comparison comparison_of(const test_case *test)
     own.scalar = numbers_of(test, 1, -1, &random);
     own.vector = numbers_of(test, d, -1, &random);
     own.tensor = numbers_of(test, d * d, -1, &random);
+    own.symmetric = numbers_of(test, d * (d + 1) / 2, -1, &random);
     own.volume = numbers_of(test, 1, 0.5, &random);
     return own;
 }
 
-enum { GRADIENT, JACOBIAN, DIVERGENCE, CURL, TENSOR_DIVERGENCE, CORRECTION, LAMBDA, RANK, OUTPUTS };
+enum {
+    GRADIENT,
+    JACOBIAN,
+    DIVERGENCE,
+    CURL,
+    TENSOR_DIVERGENCE,
+    SYMMETRIC_DIVERGENCE,
+    SYMMETRIC_VALUE,
+    CORRECTION,
+    LAMBDA,
+    RANK,
+    OUTPUTS
+};
 
 typedef struct outputs {
     placed of[OUTPUTS];
@@ -146,10 +215,15 @@ static outputs place_outputs(const comparison *own, layout kind)
 {
     const int d = own->dimension, curl = d == 2 ? 1 : 3;
     const int width = sphg_correction_width(&own->scheme);
+    const int linear = own->scheme.method <= SPHG_RKPM, whole = kind == BY_COLUMNS && linear;
     const sphg_type type = own->scalar.type;
     return (outputs){{place(type, d, 1, kind), place(type, d, d, kind), place(type, 1, 1, kind),
-                      place(type, curl, 1, kind), place(type, d, 1, kind),
-                      place(type, 1, width, kind == PACKED ? PACKED : RECORD),
+                      place(type, curl, 1, kind), place(type, d, 1, kind), place(type, d, 1, kind),
+                      place_matrix(type, 1, d * (d + 1) / 2, d, kind),
+                      place_matrix(type, 1, width, linear ? d : 0,
+                                   kind == PACKED ? PACKED
+                                   : whole        ? BY_COLUMNS
+                                                  : RECORD),
                       place(type, 1, 1, kind), place(SPHG_U8, 1, 1, kind)}};
 }
 
@@ -160,12 +234,13 @@ static outputs evaluate(const comparison *own, layout in, layout out)
     outputs found = place_outputs(own, out);
     const sphg_view scalar = laid_out(&own->scalar, 1, in), vector = laid_out(&own->vector, d, in);
     const sphg_view tensor = laid_out(&own->tensor, d, in);
+    const sphg_view symmetric = laid_out_matrix(&own->symmetric, 1, d, in);
     sphg_geometry geometry = scene_geometry(&own->particles);
     geometry.sources = laid_out(&own->positions, d, in);
     sphg_sources sources = {0};
     sources.neighbors = setup_search(own->context, &own->scheme, &geometry);
     sources.volume = laid_out(&own->volume, 1, in);
-    const sphg_field fields[3] = {
+    const sphg_field fields[] = {
         {.shape = SPHG_SCALAR, .at_sources = &scalar, .gradient = found.of[GRADIENT].view},
         {.shape = SPHG_VECTOR,
          .at_sources = &vector,
@@ -174,11 +249,15 @@ static outputs evaluate(const comparison *own, layout in, layout out)
          .curl = found.of[CURL].view},
         {.shape = SPHG_TENSOR,
          .at_sources = &tensor,
-         .divergence = found.of[TENSOR_DIVERGENCE].view}};
+         .divergence = found.of[TENSOR_DIVERGENCE].view},
+        {.shape = SPHG_SYM_TENSOR,
+         .at_sources = &symmetric,
+         .value = found.of[SYMMETRIC_VALUE].view,
+         .divergence = found.of[SYMMETRIC_DIVERGENCE].view}};
     const sphg_request request = {.sources = &sources,
                                   .set_count = 1,
                                   .fields = fields,
-                                  .field_count = 3,
+                                  .field_count = 4,
                                   .correction = found.of[CORRECTION].view,
                                   .rank = found.of[RANK].view,
                                   .lambda_min = found.of[LAMBDA].view};
@@ -198,6 +277,57 @@ static void layouts_hold_the_same_bits(const test_case *test)
                     &found.of[k], &packed.of[k],
                     test_text("%s to %s, output %d", layout_names[in], layout_names[out], k));
         }
+}
+
+/* ---- Layouts that mean nothing ------------------------------------------------------------ */
+
+static void require_refused(const comparison *own, const sphg_request *request, const char *words)
+{
+    const sphg_result result = sphg_evaluate(own->context, &own->scheme, request);
+    TEST_REQUIRE(result == SPHG_ERROR_ARGUMENT, "%s: %d", words, (int)result);
+    TEST_REQUIRE(strstr(sphg_last_message(own->context), words), "'%s' does not say '%s'",
+                 sphg_last_message(own->context), words);
+}
+
+static void layouts_without_a_meaning_are_refused(const test_case *test)
+{
+    const comparison own = comparison_of(test);
+    const int d = test->dimension, linear = test->method <= SPHG_RKPM;
+    const int width = sphg_correction_width(&own.scheme);
+    const sphg_geometry geometry = scene_geometry(&own.particles);
+    const sphg_sources sources = {.neighbors = setup_search(own.context, &own.scheme, &geometry),
+                                  .volume = setup_view(&own.volume)};
+    setup_array result = setup_output(own.scalar.type, COUNT, 9);
+    setup_array table = setup_output(own.scalar.type, COUNT, width < 9 ? 9 : width);
+    sphg_view values = setup_view(&own.scalar);
+    sphg_field field = {
+        .shape = SPHG_SCALAR, .at_sources = &values, .gradient = setup_view(&result)};
+    sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
+    field.gradient.layout = SPHG_COLUMN_MAJOR;
+    require_refused(&own, &request, "fields[0].gradient.layout is COLUMN_MAJOR, but");
+    field.gradient.layout = SPHG_FULL;
+    require_refused(&own, &request, "fields[0].gradient.layout is FULL, but");
+    field.shape = SPHG_VECTOR;
+    values = setup_view(&own.vector);
+    require_refused(&own, &request, "fields[0].gradient.layout is FULL, but");
+    field.gradient.layout = (sphg_layout)3;
+    require_refused(&own, &request, "fields[0].gradient.layout is 3");
+    field.gradient.layout = SPHG_COLUMN_MAJOR;
+    SETUP_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+    field.gradient.stride = (d * d - 1) * setup_view(&own.scalar).stride;
+    require_refused(&own, &request, "stride");
+    request.fields = NULL, request.field_count = 0;
+    request.correction = setup_view(&table);
+    request.correction.layout = SPHG_COLUMN_MAJOR;
+    require_refused(&own, &request, "correction.layout is COLUMN_MAJOR, but");
+    request.correction.layout = SPHG_FULL;
+    if (linear)
+        SETUP_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+    else
+        require_refused(&own, &request, "correction.layout is FULL, but");
+    request.correction.stride = (d * d - 1) * setup_view(&own.scalar).stride;
+    require_refused(&own, &request, linear ? "stride" : "layout");
 }
 
 /* ---- Stride 0 ----------------------------------------------------------------------------- */
@@ -379,6 +509,7 @@ static void many_fields_have_the_bits_of_each_alone(const test_case *test)
 
 static const test_entry entries[] = {
     EACH(layouts_hold_the_same_bits, TEST_CORRECTED),
+    EACH(layouts_without_a_meaning_are_refused, TEST_CORRECTED),
     EACH(stride_zero_is_one_item_for_all, TEST_LINEARISED),
     EACH(accumulation_adds_to_what_is_there, TEST_ALL_METHODS),
     EACH(accumulation_leaves_unselected_targets_alone, TEST_ALL_METHODS),

@@ -99,8 +99,16 @@ typedef enum sphg_shape {
     SPHG_TENSOR = 4      /* d x d, row-major: J[a][b] = d v_a / d x_b (Eigen: RowMajor) */
 } sphg_shape;
 
+/* Other orders, for hosts whose matrices are whole ones of a library. */
+typedef enum sphg_layout {
+    SPHG_AS_SHAPE = 0,
+    SPHG_COLUMN_MAJOR = 1, /* TENSOR column by column: Eigen's default, Fortran's j(a, b) */
+    SPHG_FULL = 2          /* SYM_TENSOR, and C_i of linearised methods of order 1, as all d x d
+                              numbers: outputs are written twice, of inputs xx xy xz yy yz zz is read */
+} sphg_layout;
+
 /* Strided view. Item k starts at (char *)x + k * stride; its numbers follow one another. Only if
- * y (and z) are set, the second (third) component of a vector, or row of a tensor, starts there:
+ * y (and z) are set, the second (third) component of a vector, or row (column) of a tensor, starts there:
  * separate arrays, or 2 x 2 results in 3 x 3 storage. z is not used in 2D.
  * stride 0, inputs but positions only: one item for all (uniform volume, constant field). x NULL:
  * absent. */
@@ -108,48 +116,49 @@ typedef struct sphg_view {
     const void *x, *y, *z; /* an output is written through them all the same */
     ptrdiff_t stride;      /* [byte], multiple of the number's size; may be negative */
     sphg_type type;
+    sphg_layout layout; /* 0: as the shape says */
 } sphg_view;
 
 static inline sphg_view sphg_view_f32(const float *first, ptrdiff_t stride)
 {
-    sphg_view view = {first, NULL, NULL, stride, SPHG_F32};
+    sphg_view view = {first, NULL, NULL, stride, SPHG_F32, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_view_f64(const double *first, ptrdiff_t stride)
 {
-    sphg_view view = {first, NULL, NULL, stride, SPHG_F64};
+    sphg_view view = {first, NULL, NULL, stride, SPHG_F64, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_view_u8(const uint8_t *first, ptrdiff_t stride)
 {
-    sphg_view view = {first, NULL, NULL, stride, SPHG_U8};
+    sphg_view view = {first, NULL, NULL, stride, SPHG_U8, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_xyz_f32(const float *x, const float *y, const float *z,
                                      ptrdiff_t stride)
 {
-    sphg_view view = {x, y, z, stride, SPHG_F32};
+    sphg_view view = {x, y, z, stride, SPHG_F32, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_xyz_f64(const double *x, const double *y, const double *z,
                                      ptrdiff_t stride)
 {
-    sphg_view view = {x, y, z, stride, SPHG_F64};
+    sphg_view view = {x, y, z, stride, SPHG_F64, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_same_f32(const float *first) /* one item for all */
 {
-    sphg_view view = {first, NULL, NULL, 0, SPHG_F32};
+    sphg_view view = {first, NULL, NULL, 0, SPHG_F32, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_same_f64(const double *first)
 {
-    sphg_view view = {first, NULL, NULL, 0, SPHG_F64};
+    sphg_view view = {first, NULL, NULL, 0, SPHG_F64, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_absent(void)
 {
-    sphg_view view = {NULL, NULL, NULL, 0, SPHG_F32};
+    sphg_view view = {NULL, NULL, NULL, 0, SPHG_F32, SPHG_AS_SHAPE};
     return view;
 }
 

@@ -106,7 +106,8 @@ static sphg_result search_again(struct list_check *check, const struct sphgi_sch
                               .precision = n->position_type,
                               .list_free = 1};
     if (!n->part_of)
-        geometry.targets = (sphg_view){check->targets, NULL, NULL, stride, n->position_type};
+        geometry.targets =
+            (sphg_view){check->targets, NULL, NULL, stride, n->position_type, SPHG_AS_SHAPE};
     memcpy(geometry.period, n->period, sizeof n->period);
     if (n->radii)
         take_radii(check, &geometry);

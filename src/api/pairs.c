@@ -121,7 +121,7 @@ struct exporting {
 static struct sphgi_extent array_extent(const char *name, const void *array, int64_t count,
                                         size_t item_size)
 {
-    const sphg_view view = {array, NULL, NULL, (ptrdiff_t)item_size, SPHG_U8};
+    const sphg_view view = {array, NULL, NULL, (ptrdiff_t)item_size, SPHG_U8, SPHG_AS_SHAPE};
     const int32_t items = (int32_t)(count < INT32_MAX ? count : INT32_MAX);
     return (struct sphgi_extent){name, sphgi_flat_columns(&view, array != NULL), items, item_size,
                                  true};

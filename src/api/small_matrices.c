@@ -184,12 +184,12 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
 }
 
 static sphg_result check_batch(struct sphgi_checker checker, const sphg_view *view,
-                               const char *name, int32_t numbers, const struct batch *b,
+                               const char *name, sphg_shape shape, const struct batch *b,
                                enum sphgi_use use, sphg_type type, bool required)
 {
     const struct sphgi_expected expected = {.name = name,
                                             .type = type,
-                                            .numbers = numbers,
+                                            .shape = shape,
                                             .dimension = b->dimension,
                                             .count = b->count,
                                             .use = use,
@@ -228,38 +228,38 @@ static sphg_result check_inversion(struct sphgi_checker checker, const struct sp
         return sphgi_fail(checker.context, SPHG_ERROR_UNSUPPORTED,
                           "%s: scheme.order is 2, which needs more than these moments", f);
     const bool mls = scheme->method == SPHG_MLS;
-    const int32_t numbers =
-        sphgi_correction_width(scheme->method, scheme->dimension, scheme->order);
     sphg_result result = sphgi_check_range(checker, scheme, b->type);
     if (!result)
-        result = check_batch(checker, moments, "moments", numbers, b, SPHGI_INPUT, b->type, true);
+        result = check_batch(checker, moments, "moments", SPHG_SYM_TENSOR, b, SPHGI_INPUT, b->type,
+                             true);
     if (!result)
-        result = check_batch(checker, volume, "volume", 1, b, SPHGI_INPUT, b->type, mls);
+        result = check_batch(checker, volume, "volume", SPHG_SCALAR, b, SPHGI_INPUT, b->type, mls);
     if (!result)
-        result = check_batch(checker, &wanted->correction, "wanted.correction", numbers, b,
+        result = check_batch(checker, &wanted->correction, "wanted.correction", SPHG_SYM_TENSOR, b,
                              SPHGI_OUTPUT, b->type, false);
     if (!result)
-        result = check_batch(checker, &wanted->lambda_min, "wanted.lambda_min", 1, b, SPHGI_OUTPUT,
-                             b->type, false);
+        result = check_batch(checker, &wanted->lambda_min, "wanted.lambda_min", SPHG_SCALAR, b,
+                             SPHGI_OUTPUT, b->type, false);
     if (!result)
-        result =
-            check_batch(checker, &wanted->rank, "wanted.rank", 1, b, SPHGI_OUTPUT, SPHG_U8, false);
+        result = check_batch(checker, &wanted->rank, "wanted.rank", SPHG_SCALAR, b, SPHGI_OUTPUT,
+                             SPHG_U8, false);
     if (result)
         return result;
-    b->in = sphgi_flat_columns(moments, numbers);
-    b->out[0] = sphgi_flat_columns(&wanted->correction, numbers);
+    b->in = sphgi_columns_of(moments, SPHG_SYM_TENSOR, b->dimension);
+    b->out[0] = sphgi_columns_of(&wanted->correction, SPHG_SYM_TENSOR, b->dimension);
     b->out[1] = sphgi_flat_columns(&wanted->lambda_min, 1);
     b->rank = sphgi_flat_columns(&wanted->rank, 1);
     if (mls)
         b->volume = sphgi_flat_columns(volume, 1);
-    const bool in_place =
-        moments->x == wanted->correction.x && moments->stride == wanted->correction.stride;
+    const bool in_place = moments->x == wanted->correction.x &&
+                          moments->stride == wanted->correction.stride &&
+                          moments->layout == wanted->correction.layout;
     const size_t size = sphgi_size_of_type(b->type);
     const struct sphgi_columns none = {.count = 0};
     const struct sphgi_extent extents[] = {
-        {"moments", in_place ? none : b->in, b->count, size, false},
+        sphgi_extent_of("moments", in_place ? &none : &b->in, b->count, size, false),
         {"volume", b->volume, b->count, size, false},
-        {"wanted.correction", b->out[0], b->count, size, true},
+        sphgi_extent_of("wanted.correction", &b->out[0], b->count, size, true),
         {"wanted.lambda_min", b->out[1], b->count, size, true},
         {"wanted.rank", b->rank, b->count, 1, true}};
     return sphgi_check_overlap(checker, extents, 5);
@@ -367,7 +367,7 @@ static sphg_result check_shapes(struct sphgi_checker checker, struct batch *b,
         struct sphgi_columns *columns = k ? &b->out[k - 1] : &b->in;
         *columns = sphgi_columns_of(views[k], shapes[k], b->dimension);
         extents[k] =
-            (struct sphgi_extent){names[k], *columns, b->count, sphgi_size_of_type(b->type), k > 0};
+            sphgi_extent_of(names[k], columns, b->count, sphgi_size_of_type(b->type), k > 0);
     }
     return sphgi_check_overlap(checker, extents, count);
 }

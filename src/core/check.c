@@ -141,6 +141,35 @@ static sphg_result check_stride(struct sphgi_checker checker, const sphg_view *v
     return SPHG_OK;
 }
 
+static sphg_result check_layout(struct sphgi_checker checker, const sphg_view *view,
+                                const struct sphgi_expected *expected)
+{
+    const char *f = checker.function, *name = expected->name;
+    if (view->layout < SPHG_AS_SHAPE || view->layout > SPHG_FULL)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.layout is %d, not a layout", f, name,
+               (int)view->layout);
+    if (view->layout == SPHG_COLUMN_MAJOR && expected->shape != SPHG_TENSOR)
+        REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s.layout is COLUMN_MAJOR, but these are no tensors", f,
+               name);
+    if (view->layout == SPHG_FULL && expected->shape != SPHG_SYM_TENSOR)
+        REFUSE(SPHG_ERROR_ARGUMENT,
+               "%s: %s.layout is FULL, but these are no symmetric tensors or linear corrections", f,
+               name);
+    return SPHG_OK;
+}
+
+/* Numbers that stand behind view->x. */
+static int32_t numbers_in_item(const sphg_view *view, const struct sphgi_expected *expected,
+                               bool split)
+{
+    const int32_t d = expected->dimension;
+    if (!expected->shape)
+        return expected->numbers;
+    if (view->layout == SPHG_FULL)
+        return d * d;
+    return sphgi_components(expected->shape, d) / (split ? d : 1);
+}
+
 sphg_result sphgi_check_view(struct sphgi_checker checker, const sphg_view *view,
                              const struct sphgi_expected *expected)
 {
@@ -163,9 +192,9 @@ sphg_result sphgi_check_view(struct sphgi_checker checker, const sphg_view *view
     if (!is_aligned(view->x, size) || (split && !is_aligned(view->y, size)) ||
         (split && expected->dimension == 3 && !is_aligned(view->z, size)))
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: %s does not start at a multiple of %zu", f, name, size);
-    const int32_t all = expected->shape ? sphgi_components(expected->shape, expected->dimension)
-                                        : expected->numbers;
-    return check_stride(checker, view, expected, split ? all / expected->dimension : all);
+    const sphg_result result = check_layout(checker, view, expected);
+    return result ? result
+                  : check_stride(checker, view, expected, numbers_in_item(view, expected, split));
 }
 
 /* ---- Overlap -------------------------------------------------------------------------------- */
@@ -220,6 +249,9 @@ struct sphgi_extent sphgi_extent_of(const char *name, const struct sphgi_columns
     if (columns->count > SPHGI_COLUMNS_MOST) {
         extent.number_size *= (size_t)columns->count;
         extent.columns.count = 1;
+    } else if (columns->layout == SPHG_FULL) {
+        extent.number_size *= (size_t)sphgi_numbers_of(columns);
+        extent.columns.count = sphgi_min32(columns->count, 1);
     }
     return extent;
 }

@@ -22,9 +22,25 @@ static int32_t components_per_pointer(sphg_shape shape, int32_t dimension)
     return shape == SPHG_VECTOR ? 1 : shape == SPHG_TENSOR ? dimension : 1;
 }
 
+/* Matrices column by column, or symmetric ones in full. Components are found by where the first of
+ * their numbers stands, in FULL that of the upper triangle. */
+static struct sphgi_columns laid_out(const sphg_view *view, int32_t count, int32_t dimension)
+{
+    struct sphgi_columns columns = sphgi_flat_columns(view, count);
+    columns.layout = view->layout;
+    columns.side = dimension;
+    columns.together = false;
+    for (int32_t k = dimension * dimension - 1; columns.count && k >= 0; --k)
+        columns.at[sphgi_component_at(&columns, k)] =
+            (const char *)view->x + (size_t)k * sphgi_size_of_type(view->type);
+    return columns;
+}
+
 struct sphgi_columns sphgi_columns_of(const sphg_view *view, sphg_shape shape, int32_t dimension)
 {
     const int32_t count = sphgi_components(shape, dimension);
+    if (view->layout == SPHG_FULL || (view->layout && !view->y))
+        return laid_out(view, count, dimension);
     struct sphgi_columns columns = sphgi_flat_columns(view, count);
     const bool split = view->y && (shape == SPHG_VECTOR || shape == SPHG_TENSOR);
     if (!columns.count || !split)
@@ -32,11 +48,13 @@ struct sphgi_columns sphgi_columns_of(const sphg_view *view, sphg_shape shape, i
     const char *start[3] = {view->x, view->y, view->z};
     const int32_t each = components_per_pointer(shape, dimension);
     const size_t size = sphgi_size_of_type(view->type);
-    for (int32_t c = 0; c < count; ++c) {
+    for (int32_t k = 0; k < count; ++k) {
+        const int32_t c = view->layout ? k % dimension * dimension + k / dimension : k;
         /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): count <= 3 each */
-        columns.at[c] = start[c / each] + (size_t)(c % each) * size;
-        columns.together &= columns.at[c] == columns.at[0] + (size_t)c * size;
+        columns.at[c] = start[k / each] + (size_t)(k % each) * size;
     }
+    for (int32_t c = 0; c < count; ++c)
+        columns.together &= columns.at[c] == columns.at[0] + (size_t)c * size;
     return columns;
 }
 
@@ -52,8 +70,12 @@ struct sphgi_columns sphgi_flat_columns(const sphg_view *view, int32_t count)
 struct sphgi_columns sphgi_some_columns(const struct sphgi_columns *columns, int32_t first,
                                         sphg_type type)
 {
-    const sphg_view rest = {columns->at[0] + (size_t)first * sphgi_size_of_type(type), NULL, NULL,
-                            columns->stride, type};
+    const sphg_view rest = {columns->at[0] + (size_t)first * sphgi_size_of_type(type),
+                            NULL,
+                            NULL,
+                            columns->stride,
+                            type,
+                            SPHG_AS_SHAPE};
     return sphgi_flat_columns(&rest, sphgi_min32(SPHGI_COLUMNS_MOST, columns->count - first));
 }
 
@@ -61,6 +83,7 @@ struct sphgi_columns sphgi_dense_columns(const void *data, int32_t count, int32_
                                          sphg_type type)
 {
     const size_t size = sphgi_size_of_type(type);
-    const sphg_view view = {data, NULL, NULL, (ptrdiff_t)((size_t)item_numbers * size), type};
+    const sphg_view view = {data, NULL,         NULL, (ptrdiff_t)((size_t)item_numbers * size),
+                            type, SPHG_AS_SHAPE};
     return sphgi_flat_columns(&view, count);
 }

@@ -154,12 +154,19 @@ SPHGI_TEMPLATE int32_t last_four(int32_t c, int32_t count)
     return c + 4 <= count ? c : count - 4;
 }
 
-SPHGI_TEMPLATE void put_four(struct four v, real *to)
+/* Where the lanes of number k of an item stand. */
+SPHGI_TEMPLATE ptrdiff_t lanes_of_number(const struct sphgi_columns *columns, int32_t k)
 {
-    store(to, v.x);
-    store(to + SPHGI_WIDTH, v.y);
-    store(to + 2 * SPHGI_WIDTH, v.z);
-    store(to + 3 * SPHGI_WIDTH, v.w);
+    return sphgi_component_at(columns, k) * SPHGI_WIDTH;
+}
+
+SPHGI_TEMPLATE void put_four(const struct sphgi_columns *columns, struct four v, int32_t first,
+                             real *to)
+{
+    store(to + lanes_of_number(columns, first), v.x);
+    store(to + lanes_of_number(columns, first + 1), v.y);
+    store(to + lanes_of_number(columns, first + 2), v.z);
+    store(to + lanes_of_number(columns, first + 3), v.w);
 }
 
 /* One vector of targets each. */
@@ -181,15 +188,15 @@ SPHGI_TEMPLATE void load_three(const char *base, ptrdiff_t stride, const int32_t
 SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int32_t *items,
                                   real *to)
 {
-    const int32_t count = columns->count;
+    const int32_t count = sphgi_numbers_of(columns);
     if (count == 3)
         load_three(columns->at[0], columns->stride, items, to);
     for (int32_t c = 0; count > 3 && c < count; c += 4) {
         const real *row[LANES];
         const int32_t first = last_four(c, count);
         for (int32_t l = 0; l < LANES; ++l)
-            row[l] = (const real *)(columns->at[first] + items[l] * columns->stride);
-        put_four(transpose(row), to + first * SPHGI_WIDTH);
+            row[l] = (const real *)(columns->at[0] + items[l] * columns->stride) + first;
+        put_four(columns, transpose(row), first, to);
     }
 }
 
@@ -197,7 +204,8 @@ SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int
 static void ask_for_lanes(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                           bool write)
 {
-    const int32_t count = columns->together ? sphgi_min32(columns->count, 1) : columns->count;
+    const bool together = columns->together || columns->layout;
+    const int32_t count = together ? sphgi_min32(columns->count, 1) : columns->count;
     for (int32_t c = 0; c < count && columns->stride; ++c)
         for (int32_t l = 0; l < width; ++l) {
             const char *at = columns->at[c] + items[l] * columns->stride;
@@ -214,7 +222,8 @@ static void load_lanes(int32_t width, const struct sphgi_columns *columns, const
 {
     real *to = out;
     const int32_t count = columns->count;
-    if (columns->stride && columns->together && count >= 3) {
+    const bool together = columns->together || columns->layout == SPHG_COLUMN_MAJOR;
+    if (columns->stride && together && count >= 3) {
         for (int32_t l = 0; l < width; l += LANES)
             load_together(columns, items + l, to + l);
         return;
@@ -262,12 +271,13 @@ SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_
                                int32_t targets, const real *from, int32_t first, int32_t numbers)
 {
     quad rows[LANES];
-    const real *in = from + first * SPHGI_WIDTH;
-    rows_of((struct four){load(in), load(in + SPHGI_WIDTH), load(in + 2 * SPHGI_WIDTH),
-                          load(in + (numbers - 1) * SPHGI_WIDTH)},
+    rows_of((struct four){load(from + lanes_of_number(columns, first)),
+                          load(from + lanes_of_number(columns, first + 1)),
+                          load(from + lanes_of_number(columns, first + 2)),
+                          load(from + lanes_of_number(columns, first + numbers - 1))},
             rows);
     for (int32_t l = 0; l < LANES && l < targets; ++l) {
-        real *to = number_of(columns, first, items[l]);
+        real *to = number_of(columns, 0, items[l]) + first;
         if (numbers == 4)
             *(quad *)to = rows[l];
         else
@@ -278,17 +288,19 @@ SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_
 SPHGI_TEMPLATE void store_together(const struct sphgi_columns *columns, const int32_t *items,
                                    int32_t targets, const real *from)
 {
-    if (columns->count == 3)
+    const int32_t numbers = sphgi_numbers_of(columns);
+    if (numbers == 3)
         store_rows(columns, items, targets, from, 0, 3);
-    for (int32_t c = 0; columns->count > 3 && c < columns->count; c += 4)
-        store_rows(columns, items, targets, from, last_four(c, columns->count), 4);
+    for (int32_t k = 0; numbers > 3 && k < numbers; k += 4)
+        store_rows(columns, items, targets, from, last_four(k, numbers), 4);
 }
 
 static void store_lanes(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,
                         const void *in, bool accumulate)
 {
     const real *from = in;
-    if (columns->together && columns->count > 2 && !accumulate) {
+    const bool together = columns->together || columns->layout;
+    if (together && columns->count > 2 && !accumulate) {
         int32_t l = 0;
         for (; l + LANES <= targets; l += LANES)
             store_together(columns, items + l, LANES, from + l);
@@ -297,8 +309,10 @@ static void store_lanes(int32_t targets, const struct sphgi_columns *columns, co
         return;
     }
     for (int32_t l = 0; l < targets; ++l)
-        for (int32_t c = 0; c < columns->count; ++c) {
-            real *to = number_of(columns, c, items[l]);
-            *to = accumulate ? *to + from[c * SPHGI_WIDTH + l] : from[c * SPHGI_WIDTH + l];
+        for (int32_t k = 0; k < sphgi_numbers_of(columns); ++k) {
+            real *to = columns->layout ? number_of(columns, 0, items[l]) + k
+                                       : number_of(columns, k, items[l]);
+            const real number = from[lanes_of_number(columns, k) + l];
+            *to = accumulate ? *to + number : number;
         }
 }

@@ -99,7 +99,7 @@ static sphg_result take_targets(struct sphgi_plan_builder *builder)
     if (!result && width)
         result = sphgi_take_target_side(builder, &request->target_correction,
                                         own ? &own->correction : NULL, "target_correction",
-                                        "sources.correction", (sphg_shape)0, width,
+                                        "sources.correction", sphgi_shape_of_table(plan), width,
                                         &plan->target_correction);
     if (own)
         plan->own_volume = plan->sets[plan->own_set].volume;
@@ -112,7 +112,7 @@ static sphg_result take_wanted(struct sphgi_plan_builder *builder)
     const sphg_request *request = builder->request;
     const int32_t width = sphgi_plan_width(plan);
     sphg_result result = sphgi_take_output(builder, &request->correction, "correction", plan->type,
-                                           (sphg_shape)0, width, &plan->correction);
+                                           sphgi_shape_of_table(plan), width, &plan->correction);
     if (!result)
         result = sphgi_take_output(builder, &request->rank, "rank", SPHG_U8, SPHG_SCALAR, 1,
                                    &plan->rank);

@@ -113,6 +113,13 @@ enum sphgi_purpose {
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose);
 
 /* Numbers of a correction. */
+/* Linear corrections are symmetric matrices; other tables are flat. */
+static inline sphg_shape sphgi_shape_of_table(const struct sphgi_plan *plan)
+{
+    const bool linear = plan->scheme.method <= SPHG_RKPM && !plan->quadratic;
+    return linear ? SPHG_SYM_TENSOR : (sphg_shape)0;
+}
+
 static inline int32_t sphgi_plan_width(const struct sphgi_plan *plan)
 {
     return sphgi_correction_width(plan->scheme.method, plan->dimension, plan->scheme.order);

@@ -96,8 +96,9 @@ static sphg_result take_hessian(struct sphgi_plan_builder *builder, int32_t k)
     struct sphgi_plan *plan = builder->plan;
     const sphg_field *given = &builder->request->fields[k];
     const int32_t d = plan->dimension;
-    const size_t bytes = (size_t)(d * (d + 1) / 2) * sphgi_size_of_type(plan->type);
     const sphg_view *view = &given->hessian;
+    const int32_t numbers = view->layout == SPHG_FULL ? d * d : d * (d + 1) / 2;
+    const size_t bytes = (size_t)numbers * sphgi_size_of_type(plan->type);
     const void *start[3] = {view->x, view->y, view->z};
     const bool split = given->shape == SPHG_VECTOR && view->y;
     if (sphgi_is_absent(view))
@@ -319,9 +320,9 @@ static sphg_result take_correction_of_set(struct sphgi_plan_builder *builder, in
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT,
                      "%s: sources[%d].correction is absent; adjoint and symmetric forms read it",
                      builder->checker.function, (int)s);
-    const sphg_result result =
-        sphgi_take_input(builder, view, sphgi_name_view(builder, "sources[%d].correction", s, 0),
-                         (sphg_shape)0, width, plan->sets[s].neighbors->source_count, &columns);
+    const sphg_result result = sphgi_take_input(
+        builder, view, sphgi_name_view(builder, "sources[%d].correction", s, 0),
+        sphgi_shape_of_table(plan), width, plan->sets[s].neighbors->source_count, &columns);
     const int32_t read = /* of order 2 all but R */
         plan->quadratic ? sphgi_correction_rows(plan) * SPHGI_ROW : width;
     sphgi_add_streams(builder, s, plan->correction_stream, &columns, sphgi_min32(read, width),

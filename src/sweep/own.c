@@ -39,7 +39,8 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
     const size_t row = SPHGI_ROW * sphgi_size_of_type(sweep->plan->type);
     if (number < 32 && (w->own.in_rows >> number & 1)) {
         const size_t rows = (size_t)sweep->set->neighbors->source_count + 1;
-        struct sphgi_columns columns;
+        struct sphgi_columns columns; /* all of it would be cleared for nothing */
+        columns.layout = SPHG_AS_SHAPE;
         columns.at[0] = sweep->packed_rows + (size_t)field->row * rows * row;
         columns.stride = (ptrdiff_t)row;
         columns.count = SPHGI_ROW;

@@ -98,7 +98,8 @@ static inline double fuzz_get(sphg_type type, const void *array, int place)
 
 static inline sphg_view fuzz_view(sphg_type type, const void *array, int width)
 {
-    const sphg_view view = {array, NULL, NULL, width * (type == SPHG_F64 ? 8 : 4), type};
+    const sphg_view view = {array, NULL,         NULL, width * (type == SPHG_F64 ? 8 : 4),
+                            type,  SPHG_AS_SHAPE};
     return view;
 }
 

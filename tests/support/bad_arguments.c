@@ -159,6 +159,17 @@ static int spoil_type(sphg_view *view, const argument *spoilt, int number, trial
     return 1;
 }
 
+/* Those that are none; which ones a view may have is tested with the views. */
+static int spoil_layout(sphg_view *view, int number, trial *made)
+{
+    static const int values[] = {SPHG_FULL + 1, -1, INT_MAX};
+    view->layout = (sphg_layout)values[number];
+    name_trial(made, "layout %d", values[number]);
+    expect(made, SPHG_ERROR_ARGUMENT, NULL);
+    snprintf(made->value, sizeof made->value, "%d", values[number]);
+    return 1;
+}
+
 static int spoil_stride(sphg_view *view, const argument *spoilt, int number, trial *made)
 {
     const ptrdiff_t size = size_of(view->type), item = view->stride;
@@ -258,6 +269,8 @@ static int spoil_view(valid_call *own, const probe *tested, const argument *spoi
         return 0;
     if (number < 7 && spoil_type(view, spoilt, number, made))
         return 1;
+    if (number >= 7 && number < 10)
+        return spoil_layout(view, number - 7, made);
     if (number >= 10 && number < 20 && spoil_stride(view, spoilt, number - 10, made))
         return 1;
     if (number >= 20 && number < 40 && spoil_start(own, view, spoilt, number - 20, made))

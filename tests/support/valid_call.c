@@ -37,8 +37,12 @@ static sphg_view input(const valid_call *own, int width, double low, double high
 
 static sphg_view output(const valid_call *own, int slot, int width)
 {
-    sphg_view view = {own->outputs + slot * VALID_CALL_SLOT_BYTES, NULL, NULL,
-                      (ptrdiff_t)width * number_size(own), test_field_type(own->test)};
+    sphg_view view = {own->outputs + slot * VALID_CALL_SLOT_BYTES,
+                      NULL,
+                      NULL,
+                      (ptrdiff_t)width * number_size(own),
+                      test_field_type(own->test),
+                      SPHG_AS_SHAPE};
     return view;
 }
 

@@ -31,6 +31,11 @@ inline int numbers_of(sphg_shape shape, int dimension)
     return 0;
 }
 
+inline int dimension_of(const sphg_scheme &scheme)
+{
+    return scheme.dimension == 2 ? 2 : 3;
+}
+
 /* One call: remembers the first view that does not fit. */
 class checker
 {
@@ -39,7 +44,7 @@ class checker
     {
     }
     sphg_view take(const input &view, std::int64_t count, int numbers, const char *name,
-                   bool vectors = false)
+                   bool vectors = false, bool tensors = false)
     {
         if (view.absent())
             return sphg_absent();
@@ -51,12 +56,31 @@ class checker
                              std::to_string(numbers));
         else if (!vectors && !view.together())
             refuse(name, ": the numbers of an item must follow one another");
-        return view.view(vectors);
+        else if (!tensors && view.get().by_columns)
+            refuse(name, ": its matrices stand column by column, which tensors may");
+        sphg_view made = view.view(vectors);
+        if (view.get().by_columns)
+            made.layout = SPHG_COLUMN_MAJOR;
+        return made;
     }
     sphg_view take(const input &view, std::int64_t count, sphg_shape shape, int dimension,
                    const char *name)
     {
-        return take(view, count, numbers_of(shape, dimension), name, shape == SPHG_VECTOR);
+        if (shape == SPHG_SYM_TENSOR && view.get().side == dimension && dimension > 1) {
+            sphg_view made = take(view, count, dimension * dimension, name, false, true);
+            made.layout = SPHG_FULL; /* in either order */
+            return made;
+        }
+        return take(view, count, numbers_of(shape, dimension), name, shape == SPHG_VECTOR,
+                    shape == SPHG_TENSOR);
+    }
+    /* Corrections: those of linearised methods are symmetric matrices. */
+    sphg_view take_table(const input &view, std::int64_t count, const sphg_scheme &scheme,
+                         const char *name)
+    {
+        if (scheme.method <= SPHG_RKPM && scheme.order != 2)
+            return take(view, count, SPHG_SYM_TENSOR, dimension_of(scheme), name);
+        return take(view, count, sphg_correction_width(&scheme), name);
     }
     void refuse(const char *name, const std::string &why)
     {
@@ -92,10 +116,6 @@ template <class Errors> typename Errors::type refused(const checker &check)
     return Errors::finish(SPHG_ERROR_SIZE, check.message());
 }
 
-inline int dimension_of(const sphg_scheme &scheme)
-{
-    return scheme.dimension == 2 ? 2 : 3;
-}
 } // namespace detail
 
 } // namespace sphgrad

@@ -88,12 +88,11 @@ template <class Errors> class basic_context
         made.set_count = static_cast<std::int32_t>(sets.size());
         made.field_count = static_cast<std::int32_t>(fields.size());
         made.subset = of_subset(check, wanted.subset, n);
-        const int width = correction_width(scheme);
         made.target_volume = check.take(wanted.target_volume, n, 1, "target_volume");
         made.target_density = check.take(wanted.target_density, n, 1, "target_density");
         made.target_correction =
-            check.take(wanted.target_correction, n, width, "target_correction");
-        made.correction = check.take(wanted.correction, n, width, "correction");
+            check.take_table(wanted.target_correction, n, scheme, "target_correction");
+        made.correction = check.take_table(wanted.correction, n, scheme, "correction");
         made.rank = check.take(wanted.rank, n, 1, "rank");
         made.lambda_min = check.take(wanted.lambda_min, n, 1, "lambda_min");
         made.stats = wanted.stats;
@@ -111,7 +110,7 @@ template <class Errors> class basic_context
         const sphg_sources made = of_set(check, scheme, set, info);
         const sphg_subset *which = of_subset(check, some, info.target_count);
         const sphg_view table =
-            check.take(correction, info.target_count, correction_width(scheme), "correction");
+            check.take_table(correction, info.target_count, scheme, "correction");
         const sphg_view ranks = check.take(rank, info.target_count, 1, "rank");
         if (check.failed())
             return refused(check);
@@ -192,12 +191,12 @@ template <class Errors> class basic_context
     {
         detail::checker check("invert_moments");
         const std::int64_t n = moments.count();
-        const int width = detail::numbers_of(SPHG_SYM_TENSOR, detail::dimension_of(scheme));
+        const int d = detail::dimension_of(scheme);
         sphg_inversion made = {};
         const std::int32_t count = check.count(n, "moments");
-        const sphg_view in = check.take(moments, n, width, "moments");
+        const sphg_view in = check.take(moments, n, SPHG_SYM_TENSOR, d, "moments");
         const sphg_view volumes = check.take(volume, n, 1, "volume");
-        made.correction = check.take(wanted.correction, n, width, "correction");
+        made.correction = check.take(wanted.correction, n, SPHG_SYM_TENSOR, d, "correction");
         made.rank = check.take(wanted.rank, n, 1, "rank");
         made.lambda_min = check.take(wanted.lambda_min, n, 1, "lambda_min");
         made.stats = wanted.stats;
@@ -254,8 +253,8 @@ template <class Errors> class basic_context
         made.neighbors = set.neighbors;
         made.volume = check.take(set.volume, info.source_count, 1, "volume");
         made.density = check.take(set.density, info.source_count, 1, "density");
-        made.correction = check.take(set.correction, info.source_count, correction_width(scheme),
-                                     "correction of the sources");
+        made.correction = check.take_table(set.correction, info.source_count, scheme,
+                                           "correction of the sources");
         made.same_volumes = set.same_volumes;
         return made;
     }

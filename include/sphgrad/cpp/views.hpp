@@ -70,11 +70,29 @@ template <class T> constexpr sphg_type type_of()
 
 /* A matrix of fixed size as an element of a range. */
 template <class T> struct item<T, std::enable_if_t<detail::is_fixed_matrix<T>()>> {
-    static_assert(T::IsRowMajor || T::RowsAtCompileTime == 1 || T::ColsAtCompileTime == 1,
-                  "J[a][b] is stored row by row: take Eigen::RowMajor for matrices that are items");
+    static_assert(
+        T::IsRowMajor || T::RowsAtCompileTime == 1 || T::ColsAtCompileTime == 1 ||
+            T::RowsAtCompileTime == T::ColsAtCompileTime,
+        "items are read row by row: take Eigen::RowMajor for matrices that are not square");
     using number = typename T::Scalar;
     static constexpr int numbers = T::RowsAtCompileTime * T::ColsAtCompileTime;
+    static constexpr int side =
+        T::RowsAtCompileTime == T::ColsAtCompileTime ? T::RowsAtCompileTime : 0;
+    static constexpr bool by_columns = side > 1 && !T::IsRowMajor;
 };
+
+namespace detail
+{
+/* d, if an item is a matrix of d x d: it may stand for a tensor or a symmetric one in full. */
+template <class Item, class = void> struct matrix_of {
+    static constexpr int side = 0;
+    static constexpr bool by_columns = false;
+};
+template <class Item> struct matrix_of<Item, std::void_t<decltype(Item::by_columns)>> {
+    static constexpr int side = Item::side;
+    static constexpr bool by_columns = Item::by_columns;
+};
+} // namespace detail
 
 /* Strided numbers and their count: number k of item i stands at `first` + i stride + k step bytes.
  */
@@ -83,6 +101,8 @@ struct layout {
     std::ptrdiff_t stride = 0, step = 0;
     std::int64_t count = 0;
     int numbers = 0;
+    int side = 0;            /* d: an item is a matrix of d x d ... */
+    bool by_columns = false; /* ... column by column */
     sphg_type type = SPHG_F32;
     bool same = false;                      /* one item for all */
     std::array<const void *, 3> apart = {}; /* separate arrays of components */
@@ -134,9 +154,9 @@ class input
         if (absent())
             return sphg_absent();
         if (l.apart[0])
-            return {l.apart[0], l.apart[1], l.apart[2], l.stride, l.type};
+            return {l.apart[0], l.apart[1], l.apart[2], l.stride, l.type, SPHG_AS_SHAPE};
         const void *first = l.same ? static_cast<const void *>(l.own.data()) : l.first;
-        sphg_view made = {first, nullptr, nullptr, l.same ? 0 : l.stride, l.type};
+        sphg_view made = {first, nullptr, nullptr, l.same ? 0 : l.stride, l.type, SPHG_AS_SHAPE};
         if (first && vectors && l.numbers > 1 && l.step != size()) {
             made.y = static_cast<const char *>(first) + l.step;
             made.z = l.numbers > 2 ? static_cast<const char *>(first) + 2 * l.step : nullptr;
@@ -172,6 +192,8 @@ class input
             made.type = detail::type_of<typename item<element>::number>();
             made.count = static_cast<std::int64_t>(std::size(range));
             made.numbers = item<element>::numbers;
+            made.side = detail::matrix_of<item<element>>::side;
+            made.by_columns = detail::matrix_of<item<element>>::by_columns;
             made.stride = static_cast<std::ptrdiff_t>(sizeof(element));
             made.step = static_cast<std::ptrdiff_t>(sizeof(typename item<element>::number));
         }

@@ -46,6 +46,13 @@ module sphgrad
     enumerator :: SPHG_SYM_TENSOR = 3
     enumerator :: SPHG_TENSOR = 4
   end enum
+
+  ! sphg_layout
+  enum, bind(c)
+    enumerator :: SPHG_AS_SHAPE = 0
+    enumerator :: SPHG_COLUMN_MAJOR = 1
+    enumerator :: SPHG_FULL = 2
+  end enum
   ! sphg_isa
   enum, bind(c)
     enumerator :: SPHG_ISA_BEST = 0
@@ -100,7 +107,8 @@ module sphgrad
       SPHG_ERROR_STATE, SPHG_ERROR_UNSUPPORTED, SPHG_ERROR_CAPACITY, SPHG_ERROR_NOT_FINITE, &
       SPHG_ERROR_BUSY, SPHG_ERROR_LISTS, SPHG_ERROR_MEMORY, SPHG_ERROR_INDEX, &
       SPHG_ERROR_VOLUME, SPHG_F32, SPHG_F64, SPHG_U8, SPHG_SCALAR, SPHG_VECTOR, &
-      SPHG_SYM_TENSOR, SPHG_TENSOR, SPHG_ISA_BEST, SPHG_ISA_BASE, SPHG_ISA_X86_V3, &
+      SPHG_SYM_TENSOR, SPHG_TENSOR, SPHG_AS_SHAPE, SPHG_COLUMN_MAJOR, SPHG_FULL, &
+      SPHG_ISA_BEST, SPHG_ISA_BASE, SPHG_ISA_X86_V3, &
       SPHG_ISA_X86_V4, SPHG_ISA_NEON, SPHG_KGC, SPHG_MLS, SPHG_RKPM, SPHG_CMLS, SPHG_CRKPM, &
       SPHG_PLAIN, SPHG_CUBIC_SPLINE, SPHG_QUINTIC_SPLINE, SPHG_WENDLAND_C2, SPHG_WENDLAND_C4, &
       SPHG_WENDLAND_C6, SPHG_POLY6, SPHG_SPIKY, SPHG_BLEND, SPHG_REPLACE, SPHG_TRUNCATE, &
@@ -113,6 +121,7 @@ module sphgrad
     type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr
     integer(c_ptrdiff_t) :: stride = 0
     integer(c_int) :: type = 0
+    integer(c_int) :: layout = 0
   end type sphg_view
 
   type, bind(c), public :: sphg_config
@@ -507,6 +516,9 @@ module sphgrad
   !
   !   sphg_view_of(a)      a(n) scalars, a(d, n) vectors (or packed tensors, tables), a(d, d, n)
   !                        tensors; a section of an array as well
+  !   sphg_matrices_of(a)  a(d, d, n) tensors whose a(i, k) is row i, column k of the matrix: J stands as
+  !                        j(a, b), not as j(b, a)
+  !   sphg_full_of(a)      a(d, d, n) symmetric tensors and corrections in full
   !   sphg_columns_of(a)   a(n, d) vectors: each component in a column of its own
   !   sphg_same(a)         one number for all particles
   !   sphg_absent()        nothing
@@ -514,12 +526,18 @@ module sphgrad
   ! of real(c_float) and real(c_double); for ranks of particles integer(c_int8_t), a(n). A section that a
   ! view cannot express, such as every second number of a packed tensor, gets the type -1, which every call
   ! refuses.
-  public :: sphg_view_of, sphg_columns_of, sphg_same, sphg_absent
+  public :: sphg_view_of, sphg_matrices_of, sphg_full_of, sphg_columns_of, sphg_same, sphg_absent
   public :: sphg_all, sphg_own_and_ghosts, sphg_targets_apart, sphg_range, sphg_masked, sphg_listed
   public :: sphg_message, sphg_result_text
 
   interface sphg_view_of
     module procedure view_f32_1, view_f32_2, view_f32_3, view_f64_1, view_f64_2, view_f64_3, view_u8_1
+  end interface
+  interface sphg_matrices_of
+    module procedure matrices_f32, matrices_f64
+  end interface
+  interface sphg_full_of
+    module procedure full_f32, full_f64
   end interface
   interface sphg_columns_of
     module procedure columns_f32, columns_f64
@@ -684,6 +702,21 @@ contains
     if (size(a, 2) == 3) view%z = c_loc(a(1, 3, 1))
   end function view_f32_3
 
+  function matrices_f32(a) result(view)
+    real(c_float), intent(in), target :: a(:, :, :)
+    type(sphg_view) :: view
+    view = view_f32_3(a)
+    view%layout = SPHG_COLUMN_MAJOR
+  end function matrices_f32
+
+  function full_f32(a) result(view)
+    real(c_float), intent(in), target :: a(:, :, :)
+    type(sphg_view) :: view
+    view = view_f32_3(a)
+    if (c_associated(view%y)) view%type = -1 ! its numbers do not follow one another
+    view%layout = SPHG_FULL
+  end function full_f32
+
   function columns_f32(a) result(view)
     real(c_float), intent(in), target :: a(:, :)
     type(sphg_view) :: view
@@ -754,6 +787,21 @@ contains
     view%y = c_loc(a(1, 2, 1))
     if (size(a, 2) == 3) view%z = c_loc(a(1, 3, 1))
   end function view_f64_3
+
+  function matrices_f64(a) result(view)
+    real(c_double), intent(in), target :: a(:, :, :)
+    type(sphg_view) :: view
+    view = view_f64_3(a)
+    view%layout = SPHG_COLUMN_MAJOR
+  end function matrices_f64
+
+  function full_f64(a) result(view)
+    real(c_double), intent(in), target :: a(:, :, :)
+    type(sphg_view) :: view
+    view = view_f64_3(a)
+    if (c_associated(view%y)) view%type = -1 ! its numbers do not follow one another
+    view%layout = SPHG_FULL
+  end function full_f64
 
   function columns_f64(a) result(view)
     real(c_double), intent(in), target :: a(:, :)

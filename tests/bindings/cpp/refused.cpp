@@ -4,7 +4,7 @@
 
 struct column_major { /* a matrix of fixed size in the manner of Eigen */
     using Scalar = double;
-    enum { RowsAtCompileTime = 3, ColsAtCompileTime = 3, IsRowMajor = MISTAKE != 1 };
+    enum { RowsAtCompileTime = 3, ColsAtCompileTime = MISTAKE == 1 ? 2 : 3, IsRowMajor = 0 };
     int innerStride() const { return 1; }
     int outerStride() const { return 3; }
     double numbers[9];

@@ -70,13 +70,24 @@ contains
 
   subroutine views_of_all_kinds()
     real(c_double), target :: j(3, 3, n), wide(5, 3, 2*n), tall(n, 5), three(9, n), apart(3, 2, n)
-    real(c_double), target :: g(3, n), many(2*n), rows(4, 4, n)
+    real(c_double), target :: g(3, n), many(2*n), rows(4, 4, n), matrices(3, 3, n), table(6, n)
     type(sphg_view) :: view
     call good(sphg_jacobian(context, scheme, sources, field=sphg_view_of(v), jacobian=sphg_view_of(j)))
     call expect(exact(j), "j of an array")
     three = 0
     call good(sphg_jacobian(context, scheme, sources, field=sphg_view_of(v), jacobian=sphg_view_of(three)))
     call expect(all(reshape(three, [3, 3, n]) == j), "rank 2 for tensors")
+    call good(sphg_jacobian(context, scheme, sources, field=sphg_view_of(v), &
+      jacobian=sphg_matrices_of(matrices)))
+    call expect(all(matrices(2, 1, :) == j(1, 2, :)) .and. all(matrices(1, 3, :) == j(3, 1, :)) .and. &
+      all(matrices(3, 3, :) == j(3, 3, :)), "matrices as they are written")
+    call good(sphg_correction(context, scheme, sources, correction=sphg_full_of(matrices), &
+      rank=sphg_absent()))
+    call good(sphg_correction(context, scheme, sources, correction=sphg_view_of(table), rank=sphg_absent()))
+    call expect(all(matrices(1, 3, :) == table(3, :)) .and. all(matrices(3, 1, :) == table(3, :)) .and. &
+      all(matrices(2, 2, :) == table(4, :)), "whole corrections")
+    view = sphg_full_of(wide(2:4, :, 2::2))
+    call expect(view%type == -1, "whole matrices that are scattered")
     wide = 7
     call good(sphg_jacobian(context, scheme, sources, field=sphg_view_of(v), &
       jacobian=sphg_view_of(wide(2:4, :, 2::2))))

@@ -38,6 +38,7 @@ def layouts(values):
     yield "a field at an odd place", odd["v"], False
     yield "last axis first", np.moveaxis(np.moveaxis(values, -1, 0).copy(), 0, -1), not tensor
     if tensor:
+        yield "matrices by columns", values.swapaxes(1, 2).copy().swapaxes(1, 2), True
         full = np.zeros((n, 3, 3), dtype)
         full[:, :rest[0], :rest[1]] = values
         yield "part of 3 x 3", full[:, :rest[0], :rest[1]], True
@@ -72,6 +73,26 @@ class Layouts(Case):
         for name, stress, _ in layouts(s):
             with self.subTest(name):
                 self.same(sg.divergence(n, stress, 1), expected)
+
+    def test_symmetric_matrices_may_be_whole(self):
+        for d, packed in ((2, (0, 1, 3)), (3, (0, 1, 2, 4, 5, 8))):
+            x = cloud(6, d)
+            n, whole = sg.Neighbors(x, H), np.zeros((len(x), d, d))
+            table = sg.correction_table(n, 1)
+            for out in (whole, np.zeros((len(x), d, d)).swapaxes(1, 2)):
+                self.assertIs(sg.correction_table(n, 1, out=out), out)
+                self.same(out, np.ascontiguousarray(out).swapaxes(1, 2))
+                self.same(out.reshape(len(x), d * d)[:, packed], table)
+            stress = np.random.default_rng(6).normal(size=(len(x), d, d))
+            stress += stress.swapaxes(1, 2)
+            of_shape = {"shape": sg.Shape.SYM_TENSOR}
+            expected = sg.evaluate(n, sg.Field(stress.reshape(len(x), d * d)[:, packed], divergence=True,
+                                               **of_shape), volume=1, target_correction=table)
+            found = sg.evaluate(n, sg.Field(stress, divergence=True, **of_shape), volume=1,
+                                target_correction=whole)
+            self.same(found.fields[0].divergence, expected.fields[0].divergence)
+            with self.assertRaises(ValueError):
+                sg.correction_table(n, 1, scheme=sg.Scheme(H, method=sg.Method.CMLS), out=whole)
 
     def test_what_a_view_expresses_is_not_copied(self):
         for shape, rest in ((_c.Shape.VECTOR, (3,)), (_c.Shape.TENSOR, (3, 3))):

@@ -42,6 +42,13 @@ class Shape(enum.IntEnum):
     TENSOR = 4
 
 
+class Layout(enum.IntEnum):
+    """How the numbers of a matrix stand; NumPy's strides say it."""
+    AS_SHAPE = 0
+    COLUMN_MAJOR = 1
+    FULL = 2
+
+
 class Isa(enum.IntEnum):
     ISA_BEST = 0
     ISA_BASE = 1
@@ -92,14 +99,14 @@ class Fault(enum.IntEnum):
     FAULT_MISSING = 5
 
 
-ENUMS = {"sphg_result": Result, "sphg_type": Type, "sphg_shape": Shape, "sphg_isa": Isa,
-         "sphg_method": Method, "sphg_kernel": Kernel, "sphg_policy": Policy, "sphg_form": Form,
-         "sphg_fault": Fault}
+ENUMS = {"sphg_result": Result, "sphg_type": Type, "sphg_shape": Shape, "sphg_layout": Layout,
+         "sphg_isa": Isa, "sphg_method": Method, "sphg_kernel": Kernel, "sphg_policy": Policy,
+         "sphg_form": Form, "sphg_fault": Fault}
 
 
 class View(c.Structure):
     _fields_ = [("x", c.c_void_p), ("y", c.c_void_p), ("z", c.c_void_p),
-                ("stride", c.c_ssize_t), ("type", c.c_int)]
+                ("stride", c.c_ssize_t), ("type", c.c_int), ("layout", c.c_int)]
 
 
 class Config(c.Structure):

@@ -153,6 +153,8 @@ class Call:
         scheme = first.scheme if self.scheme is None else as_scheme(self.scheme)
         self.c_scheme = scheme._c_scheme(self.dimension)
         self.width = _c.functions.sphg_correction_width(c.byref(self.c_scheme))
+        linear = self.c_scheme.method <= _c.Method.RKPM and self.c_scheme.order != 2
+        self.table_shape = _c.Shape.SYM_TENSOR if linear else None
         if self.subset_given is not None:
             self.subset = self._subset(self.subset_given)
         self.c_sources = (_c.Sources * len(self.sets))(*(self._source(s) for s in self.sets))
@@ -162,7 +164,8 @@ class Call:
         return _c.Sources(
             n._pointer, take(one.volume, n.source_count, (), self.dtype, "volume"),
             take(one.density, n.source_count, (), self.dtype, "density"),
-            take(one.correction, n.source_count, (self.width,), self.dtype, "correction"),
+            take(one.correction, n.source_count, (self.width,), self.dtype, "correction",
+                 self.table_shape),
             bool(one.same_volumes))
 
     def _subset(self, given):
@@ -197,8 +200,8 @@ class Call:
             return int(np.count_nonzero(np.asarray(self.subset_given)))
         return s.end - s.begin
 
-    def target(self, value, items, name):
-        return self.borrowed.input(value, self.count, items, self.dtype, name)
+    def target(self, value, items, name, shape=None):
+        return self.borrowed.input(value, self.count, items, self.dtype, name, shape)
 
     def new(self, items, dtype=None):
         """Who is not selected keeps zeros."""
@@ -305,7 +308,8 @@ def _field(call, field):
     result.coefficient_at_targets = call.target(field.coefficient_at_targets, (),
                                                 "coefficient_at_targets")
     result.shepard = bool(field.shepard)
-    result.tensor = call.target(field.tensor, (call.dimension, call.dimension), "tensor")
+    result.tensor = call.target(field.tensor, (call.dimension, call.dimension), "tensor",
+                                _c.Shape.TENSOR)
     return result, found
 
 
@@ -331,8 +335,9 @@ def evaluate(sources, fields=(), *, volume=None, scheme=None, subset=None, targe
         request.target_volume = call.target(target_volume, (), "target_volume")
         request.target_density = call.target(target_density, (), "target_density")
         request.target_correction = call.target(target_correction, (call.width,),
-                                                "target_correction")
-        correction, request.correction = call.output(correction, (call.width,), "correction")
+                                                "target_correction", call.table_shape)
+        correction, request.correction = call.output(correction, (call.width,), "correction",
+                                                     call.table_shape)
         rank, request.rank = call.output(rank, (), "rank", dtype=np.uint8)
         lambda_min, request.lambda_min = call.output(lambda_min, (), "lambda_min")
         borrows, request.borrows = call.output(borrows, (), "borrows", dtype=np.uint8)

@@ -43,7 +43,8 @@ def pairs(sources, volume=None, *, gradient=False, scheme=None, subset=None,
         raise ValueError("pairs are those of one source set")
     with call.context._calls() as context:
         call.begin()
-        table = call.target(target_correction, (call.width,), "target_correction")
+        table = call.target(target_correction, (call.width,), "target_correction",
+                            call.table_shape)
         offsets = np.zeros(call.selected + 1, np.int64)
         wanted = _c.Pairs(offsets=offsets.ctypes.data, gradient=absent(), any_order=bool(any_order))
         subset = None if call.subset is None else c.byref(call.subset)

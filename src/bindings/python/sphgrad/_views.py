@@ -4,7 +4,7 @@
 Every array is checked here: type, length, layout, and for outputs that it may be written. What a
 view can express is used where it lies; of the rest inputs are copied, and outputs are copied back."""
 import numpy as np
-from ._c import Shape, Type, View
+from ._c import Layout, Shape, Type, View
 
 TYPES = {np.dtype(np.float32): Type.F32, np.dtype(np.float64): Type.F64,
          np.dtype(np.uint8): Type.U8}
@@ -40,14 +40,29 @@ def as_array(value, dtype, name):
     return array.astype(dtype)
 
 
+def _is_transposed(array):
+    """Whether matrices stand column by column."""
+    size = array.itemsize
+    return array.ndim == 3 and array.shape[1] > 1 and array.strides[1:] == (size, array.shape[1] * size)
+
+
+def _is_whole(array, items, shape):
+    """Whether symmetric tensors or corrections stand as whole matrices."""
+    side = array.shape[-1] if array.ndim else 0
+    return shape == Shape.SYM_TENSOR and array.ndim == len(items) + 2 and \
+        array.shape[-2:] == (side, side) and items == (side * (side + 1) // 2,)
+
+
 def _expressible(array, shape):
     """Whether a view can say where the numbers are: aligned, and rows of numbers contiguous."""
     size = array.itemsize
     if not array.flags.aligned or any(s % size for s in array.strides):
         return False
     inner, axes = array.strides[1:], array.shape[1:]
-    if shape == Shape.VECTOR:
+    if shape == Shape.VECTOR or (shape == Shape.TENSOR and _is_transposed(array)):
         return True
+    if shape == Shape.SYM_TENSOR and len(axes) == 2:
+        return inner == (axes[1] * size, size) or _is_transposed(array)
     if shape is None and len(axes) == 2 and inner[0] != axes[1] * size:
         return False  # Hessians of a vector
     return not inner or axes[-1] == 1 or inner[-1] == size
@@ -57,7 +72,11 @@ def _describe(array, shape, same=False):
     """The view of an array that is expressible."""
     start, size = array.ctypes.data, array.itemsize
     view = View(start, None, None, 0 if same else array.strides[0], TYPES[array.dtype])
-    if shape in (Shape.VECTOR, Shape.TENSOR) and array.ndim > 1:
+    if shape == Shape.SYM_TENSOR and array.ndim == 3:
+        view.layout = Layout.FULL
+    elif shape == Shape.TENSOR and _is_transposed(array):
+        view.layout = Layout.COLUMN_MAJOR
+    elif shape in (Shape.VECTOR, Shape.TENSOR) and array.ndim > 1:
         apart, behind = array.strides[1], size * (array.shape[1] if shape == Shape.TENSOR else 1)
         if apart != behind:
             view.y = start + apart
@@ -83,6 +102,8 @@ class Borrowed:
         if value is None:
             return View(type=Type.F32)
         array = as_array(value, dtype, name)
+        if _is_whole(array, items, shape):
+            items = array.shape[1:]
         one = same and array.shape == items and array.ndim == len(items)
         if one:
             array = array.reshape((1,) + items)
@@ -106,6 +127,8 @@ class Borrowed:
             raise TypeError(f"{name} is a masked array, whose mask would be ignored")
         if array.dtype != dtype:
             raise TypeError(f"{name} is {array.dtype}, must be {dtype}")
+        if _is_whole(array, items, shape):
+            items = array.shape[1:]
         if array.shape != (count,) + items:
             raise ValueError(f"{name} has the shape {array.shape}, must have {(count,) + items}")
         if not array.flags.writeable:
