@@ -154,19 +154,20 @@ SPHGI_TEMPLATE int32_t last_four(int32_t c, int32_t count)
     return c + 4 <= count ? c : count - 4;
 }
 
-/* Where the lanes of number k of an item stand. */
-SPHGI_TEMPLATE ptrdiff_t lanes_of_number(const struct sphgi_columns *columns, int32_t k)
+/* Where the lanes of number k of an item stand. laid_out: in another order than numbers */
+SPHGI_TEMPLATE ptrdiff_t lanes_of_number(const struct sphgi_columns *columns, int32_t k,
+                                         bool laid_out)
 {
-    return sphgi_component_at(columns, k) * SPHGI_WIDTH;
+    return (laid_out ? sphgi_component_at(columns, k) : k) * SPHGI_WIDTH;
 }
 
 SPHGI_TEMPLATE void put_four(const struct sphgi_columns *columns, struct four v, int32_t first,
-                             real *to)
+                             real *to, bool laid_out)
 {
-    store(to + lanes_of_number(columns, first), v.x);
-    store(to + lanes_of_number(columns, first + 1), v.y);
-    store(to + lanes_of_number(columns, first + 2), v.z);
-    store(to + lanes_of_number(columns, first + 3), v.w);
+    store(to + lanes_of_number(columns, first, laid_out), v.x);
+    store(to + lanes_of_number(columns, first + 1, laid_out), v.y);
+    store(to + lanes_of_number(columns, first + 2, laid_out), v.z);
+    store(to + lanes_of_number(columns, first + 3, laid_out), v.w);
 }
 
 /* One vector of targets each. */
@@ -186,9 +187,9 @@ SPHGI_TEMPLATE void load_three(const char *base, ptrdiff_t stride, const int32_t
 }
 
 SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int32_t *items,
-                                  real *to)
+                                  real *to, bool laid_out)
 {
-    const int32_t count = sphgi_numbers_of(columns);
+    const int32_t count = laid_out ? sphgi_numbers_of(columns) : columns->count;
     if (count == 3)
         load_three(columns->at[0], columns->stride, items, to);
     for (int32_t c = 0; count > 3 && c < count; c += 4) {
@@ -196,7 +197,7 @@ SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int
         const int32_t first = last_four(c, count);
         for (int32_t l = 0; l < LANES; ++l)
             row[l] = (const real *)(columns->at[0] + items[l] * columns->stride) + first;
-        put_four(columns, transpose(row), first, to);
+        put_four(columns, transpose(row), first, to, laid_out);
     }
 }
 
@@ -225,7 +226,10 @@ static void load_lanes(int32_t width, const struct sphgi_columns *columns, const
     const bool together = columns->together || columns->layout == SPHG_COLUMN_MAJOR;
     if (columns->stride && together && count >= 3) {
         for (int32_t l = 0; l < width; l += LANES)
-            load_together(columns, items + l, to + l);
+            if (columns->layout)
+                load_together(columns, items + l, to + l, true);
+            else
+                load_together(columns, items + l, to + l, false);
         return;
     }
     for (int32_t c = 0; c < count; ++c)
@@ -268,13 +272,14 @@ SPHGI_TEMPLATE real *number_of(const struct sphgi_columns *columns, int32_t c, i
 }
 
 SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_t *items,
-                               int32_t targets, const real *from, int32_t first, int32_t numbers)
+                               int32_t targets, const real *from, int32_t first, int32_t numbers,
+                               bool laid_out)
 {
     quad rows[LANES];
-    rows_of((struct four){load(from + lanes_of_number(columns, first)),
-                          load(from + lanes_of_number(columns, first + 1)),
-                          load(from + lanes_of_number(columns, first + 2)),
-                          load(from + lanes_of_number(columns, first + numbers - 1))},
+    rows_of((struct four){load(from + lanes_of_number(columns, first, laid_out)),
+                          load(from + lanes_of_number(columns, first + 1, laid_out)),
+                          load(from + lanes_of_number(columns, first + 2, laid_out)),
+                          load(from + lanes_of_number(columns, first + numbers - 1, laid_out))},
             rows);
     for (int32_t l = 0; l < LANES && l < targets; ++l) {
         real *to = number_of(columns, 0, items[l]) + first;
@@ -286,33 +291,42 @@ SPHGI_TEMPLATE void store_rows(const struct sphgi_columns *columns, const int32_
 }
 
 SPHGI_TEMPLATE void store_together(const struct sphgi_columns *columns, const int32_t *items,
-                                   int32_t targets, const real *from)
+                                   int32_t targets, const real *from, bool laid_out)
 {
-    const int32_t numbers = sphgi_numbers_of(columns);
+    const int32_t numbers = laid_out ? sphgi_numbers_of(columns) : columns->count;
     if (numbers == 3)
-        store_rows(columns, items, targets, from, 0, 3);
+        store_rows(columns, items, targets, from, 0, 3, laid_out);
     for (int32_t k = 0; numbers > 3 && k < numbers; k += 4)
-        store_rows(columns, items, targets, from, last_four(k, numbers), 4);
+        store_rows(columns, items, targets, from, last_four(k, numbers), 4, laid_out);
+}
+
+SPHGI_TEMPLATE void store_all(const struct sphgi_columns *columns, const int32_t *items,
+                              int32_t targets, const real *from, bool laid_out)
+{
+    int32_t l = 0;
+    for (; l + LANES <= targets; l += LANES)
+        store_together(columns, items + l, LANES, from + l, laid_out);
+    if (l < targets)
+        store_together(columns, items + l, targets - l, from + l, laid_out);
 }
 
 static void store_lanes(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,
                         const void *in, bool accumulate)
 {
     const real *from = in;
-    const bool together = columns->together || columns->layout;
-    if (together && columns->count > 2 && !accumulate) {
-        int32_t l = 0;
-        for (; l + LANES <= targets; l += LANES)
-            store_together(columns, items + l, LANES, from + l);
-        if (l < targets)
-            store_together(columns, items + l, targets - l, from + l);
+    if (columns->layout && columns->count > 2 && !accumulate) {
+        store_all(columns, items, targets, from, true);
+        return;
+    }
+    if (columns->together && columns->count > 2 && !accumulate) {
+        store_all(columns, items, targets, from, false);
         return;
     }
     for (int32_t l = 0; l < targets; ++l)
         for (int32_t k = 0; k < sphgi_numbers_of(columns); ++k) {
             real *to = columns->layout ? number_of(columns, 0, items[l]) + k
                                        : number_of(columns, k, items[l]);
-            const real number = from[lanes_of_number(columns, k) + l];
+            const real number = from[lanes_of_number(columns, k, columns->layout) + l];
             *to = accumulate ? *to + number : number;
         }
 }
