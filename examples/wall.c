@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A wall of particles is a second source set. A block of fluid stands on a floor, and its pressure
- * falls by 1 per unit of height. Prints dp/dz in the lowest layer for two kinds of walls: particles
- * that have a pressure give -1; particles that mirror the fluid's add no difference, and halve it.
- */
+ * falls by 1 per unit of height. Prints dp/dz in the lowest layer for three walls: layers that have
+ * a pressure, and a single one whose volumes stand for what is behind it, give -1; layers that
+ * mirror the fluid's pressure add no difference, and halve it. A wall without particles:
+ * wall_points.c. */
 #include <sphgrad/sphgrad.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,10 +24,20 @@ static void check(sphg_result result)
     }
 }
 
-/* dp/dz in the middle of the lowest layer. */
-static double slope(const sphg_sources sets[2], sphg_view pressure_of_floor, int32_t mirror)
+/* dp/dz in the middle of the lowest layer, beside so many layers of the floor, of this volume each.
+ */
+static double slope(const sphg_neighbors *in_fluid, sphg_neighbors *in_floor, int layers,
+                    double volume, int32_t mirror)
 {
-    const sphg_view pressures[2] = {sphg_view_f64(p, sizeof p[0]), pressure_of_floor};
+    const double one = 1;
+    const sphg_geometry beside =
+        sphg_targets_apart(sphg_view_f64(x[0], sizeof x[0]), FLUID,
+                           sphg_view_f64(y[0], sizeof y[0]), layers * SIDE * SIDE);
+    check(sphg_neighbors_search(context, in_floor, &scheme, &beside));
+    const sphg_sources sets[2] = {{.neighbors = in_fluid, .volume = sphg_same_f64(&one)},
+                                  {.neighbors = in_floor, .volume = sphg_same_f64(&volume)}};
+    const sphg_view pressures[2] = {sphg_view_f64(p, sizeof p[0]),
+                                    mirror ? sphg_absent() : sphg_view_f64(q, sizeof q[0])};
     const sphg_field pressure = {.shape = SPHG_SCALAR,
                                  .at_sources = pressures,
                                  .mirror = mirror,
@@ -46,26 +57,21 @@ int main(void)
         position[2] = i < FLUID ? i / SIDE / SIDE : SIDE - 1 - i / SIDE / SIDE;
         *(i < FLUID ? &p[i] : &q[i - FLUID]) = 10 - position[2];
     }
-    const double volume = 1;
-    const sphg_view fluid = sphg_view_f64(x[0], sizeof x[0]);
-    const sphg_geometry inside = sphg_all(fluid, FLUID);
-    const sphg_geometry beside =
-        sphg_targets_apart(fluid, FLUID, sphg_view_f64(y[0], sizeof y[0]), FLOOR);
+    const sphg_geometry inside = sphg_all(sphg_view_f64(x[0], sizeof x[0]), FLUID);
     sphg_neighbors *in_fluid = NULL, *in_floor = NULL;
     check(sphg_context_create(SPHG_VERSION, NULL, &context));
     check(sphg_neighbors_create(context, &in_fluid));
     check(sphg_neighbors_create(context, &in_floor));
     check(sphg_neighbors_search(context, in_fluid, &scheme, &inside));
-    check(sphg_neighbors_search(context, in_floor, &scheme, &beside));
-    const sphg_sources sets[2] = {{.neighbors = in_fluid, .volume = sphg_same_f64(&volume)},
-                                  {.neighbors = in_floor, .volume = sphg_same_f64(&volume)}};
 
-    const double known = slope(sets, sphg_view_f64(q, sizeof q[0]), 0);
-    const double mirrored = slope(sets, sphg_absent(), 1);
-    printf("pressure of its own: dp/dz = %.7f, error %.0e\n", known, fabs(known + 1));
-    printf("mirrored pressure:   dp/dz = %.7f, half of it is missing\n", mirrored);
+    const double known = slope(in_fluid, in_floor, 2, 1, 0);
+    const double single = slope(in_fluid, in_floor, 1, 1.43, 0); /* 1 / sum W of the layer */
+    const double mirrored = slope(in_fluid, in_floor, 2, 1, 1);
+    printf("two layers with a pressure: dp/dz = %.7f, error %.0e\n", known, fabs(known + 1));
+    printf("one layer, larger volumes:  dp/dz = %.7f, error %.0e\n", single, fabs(single + 1));
+    printf("mirrored pressure:          dp/dz = %.7f, half of it is missing\n", mirrored);
     sphg_neighbors_destroy(in_fluid);
     sphg_neighbors_destroy(in_floor);
     sphg_context_destroy(context);
-    return fabs(known + 1) > 1e-12 || fabs(mirrored + 0.5) > 1e-12;
+    return fabs(known + 1) > 1e-12 || fabs(single + 1) > 1e-12 || fabs(mirrored + 0.5) > 1e-12;
 }
