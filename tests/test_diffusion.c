@@ -525,6 +525,53 @@ static void scaling_by_a_power_of_two_changes_no_digit(const test_case *test)
                      "particle %d: %g and %g", i, setup_get(&a, i, 0), setup_get(&b, i, 0));
 }
 
+/* Turned by 3-4-5 in the first two axes, which is exact where coordinates are multiples of 5 / 2^k,
+ * and under other names: other roundings, the same flows. */
+static void turning_and_renaming_change_nothing(const test_case *test)
+{
+    const int d = test->dimension;
+    random_state random = random_seeded(43);
+    cloud points = cloud_jittered(d, d == 2 ? 9 : 5, 1, .3, &random);
+    const int n = points.count;
+    int *from = test_memory((size_t)n * sizeof *from);
+    cloud_snap(&points, 0x1p-8);
+    for (int k = 0; k < n * d; ++k)
+        points.x[k] *= 5;
+    const comparison on = comparison_of(test, "block", points, 11.25);
+    cloud turned = cloud_copy(&points);
+    for (int i = 0; i < n; ++i) {
+        const int k = random_index(&random, i + 1);
+        from[i] = from[k];
+        from[k] = i;
+    }
+    double *volume = test_memory((size_t)n * sizeof *volume),
+           *b = test_memory((size_t)n * sizeof *b), *kb = test_memory((size_t)n * sizeof *kb);
+    const double *a = comparison_random_field(&on, SPHG_SCALAR, 44), *ka = coefficients(&on, 45);
+    for (int i = 0; i < n; ++i) {
+        const double *x = points.x + from[i] * d;
+        turned.x[i * d] = (3 * x[0] - 4 * x[1]) / 5;
+        turned.x[i * d + 1] = (4 * x[0] + 3 * x[1]) / 5;
+        if (d == 3)
+            turned.x[i * d + 2] = x[2];
+        volume[i] = on.scene.volume[from[i]];
+        b[i] = a[from[i]];
+        kb[i] = ka[from[i]];
+    }
+    comparison other = comparison_of(test, "turned", turned, 11.25);
+    other = comparison_with_volumes(&other, volume);
+    const flow of_a = {SPHG_SCALAR, a, ka}, of_b = {SPHG_SCALAR, b, kb};
+    const oracle_field field = {SPHG_SCALAR, SPHG_ADJOINT, a, NULL};
+    const setup_array table = comparison_table(&on), second = comparison_table(&other);
+    const setup_array found = diffuse(&on, &of_a, &table), there = diffuse(&other, &of_b, &second);
+    for (int i = 0; i < n; i += 9 * test_reference_stride()) {
+        const quad moved = setup_get(&there, i, 0);
+        const oracle_flow exact = oracle_diffuse(on.reference, &field, ka, from[i]);
+        if (!exact.undecided)
+            TEST_WITHIN(equal_within_bound, comparison_ratio(&found, from[i], &moved, exact.bound),
+                        test_text("particle %d, %s", i, test_method_name(test->method)));
+    }
+}
+
 /* Of walls that carry the values of whoever looks at them nothing flows, whatever they conduct. */
 static void mirrored_sets_exchange_nothing(const test_case *test)
 {
@@ -654,6 +701,8 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, METHODS, 0),
     TEST_ENTRY(scaling_by_a_power_of_two_changes_no_digit, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, METHODS, 0),
+    TEST_ENTRY(turning_and_renaming_change_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               METHODS, 0),
     TEST_ENTRY(mirrored_sets_exchange_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                METHODS, 0),
     TEST_ENTRY(what_has_no_meaning_is_refused, TEST_BIT(TEST_F64), TEST_2D, 0, 0),

@@ -194,6 +194,69 @@ static void two_sided_forms_conserve_momentum(const test_case *test)
     }
 }
 
+/* ---- Known figures --------------------------------------------------------------------------- */
+
+enum { RINGS = 26 };
+
+/* Rings around the origin whose radii grow so many times, H = c spacings. */
+static comparison rings(const test_case *test, double ratio, double c, int mutual)
+{
+    const double grown = log(ratio);
+    cloud points = cloud_lattice(2, RINGS, 1);
+    double *radii = test_memory(RINGS * RINGS * sizeof *radii),
+           *volume = test_memory(RINGS * RINGS * sizeof *volume);
+    for (int i = 0; i < points.count; ++i) {
+        const double u = (i % RINGS + .5) / RINGS, v = (i / RINGS + .5) / RINGS;
+        const double spacing = grown * exp(grown * u) / RINGS;
+        points.x[2 * i] = exp(grown * u) * cos(grown * v);
+        points.x[2 * i + 1] = exp(grown * u) * sin(grown * v);
+        radii[i] = c * spacing * (1 + 1e-7);
+        volume[i] = spacing * spacing;
+    }
+    const comparison made = comparison_of_radii(test, "rings", points, radii, mutual);
+    return comparison_with_volumes(&made, volume);
+}
+
+/* Errors of A = cos(2x / ratio) + sin(3y / ratio), times the ratio, by an independent program: the
+ * largest of all, and two rings off the rim. */
+static void errors_and_pairs_of_rings_are_known(const test_case *test)
+{
+    static const struct {
+        double ratio, most, inside, pairs[2][2]; /* [c is 2, 3][mutual] */
+    } known[] = {{2, .10835, .00296, {{10.31, 11.24}, {24.40, 25.28}}},
+                 {8, .25435, .01804, {{10.31, 11.24}, {24.40, 28.69}}},
+                 {64, .55012, .05380, {{12.09, 14.79}, {28.58, 37.05}}}};
+    for (int k = 0; k < 3; ++k) {
+        for (int way = 0; way < 4; ++way) {
+            const comparison on = rings(test, known[k].ratio, 2 + way / 2, way % 2);
+            sphg_neighbors_info info;
+            SETUP_OK(on.context, sphg_neighbors_get_info(on.context, on.neighbors, &info));
+            const double pairs = (double)info.pairs / on.points.count;
+            TEST_REQUIRE(fabs(pairs - known[k].pairs[way / 2][way % 2]) < .0051,
+                         "%g pairs, ratio %g, way %d", pairs, known[k].ratio, way);
+        }
+        const comparison on = rings(test, known[k].ratio, 2, 0);
+        double *a = test_memory((size_t)on.points.count * sizeof *a), most = 0, inside = 0;
+        for (int i = 0; i < on.points.count; ++i)
+            a[i] = cos(2 * on.points.x[2 * i] / known[k].ratio) +
+                   sin(3 * on.points.x[2 * i + 1] / known[k].ratio);
+        const comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, a};
+        const comparison_result found = comparison_apply(&on, &field, NULL);
+        for (int i = 0; i < on.points.count; ++i) {
+            const double *x = on.points.x + 2 * i, r = known[k].ratio;
+            const double error =
+                hypot(r * setup_get(&found.gradient, i, 0) + 2 * sin(2 * x[0] / r),
+                      r * setup_get(&found.gradient, i, 1) - 3 * cos(3 * x[1] / r));
+            const int u = i % RINGS, v = i / RINGS;
+            most = test_larger(most, error);
+            if (u > 1 && v > 1 && u < RINGS - 2 && v < RINGS - 2)
+                inside = test_larger(inside, error);
+        }
+        TEST_REQUIRE(fabs(most - known[k].most) < 6e-6 && fabs(inside - known[k].inside) < 6e-6,
+                     "errors %.5f, %.5f, ratio %g", most, inside, known[k].ratio);
+    }
+}
+
 /* ---- The same bits --------------------------------------------------------------------------- */
 
 static void require_same_bits(const comparison *a, const comparison *b, const char *where)
@@ -545,6 +608,14 @@ static void what_has_one_radius_says_so(const test_case *test)
     require_refused(
         &on, sphg_gradient(on.context, &second, &sources, NULL, setup_view(&a), setup_view(&out)),
         SPHG_ERROR_UNSUPPORTED, "scheme.order");
+    const comparison both = graded_stage(test, 1);
+    const sphg_sources mutual = comparison_sources(&both);
+    sphg_scheme classic = both.scheme;
+    classic.method = SPHG_CMLS;
+    require_refused(&both,
+                    sphg_force(both.context, &classic, &mutual, NULL, SPHG_SCALAR, setup_view(&a),
+                               setup_view(&out)),
+                    SPHG_ERROR_UNSUPPORTED, "which classic methods have for one radius");
     const comparison one = comparison_of(test, "block", cloud_copy(&on.points), .25);
     sphg_sources sets[2] = {sources, comparison_sources(&one)};
     sphg_view at_sources[2] = {setup_view(&a), setup_view(&a)};
@@ -553,6 +624,36 @@ static void what_has_one_radius_says_so(const test_case *test)
     sphg_request request = {.sources = sets, .fields = &field, .set_count = 2, .field_count = 1};
     require_refused(&on, sphg_evaluate(on.context, &on.scheme, &request), SPHG_ERROR_SIZE,
                     "one radius for all");
+}
+
+/* Lists of a skin cannot tell the pairs of both radii: forces and pairs are refused, derivatives
+ * are not. */
+static void mutual_lists_with_a_skin_say_so(const test_case *test)
+{
+    const comparison on = graded_stage(test, 1);
+    const int n = on.points.count;
+    const setup_array x = setup_positions(test, (cloud *)(uintptr_t)&on.points);
+    const setup_array h = setup_numbers(test_position_type(test), n, 1, on.scene.support),
+                      a = setup_numbers(test_field_type(test), n, 1,
+                                        comparison_random_field(&on, SPHG_SCALAR, 7)),
+                      out = setup_output(test_field_type(test), n, test->dimension);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &x);
+    geometry.source_support = setup_view(&h);
+    geometry.mutual = 1;
+    geometry.skin = .1;
+    sphg_sources sources = comparison_sources(&on);
+    sources.neighbors = setup_search(on.context, &on.scheme, &geometry);
+    int64_t *offsets = test_memory(((size_t)n + 1) * sizeof *offsets);
+    sphg_pairs pairs = {.offsets = offsets};
+    require_refused(&on,
+                    sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR, setup_view(&a),
+                               setup_view(&out)),
+                    SPHG_ERROR_UNSUPPORTED, "neighbors have radii and a skin");
+    require_refused(
+        &on, sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs),
+        SPHG_ERROR_UNSUPPORTED, "pairs of neighbours that are mutual and have a skin");
+    SETUP_OK(on.context, sphg_gradient(on.context, &on.scheme, &sources, NULL, setup_view(&a),
+                                       setup_view(&out)));
 }
 
 static void half_given_radii_are_refused(const test_case *test)
@@ -594,6 +695,7 @@ static const test_entry entries[] = {
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(two_sided_forms_conserve_momentum, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(errors_and_pairs_of_rings_are_known, TEST_BIT(TEST_F64), TEST_2D, 0, 0),
     TEST_ENTRY(same_radii_give_the_bits_of_one, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(results_scale_with_the_unit_of_length, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
@@ -611,6 +713,7 @@ static const test_entry entries[] = {
     TEST_ENTRY(moments_hold_the_grad_h_term, 0, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(halves_add_up, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(what_has_one_radius_says_so, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(mutual_lists_with_a_skin_say_so, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(half_given_radii_are_refused, TEST_ALL_PRECISIONS, 0, 0, 0),
 };
 TEST_MAIN(entries)

@@ -65,17 +65,23 @@ static sphg_view member(results *found, int width)
     return view;
 }
 
-/* One sweep: corrections and three fields in DIFFERENCE form. */
+static int is_linearised(const comparison *own)
+{
+    return own->scheme.method <= SPHG_RKPM;
+}
+
+/* One sweep: corrections, fields in DIFFERENCE and DIRECT form, a mean and a contraction. */
 static sphg_result sweep(sphg_context *context, const comparison *own, const sphg_sources *sources,
                          const sphg_subset *subset, results *found)
 {
     const int d = own->particles.dimension;
     const sphg_view scalar = setup_view(&own->scalar), vector = setup_view(&own->vector);
-    const sphg_view tensor = setup_view(&own->tensor);
-    sphg_field fields[5] = {{.shape = SPHG_SCALAR, .at_sources = &scalar},
+    const sphg_view tensor = setup_view(&own->tensor), density = setup_view(&own->density);
+    sphg_field fields[6] = {{.shape = SPHG_SCALAR, .at_sources = &scalar},
                             {.shape = SPHG_VECTOR, .at_sources = &vector},
                             {.shape = SPHG_TENSOR, .at_sources = &tensor},
                             {.shape = SPHG_VECTOR, .form = SPHG_DIRECT, .at_sources = &vector},
+                            {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &scalar},
                             {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &scalar}};
     sphg_request request = {.sources = sources, .set_count = 1, .subset = subset};
     fields[0].gradient = member(found, d);
@@ -94,6 +100,14 @@ static sphg_result sweep(sphg_context *context, const comparison *own, const sph
         request.rank = setup_view(&found->rank);
         request.stats = &found->stats;
     }
+    fields[1].tensor = tensor;
+    fields[1].contraction = member(found, 1);
+    if (!test_is_classic(own->test)) {
+        request.field_count = 6;
+        fields[5].shepard = 1;
+        fields[5].value_volume = &density;
+        fields[5].value = member(found, 1);
+    }
     return sphg_evaluate(context, &own->scheme, &request);
 }
 
@@ -101,19 +115,45 @@ static sphg_result sweep(sphg_context *context, const comparison *own, const sph
 static sphg_result forces(sphg_context *context, const comparison *own, const sphg_sources *sources,
                           const sphg_subset *subset, sphg_view table, results *found)
 {
-    const sphg_view scalar = setup_view(&own->scalar);
-    sphg_field fields[2] = {{.shape = SPHG_SCALAR, .form = SPHG_ADJOINT, .at_sources = &scalar},
-                            {.shape = SPHG_SCALAR, .form = SPHG_SYMMETRIC, .at_sources = &scalar}};
+    const sphg_view scalar = setup_view(&own->scalar), density = setup_view(&own->density);
+    sphg_field fields[3] = {{.shape = SPHG_SCALAR, .form = SPHG_ADJOINT, .at_sources = &scalar},
+                            {.shape = SPHG_SCALAR, .form = SPHG_SYMMETRIC, .at_sources = &scalar},
+                            {.shape = SPHG_SCALAR, .form = SPHG_ADJOINT, .at_sources = &scalar}};
     sphg_sources with_table = *sources;
     const sphg_request request = {.sources = &with_table,
                                   .set_count = 1,
                                   .fields = fields,
-                                  .field_count = 2,
+                                  .field_count = test_is_classic(own->test) ? 2 : 3,
                                   .subset = subset};
     with_table.correction = table;
+    if (request.field_count == 3) {
+        fields[2].coefficient = &density;
+        fields[2].laplacian = member(found, 1);
+    }
     fields[0].gradient = member(found, own->particles.dimension);
     fields[1].gradient = member(found, own->particles.dimension);
     return sphg_evaluate(context, &own->scheme, &request);
+}
+
+/* Order 2, and once more with what the first call lends. */
+static sphg_result curved(sphg_context *context, const comparison *own, const sphg_sources *sources,
+                          results *found)
+{
+    const int d = own->particles.dimension;
+    const sphg_view scalar = setup_view(&own->scalar), lent = member(found, d == 2 ? 4 : 7);
+    sphg_scheme scheme = own->scheme;
+    scheme.order = 2;
+    sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &scalar};
+    const sphg_request request = {
+        .sources = sources, .set_count = 1, .fields = &field, .field_count = 1};
+    field.curvature = lent;
+    field.gradient = member(found, d);
+    const sphg_result result = sphg_evaluate(context, &scheme, &request);
+    field.curvature = sphg_absent();
+    field.lenders = &lent;
+    field.gradient = member(found, d);
+    field.laplacian = member(found, 1);
+    return result ? result : sphg_evaluate(context, &scheme, &request);
 }
 
 static sphg_sources sources_of(const comparison *own, const sphg_neighbors *neighbors)
@@ -151,6 +191,8 @@ static results run_under(const comparison *own, const sphg_config *config, int l
     *pairs = rows_listed(context, neighbors, &own->scheme, NULL);
     SETUP_OK(context, sweep(context, own, &sources, NULL, &found));
     SETUP_OK(context, forces(context, own, &sources, NULL, table_of(own, &found), &found));
+    if (is_linearised(own))
+        SETUP_OK(context, curved(context, own, &sources, &found));
     sphg_neighbors_destroy(neighbors);
     sphg_context_destroy(context);
     return found;

@@ -281,6 +281,16 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
     second->undecided |= policy != SPHG_BLEND && quad_abs(second->t - limit) <= blur;
 }
 
+int oracle_second_rank_is_open(const oracle_scene *scene, const oracle_point *point,
+                               const oracle_second *second)
+{
+    const quad blur = 32 * scene->unit * second->size;
+    const quad part = second->left - (int)(double)second->left;
+    return oracle_rank_is_open(scene, point) ||
+           (second->kept > 0 && (quad_abs(second->t - 4 * second->eps) <= blur ||
+                                 quad_abs(part - (quad).5) <= blur * second->norm_f * 9));
+}
+
 /* ---- Fields
  * --------------------------------------------------------------------------------------- */
 

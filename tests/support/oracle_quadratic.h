@@ -32,6 +32,9 @@ quad oracle_mu4(sphg_kernel kernel, int dimension);
 /* Target i. */
 void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
                          oracle_second *second);
+/* Its rank, where rounding decides on it. */
+int oracle_second_rank_is_open(const oracle_scene *scene, const oracle_point *point,
+                               const oracle_second *second);
 /* The same, solved once. */
 const oracle_second *oracle_second_at(oracle *reference, int i);
 /* DIFFERENCE. hessian of vectors: component by component. */
