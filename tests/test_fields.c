@@ -17,7 +17,8 @@ static struct study *open_study(const test_case *test, int32_t side, double jitt
 {
     static const enum precision precisions[] = {
         [TEST_F32] = PRECISION_F32, [TEST_F64] = PRECISION_F64, [TEST_MIXED] = PRECISION_MIXED};
-    const struct study_setting setting = {.side = side,
+    const struct study_setting setting = {.dimension = 2,
+                                          .side = side,
                                           .support = 2,
                                           .jitter = jitter,
                                           .kernel = test->kernel,
@@ -31,7 +32,8 @@ static struct study *open_study(const test_case *test, int32_t side, double jitt
 static struct study_errors errors_of(const test_case *test, int32_t side, double jitter,
                                      enum study_field field, sphg_method method)
 {
-    return study_measure(open_study(test, side, jitter), field, method, NULL, NULL);
+    const struct study_way way = {.method = method};
+    return study_measure(open_study(test, side, jitter), field, &way, NULL, NULL);
 }
 
 /* What a printed figure allows: half a unit of its last digit, and what rounding of the field
@@ -47,9 +49,9 @@ static void agrees(const test_case *test, int32_t side, double value, double pri
 static void rotation_error_of_plain_sph_is_known(const test_case *test)
 {
     const struct study_errors errors = errors_of(test, 40, 0, FIELD_ROTATION, SPHG_PLAIN);
-    agrees(test, 40, errors.boundary_max, 0.7335, 1e-4, "boundary maximum");
-    agrees(test, 40, errors.boundary_mean, 0.3145, 1e-4, "boundary mean");
-    agrees(test, 40, errors.inside_max, 0.01729, 1e-5, "inside maximum");
+    agrees(test, 40, errors.most[STUDY_BOUNDARY], 0.7335, 1e-4, "boundary maximum");
+    agrees(test, 40, errors.mean[STUDY_BOUNDARY], 0.3145, 1e-4, "boundary mean");
+    agrees(test, 40, errors.most[STUDY_INSIDE], 0.01729, 1e-5, "inside maximum");
     agrees(test, 40, errors.curl_max, 1.024, 1e-3, "curl maximum");
 }
 
@@ -58,7 +60,7 @@ static void rotation_is_exact_with(const test_case *test, double jitter)
 {
     const double limit = test->precision == TEST_F64 ? 1e-12 : 1e-6;
     const struct study_errors errors = errors_of(test, 40, jitter, FIELD_ROTATION, test->method);
-    const double most = fmax(errors.boundary_max, errors.inside_max);
+    const double most = fmax(errors.most[STUDY_BOUNDARY], errors.most[STUDY_INSIDE]);
     TEST_REQUIRE(most <= limit, "gradient error %.3g > %.3g", most, limit);
     TEST_REQUIRE(errors.curl_max <= limit, "curl error %.3g > %.3g", errors.curl_max, limit);
 }
@@ -79,7 +81,8 @@ static void trigonometric_error_of_plain_sph_does_not_fall(const test_case *test
     for (int size = 0; size < SIZES; ++size) {
         const struct study_errors errors =
             errors_of(test, sides[size], 0, FIELD_TRIGONOMETRIC, SPHG_PLAIN);
-        agrees(test, sides[size], errors.boundary_max, printed[size], 1e-3, "boundary maximum");
+        agrees(test, sides[size], errors.most[STUDY_BOUNDARY], printed[size], 1e-3,
+               "boundary maximum");
     }
 }
 
@@ -93,8 +96,9 @@ static void trigonometric_error_of_linearised_methods_is_known(const test_case *
     for (int size = 0; size < SIZES; ++size) {
         const struct study_errors errors =
             errors_of(test, sides[size], 0, FIELD_TRIGONOMETRIC, test->method);
-        agrees(test, sides[size], errors.boundary_max, boundary[size], 1e-4, "boundary maximum");
-        agrees(test, sides[size], errors.inside_max, inside[size], inside_digit[size],
+        agrees(test, sides[size], errors.most[STUDY_BOUNDARY], boundary[size], 1e-4,
+               "boundary maximum");
+        agrees(test, sides[size], errors.most[STUDY_INSIDE], inside[size], inside_digit[size],
                "inside maximum");
     }
 }
@@ -105,8 +109,8 @@ static void trigonometric_error_falls_with_the_spacing(const test_case *test)
 {
     const struct study_errors coarse = errors_of(test, 40, 0, FIELD_TRIGONOMETRIC, test->method);
     const struct study_errors fine = errors_of(test, 80, 0, FIELD_TRIGONOMETRIC, test->method);
-    const double boundary = log2(coarse.boundary_max / fine.boundary_max);
-    const double inside = log2(coarse.inside_max / fine.inside_max);
+    const double boundary = log2(coarse.most[STUDY_BOUNDARY] / fine.most[STUDY_BOUNDARY]);
+    const double inside = log2(coarse.most[STUDY_INSIDE] / fine.most[STUDY_INSIDE]);
     const double fastest = test_is_classic(test) ? 1.25 : 1.05;
     TEST_REQUIRE(boundary >= 0.95 && boundary <= fastest, "boundary order is %.3f", boundary);
     TEST_REQUIRE(fabs(inside - 2) <= 0.05, "inside order is %.3f", inside);

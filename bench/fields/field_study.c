@@ -3,8 +3,11 @@
 #include "lattice.h"
 #include "library.h"
 #include <math.h>
+#include <stdlib.h>
 
 static const int32_t boundary_layers = 2;
+
+/* ---- Fields ---------------------------------------------------------------------------------- */
 
 const char *study_field_name(enum study_field field)
 {
@@ -16,145 +19,231 @@ const char *study_field_formula(enum study_field field)
     return field == FIELD_ROTATION ? "v = (-y, x)" : "v = (cos 2x, cos y - sin 3x)";
 }
 
-static sphg_scheme scheme_of(const struct study *study, sphg_method method)
+void study_field_at(enum study_field field, int32_t dimension, double wave, const double x[3],
+                    double v[3], double j[9])
 {
-    return (sphg_scheme){.dimension = 2,
-                         .method = method,
-                         .kernel = study->setting.kernel,
-                         .support_radius = study->setting.support * study->spacing};
+    const int32_t d = dimension;
+    const double k = 2 * 3.14159265358979323846 / wave;
+    const bool rotation = field == FIELD_ROTATION;
+    for (int n = 0; n < 9; ++n)
+        j[n] = 0;
+    for (int32_t a = 0; a < d && field == FIELD_WAVES; ++a) {
+        const int32_t b = (a + 1) % d;
+        v[a] = sin(k * x[a]) * cos(k * x[b]);
+        j[d * a + a] = k * cos(k * x[a]) * cos(k * x[b]);
+        j[d * a + b] = -k * sin(k * x[a]) * sin(k * x[b]);
+    }
+    if (field == FIELD_WAVES)
+        return;
+    v[0] = rotation ? -x[1] : cos(2 * x[0]);
+    v[1] = rotation ? x[0] : cos(x[1]) - sin(3 * x[0]);
+    j[0] = rotation ? 0 : -2 * sin(2 * x[0]);
+    j[1] = rotation ? -1 : 0;
+    j[d] = rotation ? 1 : -3 * cos(3 * x[0]);
+    j[d + 1] = rotation ? 0 : -sin(x[1]);
+    if (d == 3) {
+        v[2] = rotation ? 2 * x[2] : cos(2 * x[2]);
+        j[8] = rotation ? 2 : -2 * sin(2 * x[2]);
+    }
 }
 
-static void find_neighbors(struct study *study)
+/* Waves are ten support radii long. */
+static void exact_at(const struct study *study, int32_t particle, double v[3], double j[9])
 {
-    const sphg_scheme scheme = scheme_of(study, SPHG_KGC);
+    double x[3] = {0, 0, 0};
+    for (int32_t axis = 0; axis < study->setting.dimension; ++axis)
+        x[axis] = numbers_get(&study->positions, particle, axis);
+    study_field_at(study->field, study->setting.dimension, 10 * study->support_radius, x, v, j);
+}
+
+void study_fill(struct study *study, enum study_field field)
+{
+    double v[3], j[9];
+    study->field = field;
+    for (int32_t i = 0; i < study->count; ++i) {
+        exact_at(study, i, v, j);
+        for (int32_t axis = 0; axis < study->setting.dimension; ++axis)
+            numbers_set(&study->velocities, i, axis, v[axis]);
+    }
+}
+
+/* ---- Particles ------------------------------------------------------------------------------- */
+
+static sphg_scheme scheme_of(const struct study *study, const struct study_way *way)
+{
+    return (sphg_scheme){.dimension = study->setting.dimension,
+                         .method = way->method,
+                         .kernel = study->setting.kernel,
+                         .support_radius = study->support_radius,
+                         .order = way->order};
+}
+
+static const struct study_way kgc = {.method = SPHG_KGC}, second = {.order = 2};
+
+void study_search(const struct study *study)
+{
+    const sphg_scheme scheme = scheme_of(study, &kgc);
     const sphg_geometry geometry =
         library_geometry(&study->positions, field_type(study->setting.precision));
-    study->neighbors = library_neighbors(study->context);
     library_search(study->context, study->neighbors, &scheme, &geometry);
-    library_volumes(study->context, &scheme, study->neighbors, &study->volumes);
+}
+
+static struct study open_study(const struct study_setting *setting, struct numbers *positions,
+                               struct numbers *volumes, double support_radius)
+{
+    const sphg_type type = field_type(setting->precision);
+    const int32_t d = setting->dimension, n = positions->count;
+    struct study study = {.setting = *setting,
+                          .count = n,
+                          .support_radius = support_radius,
+                          .positions = *positions,
+                          .volumes = *volumes,
+                          .velocities = numbers_create(type, n, d),
+                          .jacobians = numbers_create(type, n, d * d),
+                          .curls = numbers_create(type, n, 1),
+                          .lent = numbers_create(type, n, 1 + d * d * (d + 1) / 2),
+                          .groups = allocate_or_exit((size_t)n, 1),
+                          .borrows = allocate_or_exit((size_t)n, 1),
+                          .context = library_open(setting->threads)};
+    study.neighbors = library_neighbors(study.context);
+    study_search(&study);
+    if (!volumes->data) {
+        const sphg_scheme scheme = scheme_of(&study, &kgc);
+        study.volumes = numbers_create(type, n, 1);
+        library_volumes(study.context, &scheme, study.neighbors, &study.volumes);
+    }
+    return study;
+}
+
+static bool is_on_boundary(const struct study *study, int32_t particle)
+{
+    const int32_t side = study->setting.side;
+    for (int32_t axis = 0, rest = particle; axis < study->setting.dimension; ++axis, rest /= side)
+        if (rest % side < boundary_layers || rest % side >= side - boundary_layers)
+            return true;
+    return false;
 }
 
 struct study study_open(const struct study_setting *setting)
 {
     const double spacing = 2.0 / setting->side;
-    const struct lattice lattice = {.dimension = 2,
+    const struct lattice lattice = {.dimension = setting->dimension,
                                     .side = setting->side,
                                     .origin = -1 + 0.5 * spacing,
                                     .spacing = spacing,
                                     .jitter = setting->jitter};
-    const int32_t count = lattice_count(&lattice);
-    struct study study = {.setting = *setting, .count = count, .spacing = spacing};
-    study.positions = numbers_create(position_type(setting->precision), count, 2);
-    study.volumes = numbers_create(field_type(setting->precision), count, 1);
-    lattice_fill(&lattice, &study.positions);
-    study.context = library_open(0);
-    find_neighbors(&study);
+    struct numbers none = {0},
+                   positions = numbers_create(position_type(setting->precision),
+                                              lattice_count(&lattice), setting->dimension);
+    lattice_fill(&lattice, &positions);
+    struct study study = open_study(setting, &positions, &none, setting->support * spacing);
+    for (int32_t i = 0; i < study.count; ++i)
+        study.groups[i] = is_on_boundary(&study, i) ? STUDY_BOUNDARY : STUDY_INSIDE;
+    return study;
+}
+
+struct study study_of_particles(const struct study_setting *setting, struct numbers *positions,
+                                struct numbers *volumes)
+{
+    struct study study = open_study(setting, positions, volumes, setting->support);
+    const sphg_scheme scheme = scheme_of(&study, &second);
+    const sphg_sources sources = {.neighbors = study.neighbors,
+                                  .volume = numbers_view(&study.volumes)};
+    const sphg_request ranks = {
+        .sources = &sources, .set_count = 1, .rank = sphg_view_u8(study.groups, 1)};
+    const int32_t d = setting->dimension, full = d * (d + 3) / 2;
+    library_check(study.context, sphg_evaluate(study.context, &scheme, &ranks));
+    for (int32_t i = 0; i < study.count; ++i)
+        study.groups[i] = study.groups[i] == full ? STUDY_CURVATURE
+                          : study.groups[i] >= d  ? STUDY_SLOPES
+                                                  : STUDY_NEITHER;
     return study;
 }
 
 void study_close(struct study *study)
 {
+    struct numbers *const all[] = {&study->positions, &study->volumes, &study->velocities,
+                                   &study->jacobians, &study->curls,   &study->lent};
     sphg_neighbors_destroy(study->neighbors);
     sphg_context_destroy(study->context);
-    numbers_destroy(&study->positions);
-    numbers_destroy(&study->volumes);
+    for (size_t k = 0; k < sizeof all / sizeof all[0]; ++k)
+        numbers_destroy(all[k]);
+    free(study->groups);
+    free(study->borrows);
 }
 
-bool study_on_boundary(const struct study *study, int32_t particle)
-{
-    const int32_t side = study->setting.side;
-    const int32_t column = particle % side, row = particle / side;
-    const int32_t last = side - boundary_layers;
-    return column < boundary_layers || column >= last || row < boundary_layers || row >= last;
-}
+/* ---- Derivatives ----------------------------------------------------------------------------- */
 
-void study_velocity(const struct study *study, enum study_field field, int32_t particle,
-                    double velocity[2])
+void study_derive(const struct study *study, const struct study_way *way)
 {
-    const double x = numbers_get(&study->positions, particle, 0);
-    const double y = numbers_get(&study->positions, particle, 1);
-    const bool rotation = field == FIELD_ROTATION;
-    velocity[0] = rotation ? -y : cos(2 * x);
-    velocity[1] = rotation ? x : cos(y) - sin(3 * x);
-}
-
-/* Row-major: d v_a / d x_b at 2 a + b. */
-static void true_jacobian(const struct study *study, enum study_field field, int32_t particle,
-                          double jacobian[4])
-{
-    const double x = numbers_get(&study->positions, particle, 0);
-    const double y = numbers_get(&study->positions, particle, 1);
-    const bool rotation = field == FIELD_ROTATION;
-    jacobian[0] = rotation ? 0 : -2 * sin(2 * x);
-    jacobian[1] = rotation ? -1 : 0;
-    jacobian[2] = rotation ? 1 : -3 * cos(3 * x);
-    jacobian[3] = rotation ? 0 : -sin(y);
-}
-
-/* Jacobian and curl of the field in one sweep. */
-static void compute(const struct study *study, enum study_field field, sphg_method method,
-                    struct numbers *jacobians, struct numbers *curls)
-{
-    const sphg_scheme scheme = scheme_of(study, method);
-    struct numbers velocities = numbers_create(study->volumes.type, study->count, 2);
-    for (int32_t i = 0; i < study->count; ++i) {
-        double velocity[2];
-        study_velocity(study, field, i, velocity);
-        numbers_set(&velocities, i, 0, velocity[0]);
-        numbers_set(&velocities, i, 1, velocity[1]);
-    }
-    const sphg_view at_sources = numbers_view(&velocities);
+    const sphg_scheme scheme = scheme_of(study, way);
+    const sphg_view at_sources = numbers_view(&study->velocities),
+                    lent = numbers_view(&study->lent);
+    const sphg_subset borrowers = sphg_masked(study->borrows, study->count);
     const sphg_sources sources = {.neighbors = study->neighbors,
                                   .volume = numbers_view(&study->volumes)};
-    const sphg_field wanted = {.shape = SPHG_VECTOR,
-                               .at_sources = &at_sources,
-                               .gradient = numbers_view(jacobians),
-                               .curl = numbers_view(curls)};
-    const sphg_request request = {
-        .sources = &sources, .set_count = 1, .fields = &wanted, .field_count = 1};
+    const bool curls = study->setting.dimension == 2;
+    sphg_field wanted = {.shape = SPHG_VECTOR,
+                         .at_sources = &at_sources,
+                         .gradient = numbers_view(&study->jacobians),
+                         .curl = curls ? numbers_view(&study->curls) : sphg_absent(),
+                         .curvature = way->lent ? lent : sphg_absent()};
+    sphg_request request = {.sources = &sources,
+                            .set_count = 1,
+                            .fields = &wanted,
+                            .field_count = 1,
+                            .borrows = way->lent ? sphg_view_u8(study->borrows, 1) : sphg_absent()};
     library_check(study->context, sphg_evaluate(study->context, &scheme, &request));
-    numbers_destroy(&velocities);
+    if (!way->lent)
+        return;
+    wanted.curvature = request.borrows = sphg_absent();
+    wanted.lenders = &lent;
+    request.subset = &borrowers;
+    library_check(study->context, sphg_evaluate(study->context, &scheme, &request));
 }
 
-static double gradient_error(const struct numbers *jacobians, int32_t i, const double expected[4])
+static double gradient_error(const struct numbers *jacobians, int32_t i, const double expected[9])
 {
     double sum = 0;
-    for (int32_t k = 0; k < 4; ++k) {
+    for (int32_t k = 0; k < jacobians->width; ++k) {
         const double difference = numbers_get(jacobians, i, k) - expected[k];
         sum += difference * difference;
     }
     return sqrt(sum);
 }
 
-struct study_errors study_measure(const struct study *study, enum study_field field,
-                                  sphg_method method, double *gradient_errors, double *curl_errors)
+struct study_errors study_compare(const struct study *study, double *gradient_errors,
+                                  double *curl_errors)
 {
-    struct numbers jacobians = numbers_create(study->volumes.type, study->count, 4);
-    struct numbers curls = numbers_create(study->volumes.type, study->count, 1);
-    compute(study, field, method, &jacobians, &curls);
-    struct study_errors errors = {0};
-    int32_t boundary_count = 0;
+    struct study_errors errors = {.curl_max = 0};
     for (int32_t i = 0; i < study->count; ++i) {
-        double expected[4];
-        true_jacobian(study, field, i, expected);
-        const double error = gradient_error(&jacobians, i, expected);
-        const double curl = fabs(numbers_get(&curls, i, 0) - (expected[2] - expected[1]));
-        const bool boundary = study_on_boundary(study, i);
-        double *most = boundary ? &errors.boundary_max : &errors.inside_max;
-        double *sum = boundary ? &errors.boundary_mean : &errors.inside_mean;
-        *most = numbers_larger(*most, error);
-        *sum += error;
-        boundary_count += boundary;
+        double v[3], expected[9];
+        exact_at(study, i, v, expected);
+        const double error = gradient_error(&study->jacobians, i, expected);
+        const double curl =
+            study->setting.dimension == 2
+                ? fabs(numbers_get(&study->curls, i, 0) - (expected[2] - expected[1]))
+                : 0;
+        const int group = study->groups[i];
+        errors.most[group] = numbers_larger(errors.most[group], error);
+        errors.mean[group] += error;
+        ++errors.counts[group];
         errors.curl_max = numbers_larger(errors.curl_max, curl);
         if (gradient_errors)
             gradient_errors[i] = error;
         if (curl_errors)
             curl_errors[i] = curl;
     }
-    const int32_t inside_count = study->count - boundary_count;
-    errors.boundary_mean /= boundary_count;
-    errors.inside_mean /= inside_count > 0 ? inside_count : 1;
-    numbers_destroy(&jacobians);
-    numbers_destroy(&curls);
+    for (int group = 0; group < STUDY_GROUPS; ++group)
+        errors.mean[group] /= errors.counts[group] > 0 ? errors.counts[group] : 1;
     return errors;
+}
+
+struct study_errors study_measure(struct study *study, enum study_field field,
+                                  const struct study_way *way, double *gradient_errors,
+                                  double *curl_errors)
+{
+    study_fill(study, field);
+    study_derive(study, way);
+    return study_compare(study, gradient_errors, curl_errors);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The study behind Figs. 2 and 4 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933: velocity
- * fields on the square [-1, 1]^2, full of particles with nothing around, and how far computed
- * gradients and curls are from the true ones. Volumes are V_j = 1 / sum_k W_jk, j included. */
+ * fields on the square [-1, 1]^2 or the cube [-1, 1]^3, full of particles with nothing around, and
+ * how far computed gradients and curls are from the true ones. Volumes are V_j = 1 / sum_k W_jk, j
+ * included. Particles of a file may take the lattice's place. */
 #ifndef SPHGRAD_BENCH_FIELD_STUDY_H
 #define SPHGRAD_BENCH_FIELD_STUDY_H
 #include "particles/names.h"
@@ -9,45 +10,75 @@
 #include <stdbool.h>
 
 enum study_field {
-    FIELD_ROTATION,     /* v = (-y, x) */
-    FIELD_TRIGONOMETRIC /* v = (cos 2x, cos y - sin 3x) */
+    FIELD_ROTATION,      /* v = (-y, x), in 3D (-y, x, 2z) */
+    FIELD_TRIGONOMETRIC, /* v = (cos 2x, cos y - sin 3x), in 3D with cos 2z */
+    FIELD_WAVES          /* v_a = sin(k x_a) cos(k x_b), b the axis after a */
 };
 
 const char *study_field_name(enum study_field field);
-const char *study_field_formula(enum study_field field);
+const char *study_field_formula(enum study_field field); /* in 2D */
+
+/* v and J at x. wave: the length of FIELD_WAVES. J is row-major: d v_a / d x_b at dimension a + b.
+ */
+void study_field_at(enum study_field field, int32_t dimension, double wave, const double x[3],
+                    double v[3], double j[9]);
+
+/* A way to a gradient. */
+struct study_way {
+    const char *name;
+    sphg_method method;
+    int32_t order;
+    bool lent; /* order 2: a second call lends curvature to those who cannot resolve it */
+};
 
 struct study_setting {
-    int32_t side;   /* N: N x N particles in the centres of as many square cells */
-    double support; /* H in spacings d = 2 / N */
-    double jitter;  /* each coordinate moves by up to this share of the spacing */
+    int32_t dimension, threads; /* threads 0: the library's default */
+    int32_t side;               /* N particles an axis, in the centres of as many cells */
+    double support;             /* H in spacings d = 2 / N; of a file's particles in its unit */
+    double jitter;              /* each coordinate moves by up to this share of the spacing */
     sphg_kernel kernel;
     enum precision precision;
 };
 
+/* On a lattice the boundary is the two outermost layers. A file's particles are told apart by their
+ * rank of order 2: slopes not all resolved, slopes alone, curvature too. */
+enum { STUDY_BOUNDARY, STUDY_INSIDE };
+enum { STUDY_NEITHER, STUDY_SLOPES, STUDY_CURVATURE, STUDY_GROUPS };
+
 struct study {
     struct study_setting setting;
     int32_t count;
-    double spacing;
-    struct numbers positions, volumes;
+    double support_radius;
+    enum study_field field;
+    struct numbers positions, volumes, velocities;
+    struct numbers jacobians, curls; /* curls: in 2D */
+    struct numbers lent;
+    uint8_t *groups, *borrows;
     sphg_context *context;
     sphg_neighbors *neighbors;
 };
 
-/* The boundary is the two outermost layers, the inside is the rest. */
 struct study_errors {
-    double boundary_max, boundary_mean; /* |J_i - J|_F */
-    double inside_max, inside_mean;     /* 0 if there is no inside */
-    double curl_max;                    /* |curl_i - curl|, everywhere */
+    double most[STUDY_GROUPS], mean[STUDY_GROUPS]; /* |J_i - J|_F; 0 of nobody */
+    double curl_max;                               /* |curl_i - curl|, everywhere; in 2D */
+    int32_t counts[STUDY_GROUPS];
 };
 
 struct study study_open(const struct study_setting *setting);
+/* Takes both; volumes may be empty. */
+struct study study_of_particles(const struct study_setting *setting, struct numbers *positions,
+                                struct numbers *volumes);
 void study_close(struct study *study);
 
-bool study_on_boundary(const struct study *study, int32_t particle);
-void study_velocity(const struct study *study, enum study_field field, int32_t particle,
-                    double velocity[2]);
+/* The steps of a measurement, difference form. gradient_errors, curl_errors: one number per
+ * particle, or NULL. */
+void study_fill(struct study *study, enum study_field field);
+void study_search(const struct study *study);
+void study_derive(const struct study *study, const struct study_way *way);
+struct study_errors study_compare(const struct study *study, double *gradient_errors,
+                                  double *curl_errors);
 
-/* Difference form. gradient_errors, curl_errors: one number per particle, or NULL. */
-struct study_errors study_measure(const struct study *study, enum study_field field,
-                                  sphg_method method, double *gradient_errors, double *curl_errors);
+struct study_errors study_measure(struct study *study, enum study_field field,
+                                  const struct study_way *way, double *gradient_errors,
+                                  double *curl_errors);
 #endif

@@ -3,6 +3,7 @@
  * Westhofen, Jeske, Bender 2023, doi:10.1145/3606933. */
 #include "commands.h"
 #include "field_study.h"
+#include "particles/particles.h"
 #include "report/plot.h"
 #include "report/table.h"
 #include "settings.h"
@@ -10,61 +11,64 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { METHODS = 6, SIZES = 3 /* N, 2 N, 4 N */, KINDS = 2 /* of fields */ };
+enum { WAYS = 8, SIZES = 3 /* N, 2 N, 4 N */, KINDS = 2 /* of fields */ };
 
-static const sphg_method order[METHODS] = {SPHG_PLAIN, SPHG_KGC,  SPHG_MLS,
-                                           SPHG_RKPM,  SPHG_CMLS, SPHG_CRKPM};
+static const struct study_way ways[WAYS] = {
+    {.name = "SPH", .method = SPHG_PLAIN}, {.name = "KGC", .method = SPHG_KGC},
+    {.name = "MLS", .method = SPHG_MLS},   {.name = "RKPM", .method = SPHG_RKPM},
+    {.name = "CMLS", .method = SPHG_CMLS}, {.name = "CRKPM", .method = SPHG_CRKPM},
+    {.name = "KGC order 2", .order = 2},   {.name = "KGC order 2 lent", .order = 2, .lent = true}};
 
 /* Everything measured on one lattice. */
 struct lattice_results {
-    const char *name;                                  /* "square" or "jittered" */
-    struct study_setting setting;                      /* with the smallest N */
-    struct study_errors errors[KINDS][METHODS][SIZES]; /* methods in the order above */
+    const char *name;                               /* "square" or "jittered" */
+    struct study_setting setting;                   /* with the smallest N */
+    struct study_errors errors[KINDS][WAYS][SIZES]; /* ways in the order above */
 };
 
 /* ---- Measuring ------------------------------------------------------------------------------- */
 
-/* One row a particle: where, which velocity, all errors of the method in the order above. */
+/* One row a particle: where, which velocity, all errors of the ways in the order above. */
 static void write_particles(const char *folder, const char *name, const struct study *study,
-                            enum study_field field, const double *errors)
+                            const double *errors)
 {
-    struct column columns[5 + 2 * METHODS] = {{NULL, "x", NULL, NULL},
-                                              {NULL, "y", NULL, NULL},
-                                              {NULL, "vx", NULL, NULL},
-                                              {NULL, "vy", NULL, NULL}};
-    for (int k = 0; k < 2 * METHODS; ++k)
-        columns[4 + k].key = table_text("%s_error_%s", k < METHODS ? "gradient" : "curl",
-                                        method_names[order[k % METHODS]]);
+    struct column columns[5 + 2 * WAYS] = {{NULL, "x", NULL, NULL},
+                                           {NULL, "y", NULL, NULL},
+                                           {NULL, "vx", NULL, NULL},
+                                           {NULL, "vy", NULL, NULL}};
+    for (int k = 0; k < 2 * WAYS; ++k)
+        columns[4 + k].key =
+            table_text("%s_error_%s", k < WAYS ? "gradient" : "curl", ways[k % WAYS].name);
     struct table *table = table_create("", columns);
     for (int32_t i = 0; i < study->count; ++i) {
-        struct cell cells[4 + 2 * METHODS];
-        double velocity[2];
-        study_velocity(study, field, i, velocity);
+        struct cell cells[4 + 2 * WAYS];
         for (int axis = 0; axis < 2; ++axis) {
             cells[axis] = cell_number(numbers_get(&study->positions, i, axis));
-            cells[2 + axis] = cell_number(velocity[axis]);
+            cells[2 + axis] = cell_number(numbers_get(&study->velocities, i, axis));
         }
-        for (int k = 0; k < 2 * METHODS; ++k)
+        for (int k = 0; k < 2 * WAYS; ++k)
             cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->count + i]);
-        table_add(table, cells, 4 + 2 * METHODS);
+        table_add(table, cells, 4 + 2 * WAYS);
     }
     table_write_csv(table, folder, name);
 }
 
 /* The smallest lattice leaves a file of its particles. */
-static void measure_field(const char *folder, const struct study *study, enum study_field field,
+static void measure_field(const char *folder, struct study *study, enum study_field field,
                           struct lattice_results *results, int size)
 {
     const size_t count = (size_t)study->count;
-    double *errors = allocate_or_exit(2 * METHODS * count, sizeof *errors);
-    for (int k = 0; k < METHODS; ++k)
+    double *errors = allocate_or_exit(2 * WAYS * count, sizeof *errors);
+    study_fill(study, field);
+    for (int k = 0; k < WAYS; ++k) {
+        study_derive(study, &ways[k]);
         results->errors[field][k][size] =
-            study_measure(study, field, order[k], errors + (size_t)k * count,
-                          errors + (size_t)(METHODS + k) * count);
+            study_compare(study, errors + (size_t)k * count, errors + (size_t)(WAYS + k) * count);
+    }
     if (size == 0)
         write_particles(folder,
                         table_text("fields_%s_%s.csv", study_field_name(field), results->name),
-                        study, field, errors);
+                        study, errors);
     free(errors);
 }
 
@@ -94,22 +98,17 @@ static struct table *table_of_errors(const struct lattice_results *results)
     struct table *table = table_create("", columns);
     for (int field = 0; field < KINDS; ++field) {
         table_section(table, study_field_formula((enum study_field)field));
-        for (int k = 0; k < METHODS; ++k) {
+        for (int k = 0; k < WAYS; ++k) {
             const struct study_errors *e = &results->errors[field][k][0];
-            TABLE_ROW(table, cell_text(method_names[order[k]]), cell_number(e->boundary_max),
-                      cell_number(e->boundary_mean), cell_number(e->inside_max),
-                      cell_number(e->inside_mean), cell_number(e->curl_max));
+            TABLE_ROW(table, cell_text(ways[k].name), cell_number(e->most[STUDY_BOUNDARY]),
+                      cell_number(e->mean[STUDY_BOUNDARY]), cell_number(e->most[STUDY_INSIDE]),
+                      cell_number(e->mean[STUDY_INSIDE]), cell_number(e->curl_max));
         }
     }
     return table;
 }
 
 /* The error falls as d^order between the two finest lattices. */
-static struct cell cell_order(double coarse, double fine)
-{
-    return cell_number(log2(coarse / fine));
-}
-
 static struct table *table_of_convergence(const struct lattice_results *results)
 {
     static struct column columns[10];
@@ -125,13 +124,15 @@ static struct table *table_of_convergence(const struct lattice_results *results)
             columns[4 * half + 1 + size].format = "%.3e";
     }
     struct table *table = table_create("", columns);
-    for (int k = 0; k < METHODS; ++k) {
+    for (int k = 0; k < WAYS; ++k) {
         const struct study_errors *e = results->errors[FIELD_TRIGONOMETRIC][k];
-        TABLE_ROW(table, cell_text(method_names[order[k]]), cell_number(e[0].boundary_max),
-                  cell_number(e[1].boundary_max), cell_number(e[2].boundary_max),
-                  cell_order(e[1].boundary_max, e[2].boundary_max), cell_number(e[0].inside_max),
-                  cell_number(e[1].inside_max), cell_number(e[2].inside_max),
-                  cell_order(e[1].inside_max, e[2].inside_max));
+        struct cell cells[9] = {cell_text(ways[k].name)};
+        for (int half = STUDY_BOUNDARY; half <= STUDY_INSIDE; ++half) {
+            for (int size = 0; size < SIZES; ++size)
+                cells[4 * half + 1 + size] = cell_number(e[size].most[half]);
+            cells[4 * half + 4] = cell_number(log2(e[1].most[half] / e[2].most[half]));
+        }
+        table_add(table, cells, 9);
     }
     return table;
 }
@@ -162,33 +163,81 @@ static void write_convergence(const char *folder, const struct lattice_results r
                                             {NULL, "curl_max", NULL, NULL},
                                             {0}};
     struct table *table = table_create("", columns);
-    for (int n = 0; n < 2 * KINDS * METHODS * SIZES; ++n) {
-        const int size = n % SIZES, k = n / SIZES % METHODS, field = n / SIZES / METHODS % KINDS;
-        const struct lattice_results *lattice = &results[n / SIZES / METHODS / KINDS];
+    for (int n = 0; n < 2 * KINDS * WAYS * SIZES; ++n) {
+        const int size = n % SIZES, k = n / SIZES % WAYS, field = n / SIZES / WAYS % KINDS;
+        const struct lattice_results *lattice = &results[n / SIZES / WAYS / KINDS];
         const struct study_errors *e = &lattice->errors[field][k][size];
         const int32_t side = lattice->setting.side << size;
-        TABLE_ROW(
-            table, cell_text(lattice->name), cell_text(study_field_name((enum study_field)field)),
-            cell_text(method_names[order[k]]), cell_count(side), cell_number(2.0 / side),
-            cell_number(e->boundary_max), cell_number(e->boundary_mean), cell_number(e->inside_max),
-            cell_number(e->inside_mean), cell_number(e->curl_max));
+        TABLE_ROW(table, cell_text(lattice->name),
+                  cell_text(study_field_name((enum study_field)field)), cell_text(ways[k].name),
+                  cell_count(side), cell_number(2.0 / side), cell_number(e->most[STUDY_BOUNDARY]),
+                  cell_number(e->mean[STUDY_BOUNDARY]), cell_number(e->most[STUDY_INSIDE]),
+                  cell_number(e->mean[STUDY_INSIDE]), cell_number(e->curl_max));
     }
     table_write_csv(table, folder, "fields_convergence.csv");
 }
 
+/* ---- A file's particles ---------------------------------------------------------------------- */
+
+/* Of waves of ten support radii; those who resolve all slopes, or curvature, by order 2. */
+static void measure_input(const char *folder, const struct particle_source *source,
+                          struct study_setting setting)
+{
+    static const struct column columns[] = {{"", "method", NULL, NULL},
+                                            {"curvature: mean", "curvature_mean", "%.3e", NULL},
+                                            {"max", "curvature_max", "%.3e", NULL},
+                                            {"slopes: mean", "slopes_mean", "%.3e", NULL},
+                                            {"max", "slopes_max", "%.3e", NULL},
+                                            {"neither: mean", "neither_mean", "%.3e", NULL},
+                                            {"max", "neither_max", "%.3e", NULL},
+                                            {0}};
+    struct particles particles = particles_create(source);
+    setting.dimension = particles.dimension;
+    struct study study = study_of_particles(&setting, &particles.positions, &particles.volumes);
+    const double size = 2 * 3.14159265358979323846 / (10 * setting.support);
+    struct table *table = table_create("", columns);
+    struct study_errors e = {.curl_max = 0};
+    study_fill(&study, FIELD_WAVES);
+    for (int k = 0; k < WAYS; ++k) {
+        struct cell cells[1 + 2 * STUDY_GROUPS] = {cell_text(ways[k].name)};
+        study_derive(&study, &ways[k]);
+        e = study_compare(&study, NULL, NULL);
+        for (int group = 0; group < STUDY_GROUPS; ++group) {
+            const int at = 1 + 2 * (STUDY_CURVATURE - group);
+            cells[at] = e.counts[group] ? cell_number(e.mean[group] / size) : cell_none();
+            cells[at + 1] = e.counts[group] ? cell_number(e.most[group] / size) : cell_none();
+        }
+        table_add(table, cells, 1 + 2 * STUDY_GROUPS);
+    }
+    printf(
+        "particles  %d of %s, %dD, H = %g, volume %s\n"
+        "resolved   slopes and curvature by %.2f %% (order 2 is exact on quadratic fields), slopes "
+        "alone by %.2f %%\n           (order 1 is exact on linear fields), neither by %.2f %%\n"
+        "errors     |J_i - J|_F / k of v_a = sin(k x_a) cos(k x_b), 10 H a wave\n",
+        (int)study.count, source->input, (int)setting.dimension, setting.support,
+        particles.volume_origin, 100.0 * e.counts[STUDY_CURVATURE] / study.count,
+        100.0 * e.counts[STUDY_SLOPES] / study.count,
+        100.0 * e.counts[STUDY_NEITHER] / study.count);
+    table_print(table);
+    table_write_csv(table, folder, "fields_input.csv");
+    printf("\nwritten to %s: fields_input.csv\n", folder);
+    study_close(&study);
+    numbers_destroy(&particles.velocities);
+}
+
 /* ---- Pictures -------------------------------------------------------------------------------- */
 
-/* Three panels of a field, or, without a quantity, convergence. */
 struct picture {
-    const char *name, *quantity;
+    const char *name, *script, *quantity;
     enum study_field field;
 };
 
 static const struct picture pictures[] = {
-    {"fields_rotation", "gradient", FIELD_ROTATION},
-    {"fields_trigonometric", "gradient", FIELD_TRIGONOMETRIC},
-    {"fields_curl", "curl", FIELD_ROTATION},
-    {"fields_convergence", NULL, FIELD_TRIGONOMETRIC},
+    {"fields_rotation", "fields/fields_panels.gp", "gradient", FIELD_ROTATION},
+    {"fields_trigonometric", "fields/fields_panels.gp", "gradient", FIELD_TRIGONOMETRIC},
+    {"fields_curl", "fields/fields_panels.gp", "curl", FIELD_ROTATION},
+    {"fields_convergence", "fields/fields_convergence.gp", "", FIELD_TRIGONOMETRIC},
+    {"fields_order", "fields/fields_order.gp", "", FIELD_TRIGONOMETRIC},
 };
 
 static bool draw(const char *folder, const struct lattice_results *results,
@@ -196,16 +245,14 @@ static bool draw(const char *folder, const struct lattice_results *results,
 {
     const struct study_setting *setting = &results->setting;
     const char *ending = setting->jitter > 0 ? "_jittered" : "";
-    const char *const parts[] = {
-        "fields/fields_common.gp",
-        picture->quantity ? "fields/fields_panels.gp" : "fields/fields_convergence.gp", NULL};
+    const char *const parts[] = {"fields/fields_common.gp", picture->script, NULL};
     const char *given =
         table_text("output = '%s%s.png'\nfield = '%s'\nformula = '%s'\nlattice = '%s'\n"
                    "support = '%g'\nkernel = '%s'\nprecision = '%s'\nside = %d\nquantity = '%s'\n",
                    picture->name, ending, study_field_name(picture->field),
                    study_field_formula(picture->field), results->name, setting->support,
                    kernel_title(setting->kernel), precision_names[setting->precision],
-                   setting->side, picture->quantity ? picture->quantity : "");
+                   setting->side, picture->quantity);
     return plot_draw(folder, table_text("%s%s.gp", picture->name, ending), given, parts);
 }
 
@@ -220,16 +267,22 @@ static bool draw_all(const char *folder, const struct lattice_results results[2]
 
 int command_fields(int argc, char **argv)
 {
-    struct settings settings = {
-        .support = 2, .jitter = 0.2, .precision = PRECISION_F64, .output = "fields"};
+    struct settings settings = {.jitter = 0.2, .precision = PRECISION_F64, .output = "fields"};
+    struct particle_source source = {0};
     int32_t side = 40;
     const struct command_option options[] = {
         {"size", 0, "N", "N x N particles; convergence over N, 2 N, 4 N (40)", OPTION_WHOLE, &side,
          5, 500, NULL, NULL},
-        {"support", 0, "H", "support radius in spacings (2)", OPTION_REAL, &settings.support, 0.1,
-         20, NULL, NULL},
+        {"support", 0, "H", "support radius in spacings (2); with --input in the file's unit",
+         OPTION_POSITIVE, &settings.support, 0, 0, NULL, NULL},
         {"jitter", 0, "SHARE", "of the spacing, each way, on the jittered lattice (0.2)",
          OPTION_REAL, &settings.jitter, 0.001, 0.5, NULL, NULL},
+        {"input", 0, "FILE",
+         "particles of your own instead, as table1 reads them: who of them resolves slopes and "
+         "curvature, and the errors of waves on them",
+         OPTION_TEXT, &source.input, 0, 0, NULL, NULL},
+        {"mass", 0, "M", "of each particle of an input file with densities", OPTION_POSITIVE,
+         &source.mass, 0, 0, NULL, NULL},
         KERNEL_OPTION(settings),
         PRECISION_OPTION(settings, "f64"),
         OUTPUT_OPTION(settings, "CSV, scripts and pictures", "fields"),
@@ -238,15 +291,29 @@ int command_fields(int argc, char **argv)
                   "Errors of plain and corrected derivatives of velocity fields on the square "
                   "[-1, 1]^2: tables here, every particle as CSV and pictures in a folder.",
                   argc, argv);
-    const struct study_setting setting = {side, settings.support, settings.jitter, settings.kernel,
-                                          settings.precision};
+    if (!source.input && source.mass > 0)
+        command_line_refuse("--mass: only with --input");
+    if (source.input ? settings.support <= 0 : settings.support > 20)
+        command_line_refuse("--support: %s", source.input ? "--input wants it, in the file's unit"
+                                                          : "more than 20 spacings");
+    const struct study_setting setting = {.dimension = 2,
+                                          .side = side,
+                                          .support = settings.support > 0 ? settings.support : 2,
+                                          .jitter = settings.jitter,
+                                          .kernel = settings.kernel,
+                                          .precision = settings.precision};
+    source.precision = settings.precision;
+    if (source.input) {
+        measure_input(settings.output, &source, setting);
+        return EXIT_SUCCESS;
+    }
     struct lattice_results results[2] = {{.name = "square", .setting = setting},
                                          {.name = "jittered", .setting = setting}};
     results[0].setting.jitter = 0;
     printf("Velocity gradients on [-1, 1]^2, Figs. 2 and 4 of doi:10.1145/3606933\n"
            "difference form, %s, H = %g d, d = 2 / N, %s, V_j = 1 / sum_k W_jk (j included)\n"
            "boundary: the two outermost layers\n",
-           kernel_title(settings.kernel), settings.support, precision_names[settings.precision]);
+           kernel_title(settings.kernel), setting.support, precision_names[settings.precision]);
     for (int k = 0; k < 2; ++k) {
         measure(settings.output, &results[k]);
         print_lattice(&results[k]);

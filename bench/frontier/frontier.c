@@ -191,6 +191,7 @@ static void write_results(const struct frontier *frontier)
     struct report *report = report_create(settings->threads);
     report_lattice(report, settings, frontier->count, frontier->pairs);
     report_table(report, all);
+    report_table(report, frontier_order(settings));
     report_write(report, settings->json);
 }
 

@@ -2,6 +2,7 @@
 /* Run time against error of every way to a velocity gradient: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_FRONTIER_H
 #define SPHGRAD_BENCH_FRONTIER_H
+#include "report/table.h"
 #include "report/timing.h"
 #include "settings.h"
 
@@ -41,4 +42,8 @@ enum frontier_side frontier_side(const struct frontier_point *point);
 
 /* Leaves the points in the order of their times, the fastest first. */
 void frontier_measure(struct frontier *frontier);
+
+/* Order 2 beside order 1: measures over H and N, prints, writes and draws; the rows for a report.
+ */
+const struct table *frontier_order(const struct settings *settings);
 #endif

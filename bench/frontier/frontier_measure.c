@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The measurements of frontier. A round goes once through all ways. */
 #include "frontier.h"
+#include "fields/field_study.h"
 #include "lattice.h"
 #include "library.h"
 #include "particles/particles.h"
@@ -21,23 +22,10 @@ struct scene {
     int32_t *indices;
 };
 
-/* v_a = sin(k x_a) cos(k x_b), b the axis after a; or (-y, x, 2z). J[a][b] = d v_a / d x_b. */
 static void evaluate_field(enum frontier_field field, const double x[3], double v[3], double j[9])
 {
-    const double k = 2 * 3.14159265358979323846 / wave_length;
-    for (int n = 0; n < 9; ++n)
-        j[n] = 0;
-    if (field == FRONTIER_LINEAR) {
-        v[0] = -x[1], v[1] = x[0], v[2] = 2 * x[2];
-        j[1] = -1, j[3] = 1, j[8] = 2;
-        return;
-    }
-    for (int a = 0; a < 3; ++a) {
-        const int b = (a + 1) % 3;
-        v[a] = sin(k * x[a]) * cos(k * x[b]);
-        j[3 * a + a] = k * cos(k * x[a]) * cos(k * x[b]);
-        j[3 * a + b] = -k * sin(k * x[a]) * sin(k * x[b]);
-    }
+    study_field_at(field == FRONTIER_LINEAR ? FIELD_ROTATION : FIELD_WAVES, 3, wave_length, x, v,
+                   j);
 }
 
 static void position_of(const struct scene *scene, int32_t i, double x[3])

@@ -39,7 +39,7 @@ static void add_to_summary(struct summary *sum, const struct stability_case *one
 
 static struct summary summarise(const struct stability *stability, int sweep, int method)
 {
-    struct summary sum = {.rank_least = 3, .fallback_least = 1};
+    struct summary sum = {.rank_least = 9, .fallback_least = 1};
     for (int k = 0; k < stability->case_count; ++k) {
         const struct stability_case *one = &stability->cases[k];
         if ((int)one->sweep == sweep && (int)one->method == method)
@@ -221,7 +221,7 @@ static void print_results(const struct stability *stability)
     text_print_machine(settings->threads);
     printf("ratios     largest error of the gradient of a random field over its bound, beside "
            "brute force in\n           quadruple precision; limits: 10 at full rank, 16 where "
-           "the threshold acts\n");
+           "the threshold acts; order 2: 1 and 4\n");
     printf("ranks      means over the particles of a case, least and most; decomposed: their "
            "share in percent\n");
     print_summaries(stability);
@@ -265,7 +265,8 @@ int command_stability(int argc, char **argv)
          0, 0, NULL, NULL},
         {"sweep", 0, "NAME",
          "this one alone: slab, threshold, offset, scale, neighbours, volumes, jitter, merging; or "
-         "crowds, which only shows how errors grow",
+         "crowds, which only shows how errors grow; grading, of radii; curvature (eps_q) and "
+         "thinning (a slab), of order 2",
          OPTION_CHOICE, &stability.first, 0, 0, sweep_names, &one_sweep},
         KERNEL_OPTION(stability.settings),
         {"compare", 0, "N",

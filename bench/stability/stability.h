@@ -14,7 +14,10 @@ enum stability_sweep {
     SWEEP_VOLUMES,    /* largest over smallest volume */
     SWEEP_JITTER,     /* share of the spacing by which each coordinate moves */
     SWEEP_MERGING,    /* distance of two layers / H */
-    SWEEP_CROWDS,     /* equal particles in each of five places; runs alone, when asked for */
+    SWEEP_CROWDS,     /* equal particles in each of five places; it and those below run alone */
+    SWEEP_GRADING,    /* largest over smallest support radius */
+    SWEEP_CURVATURE,  /* eps_q, a tenth of eps, of order 2 */
+    SWEEP_THINNING,   /* the slab, by order 2 */
     SWEEPS = SWEEP_CROWDS
 };
 
@@ -35,7 +38,6 @@ struct stability_case {
     int64_t targets;    /* seen by the library */
     int64_t not_finite; /* numbers among the results */
     int64_t rank_sum, full, decomposed, empty;
-    int32_t rank_least;
     double linear_sum;  /* of |J_i - J|_F / |J|_F of a linear field */
     double linear_full; /* the largest where rank is full; plain SPH: the largest */
     double noise;       /* largest |J_i|_F H of a random field in [-1, 1] */
@@ -63,12 +65,13 @@ struct stability {
     struct stability_case *cases; /* those of a sweep stand together */
 };
 
-extern const char *const sweep_names[SWEEPS + 2]; /* NULL-terminated */
+extern const char *const sweep_names[]; /* NULL-terminated */
 extern const char *const policy_names[STABILITY_POLICIES];
 
 void stability_create_cases(struct stability *stability);
 bool stability_is_corrected(const struct stability_case *one); /* not plain SPH */
 double stability_threshold(const struct stability_case *one);  /* eps */
+int32_t stability_order(const struct stability_case *one);
 void stability_measure(struct stability *stability);
 
 /* Shares and means of a case. */

@@ -7,8 +7,9 @@
 
 enum { CASES_MOST = 8192, PLACES_MOST = 32 };
 
-const char *const sweep_names[SWEEPS + 2] = {
-    "slab", "threshold", "offset", "scale", "neighbours", "volumes", "jitter", "merging", "crowds"};
+const char *const sweep_names[] = {"slab",      "threshold", "offset",  "scale",  "neighbours",
+                                   "volumes",   "jitter",    "merging", "crowds", "grading",
+                                   "curvature", "thinning",  NULL};
 const char *const policy_names[STABILITY_POLICIES] = {
     [SPHG_BLEND] = "blend",
     [SPHG_REPLACE] = "replace",
@@ -73,9 +74,14 @@ static struct places places_of(const struct settings *settings, const struct sta
 {
     switch (one->sweep) {
     case SWEEP_SLAB:
+    case SWEEP_THINNING:
         return powers(1, sqrt(10), 25);
     case SWEEP_THRESHOLD:
         return thresholds();
+    case SWEEP_CURVATURE:
+        return powers(1e-7, sqrt(10), 11);
+    case SWEEP_GRADING:
+        return powers(1, 4, 7);
     case SWEEP_OFFSET:
         return offsets();
     case SWEEP_SCALE:
@@ -111,7 +117,6 @@ static void add_case(struct stability *stability, const struct stability_case *d
 {
     struct stability_case *one = &stability->cases[stability->case_count++];
     *one = *described;
-    one->rank_least = 3;
     one->steps = 0;
     if (one->sweep == SWEEP_SCALE)
         one->steps = (int32_t)fmax(1, ceil((one->end - one->at) / (stability->quick ? 8 : 1)));
@@ -139,6 +144,8 @@ static bool makes_sense(const struct stability_case *one)
     const bool by_policy = one->sweep == SWEEP_THRESHOLD || one->sweep == SWEEP_MERGING;
     if (by_policy)
         return one->method != SPHG_PLAIN;
+    if (stability_order(one) == 2 && one->method > SPHG_RKPM)
+        return false;
     return one->policy == SPHG_BLEND;
 }
 
@@ -166,7 +173,14 @@ bool stability_is_corrected(const struct stability_case *one)
 
 double stability_threshold(const struct stability_case *one)
 {
-    return one->sweep == SWEEP_THRESHOLD ? one->at : 1e-2;
+    return one->sweep == SWEEP_THRESHOLD   ? one->at
+           : one->sweep == SWEEP_CURVATURE ? 10 * one->at
+                                           : 1e-2;
+}
+
+int32_t stability_order(const struct stability_case *one)
+{
+    return one->sweep == SWEEP_CURVATURE || one->sweep == SWEEP_THINNING ? 2 : 1;
 }
 
 double stability_rank(const struct stability_case *one)

@@ -36,10 +36,16 @@ static int check_numbers(const struct stability_case *one, bool is_compared)
     broken += require(one, one->not_finite == 0, "%lld numbers are not finite",
                       (long long)one->not_finite);
     if (one->sweep != SWEEP_CROWDS) { /* where sums of equal terms drift one way */
-        broken += require(one, one->ratio_full <= limits[limit_oracle_ratio_full],
+        const bool second = stability_order(one) == 2;
+        broken += require(one,
+                          one->ratio_full <=
+                              limits[second ? limit_quadratic_ratio_full : limit_oracle_ratio_full],
                           "error %g times its bound at full rank", one->ratio_full);
-        broken += require(one, one->ratio_touched <= limits[limit_oracle_ratio_touched],
-                          "error %g times its bound under the threshold", one->ratio_touched);
+        broken +=
+            require(one,
+                    one->ratio_touched <=
+                        limits[second ? limit_quadratic_ratio_touched : limit_oracle_ratio_touched],
+                    "error %g times its bound under the threshold", one->ratio_touched);
     }
     broken += require(one, one->wrong_ranks == 0, "%lld ranks are not those of the reference",
                       (long long)one->wrong_ranks);

@@ -109,6 +109,18 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
     cloud->target_count = balls;
 }
 
+/* Spacing, radii and volumes grow along x, so many times over the block. */
+static void grade(struct stability_cloud *cloud, int32_t side, double ratio)
+{
+    cloud->radius = allocate_or_exit((size_t)cloud->count, sizeof *cloud->radius);
+    for (int32_t i = 0; i < cloud->count; ++i) {
+        const double wide = pow(ratio, (i % side) / (side - 1.0));
+        cloud->radius[i] = (double)(float)(cloud->support * wide);
+        for (int axis = 0; axis < 3; ++axis)
+            cloud->x[i][axis] = (cloud->x[i][axis] + 0.5) * wide;
+    }
+}
+
 /* Onto axes that are none of the coordinates': an orthogonal matrix of ninths. */
 static void turn(struct stability_cloud *cloud)
 {
@@ -133,6 +145,8 @@ static void fill_volumes(struct stability_cloud *cloud, enum stability_sweep swe
             cloud->volume[i] = ball / (at + 1);
         if (sweep == SWEEP_CROWDS)
             cloud->volume[i] = ball / (5 * at + 1);
+        if (sweep == SWEEP_GRADING)
+            cloud->volume[i] = pow(cloud->radius[i] / cloud->support, 3);
         if (sweep == SWEEP_VOLUMES)
             cloud->volume[i] = pow(at, draw(cloud, -0.5, 0.5));
     }
@@ -145,9 +159,11 @@ static void add_particles(struct stability_cloud *cloud, const struct settings *
     const double jitter = settings->jitter;
     switch (sweep) {
     case SWEEP_SLAB:
+    case SWEEP_THINNING:
         add_slab(cloud, side, side, jitter, 1 / sqrt(at), 1 / sqrt(at), 0);
         break;
-    case SWEEP_THRESHOLD: /* a block with corners, and a wedge: smallest moments of any size */
+    case SWEEP_THRESHOLD:
+    case SWEEP_CURVATURE: /* a block with corners, and a wedge: smallest moments of any size */
         add_block(cloud, side / 2 + 2, 0.4);
         add_slab(cloud, 4 * side, side, jitter, 1, 1e-4, 8 * cloud->support);
         break;
@@ -163,10 +179,13 @@ static void add_particles(struct stability_cloud *cloud, const struct settings *
     default:
         add_block(cloud, side, sweep == SWEEP_JITTER ? at : jitter);
     }
+    if (sweep == SWEEP_GRADING)
+        grade(cloud, side, at);
     cloud->target_count = cloud->count;
 }
 
-/* Places in the sequence of random numbers: 2^32 for each sweep of each round. */
+/* Places in the sequence of random numbers: 2^32 for each sweep of each round; those that run alone
+ * share the next round's. */
 static int64_t first_random(int32_t seed, int32_t round, enum stability_sweep sweep)
 {
     enum { ROUNDS_MOST = 10000 };
@@ -193,5 +212,6 @@ void stability_cloud_destroy(struct stability_cloud *cloud)
 {
     free(cloud->x);
     free(cloud->volume);
+    free(cloud->radius);
     *cloud = (struct stability_cloud){0};
 }

@@ -10,6 +10,7 @@ struct stability_cloud {
     double support; /* H, rounded to f32 */
     double (*x)[3];
     double *volume;
+    double *radius;  /* of each, rounded to f32; NULL: H */
     double shift[3]; /* of the whole cloud: linear fields are taken before it */
     int64_t random;  /* numbers drawn */
 };

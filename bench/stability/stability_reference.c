@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "stability_reference.h"
-#include "support/oracle.h"
+#include "support/oracle_quadratic.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -51,7 +51,8 @@ static oracle_scene scene_of(const struct trial *trial)
                           .source_count = trial->count,
                           .target_count = trial->target_count,
                           .sources = doubles_of(&trial->positions),
-                          .volume = doubles_of(&trial->volumes)};
+                          .volume = doubles_of(&trial->volumes),
+                          .support = trial->radii.data ? doubles_of(&trial->radii) : NULL};
 }
 
 /* ---- Which targets --------------------------------------------------------------------------- */
@@ -81,14 +82,14 @@ static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
 
 /* ---- Comparison ------------------------------------------------------------------------------ */
 
-static void note_ratio(const struct trial *trial, const oracle_result *exact, int32_t i,
-                       struct stability_case *one)
+static void note_ratio(const struct trial *trial, const quad *exact, quad bound, bool touched,
+                       int32_t i, struct stability_case *one)
 {
     double found[9];
     for (int k = 0; k < 9; ++k)
         found[k] = numbers_get(&trial->jacobians[TRIAL_RANDOM], i, k);
-    const double ratio = oracle_ratio(9, found, exact->gradient, exact->bound);
-    double *worst = exact->touched ? &one->ratio_touched : &one->ratio_full;
+    const double ratio = oracle_ratio(9, found, exact, bound);
+    double *worst = touched ? &one->ratio_touched : &one->ratio_full;
     *worst = numbers_larger(*worst, ratio);
 }
 
@@ -107,13 +108,23 @@ static void note_condition(const oracle_point *point, struct stability_case *one
 static void compare_target(const struct trial *trial, const oracle_scene *scene, oracle *reference,
                            const oracle_field *field, int32_t i, struct stability_case *one)
 {
-    const oracle_result exact = oracle_apply(reference, field, i);
     const oracle_point *point = oracle_at(reference, i);
     ++one->compared;
-    if (exact.undecided)
-        ++one->undecided;
-    else
-        note_ratio(trial, &exact, i, one);
+    if (trial->scheme.order == 2) {
+        const oracle_curved exact = oracle_apply_second(reference, field, i);
+        const oracle_second *second = oracle_second_at(reference, i);
+        one->undecided += exact.undecided;
+        if (!exact.undecided)
+            note_ratio(trial, exact.gradient, exact.gradient_bound, exact.touched, i, one);
+        note_condition(point, one);
+        one->wrong_ranks +=
+            trial->ranks[i] != second->rank && !oracle_second_rank_is_open(scene, point, second);
+        return;
+    }
+    const oracle_result exact = oracle_apply(reference, field, i);
+    one->undecided += exact.undecided;
+    if (!exact.undecided)
+        note_ratio(trial, exact.gradient, exact.bound, exact.touched, i, one);
     if (!trial->corrected)
         return;
     note_condition(point, one);

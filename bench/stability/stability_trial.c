@@ -12,6 +12,8 @@ static void fill(struct trial *trial, const struct stability_cloud *cloud, int e
         const double *x = cloud->x[i];
         const double carried[3] = {-x[1], x[0], 2 * x[2]};
         numbers_set(&trial->volumes, i, 0, ldexp(cloud->volume[i], 3 * exponent));
+        if (cloud->radius)
+            numbers_set(&trial->radii, i, 0, ldexp(cloud->radius[i], exponent));
         for (int axis = 0; axis < 3; ++axis) {
             const double place = cloud->x[i][axis] + cloud->shift[axis];
             numbers_set(&trial->positions, i, axis, ldexp(place, exponent));
@@ -34,11 +36,14 @@ struct trial trial_create(sphg_context *context, const struct stability_case *on
                                      .policy = one->policy,
                                      .dimension = 3,
                                      .support_radius = ldexp(cloud->support, exponent),
-                                     .threshold = stability_threshold(one)}};
+                                     .threshold = stability_threshold(one),
+                                     .order = stability_order(one)}};
     const sphg_type type = field_type(one->precision);
     const int32_t width = sphg_correction_width(&trial.scheme), targets = trial.target_count;
     trial.positions = numbers_create(position_type(one->precision), trial.count, 3);
     trial.volumes = numbers_create(type, trial.count, 1);
+    if (cloud->radius)
+        trial.radii = numbers_create(trial.positions.type, trial.count, 1);
     trial.corrections = numbers_create(type, targets, width);
     trial.lambda_min = numbers_create(type, targets, 1);
     trial.ranks = allocate_or_exit((size_t)targets, 1);
@@ -56,6 +61,7 @@ void trial_destroy(struct trial *trial)
     sphg_neighbors_destroy(trial->neighbors);
     numbers_destroy(&trial->positions);
     numbers_destroy(&trial->volumes);
+    numbers_destroy(&trial->radii);
     numbers_destroy(&trial->corrections);
     numbers_destroy(&trial->lambda_min);
     free(trial->ranks);
@@ -71,6 +77,8 @@ static void search(struct trial *trial)
 {
     sphg_geometry geometry = library_geometry(&trial->positions, trial->volumes.type);
     geometry.target_count = trial->target_count;
+    if (trial->radii.data)
+        geometry.source_support = numbers_view(&trial->radii);
     library_search(trial->context, trial->neighbors, &trial->scheme, &geometry);
 }
 
@@ -118,12 +126,9 @@ static double norm_of(const struct numbers *tensors, int32_t i)
 
 static void tally_ranks(const struct trial *trial, struct stability_case *one)
 {
-    for (int32_t rank = 0; rank < 4; ++rank) {
-        one->rank_sum += rank * trial->stats.rank[rank];
-        if (trial->stats.rank[rank] > 0 && rank < one->rank_least)
-            one->rank_least = rank;
-    }
-    one->full += trial->stats.rank[3];
+    for (int32_t i = 0; i < trial->target_count; ++i)
+        one->rank_sum += trial->ranks[i];
+    one->full += trial->scheme.order == 2 ? trial->stats.quadratic : trial->stats.rank[3];
     one->decomposed += trial->stats.decomposed;
     one->empty += trial->stats.empty;
 }
@@ -133,10 +138,11 @@ static void tally_results(const struct trial *trial, struct stability_case *one)
     for (int32_t i = 0; i < trial->target_count; ++i) {
         const double error = linear_field_error(&trial->jacobians[TRIAL_LINEAR], i);
         one->linear_sum += error;
-        if (!trial->corrected || trial->ranks[i] == 3)
+        if (!trial->corrected || trial->ranks[i] >= 3)
             one->linear_full = fmax(one->linear_full, error);
         one->noise = fmax(one->noise, norm_of(&trial->jacobians[TRIAL_RANDOM], i) *
-                                          trial->scheme.support_radius);
+                                          (trial->radii.data ? numbers_get(&trial->radii, i, 0)
+                                                             : trial->scheme.support_radius));
     }
 }
 

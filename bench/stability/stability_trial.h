@@ -17,7 +17,7 @@ struct trial {
     sphg_scheme scheme;
     bool corrected;
     int32_t count, target_count;
-    struct numbers positions, volumes, fields[TRIAL_FIELDS];
+    struct numbers positions, volumes, radii, fields[TRIAL_FIELDS];  /* radii: where they differ */
     struct numbers jacobians[TRIAL_FIELDS], corrections, lambda_min; /* results */
     uint8_t *ranks;
     sphg_stats stats;
