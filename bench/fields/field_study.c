@@ -238,12 +238,3 @@ struct study_errors study_compare(const struct study *study, double *gradient_er
         errors.mean[group] /= errors.counts[group] > 0 ? errors.counts[group] : 1;
     return errors;
 }
-
-struct study_errors study_measure(struct study *study, enum study_field field,
-                                  const struct study_way *way, double *gradient_errors,
-                                  double *curl_errors)
-{
-    study_fill(study, field);
-    study_derive(study, way);
-    return study_compare(study, gradient_errors, curl_errors);
-}

@@ -77,8 +77,4 @@ void study_search(const struct study *study);
 void study_derive(const struct study *study, const struct study_way *way);
 struct study_errors study_compare(const struct study *study, double *gradient_errors,
                                   double *curl_errors);
-
-struct study_errors study_measure(struct study *study, enum study_field field,
-                                  const struct study_way *way, double *gradient_errors,
-                                  double *curl_errors);
 #endif

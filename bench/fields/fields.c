@@ -151,17 +151,12 @@ static void print_lattice(const struct lattice_results *results)
 
 static void write_convergence(const char *folder, const struct lattice_results results[2])
 {
-    static const struct column columns[] = {{NULL, "lattice", NULL, NULL},
-                                            {NULL, "field", NULL, NULL},
-                                            {NULL, "method", NULL, NULL},
-                                            {NULL, "N", NULL, NULL},
-                                            {NULL, "spacing", NULL, NULL},
-                                            {NULL, "boundary_max", NULL, NULL},
-                                            {NULL, "boundary_mean", NULL, NULL},
-                                            {NULL, "inside_max", NULL, NULL},
-                                            {NULL, "inside_mean", NULL, NULL},
-                                            {NULL, "curl_max", NULL, NULL},
-                                            {0}};
+    static const char *const keys[] = {"lattice",     "field",        "method",        "N",
+                                       "spacing",     "boundary_max", "boundary_mean", "inside_max",
+                                       "inside_mean", "curl_max"};
+    static struct column columns[sizeof keys / sizeof keys[0] + 1];
+    for (size_t k = 0; k < sizeof keys / sizeof keys[0]; ++k)
+        columns[k].key = keys[k];
     struct table *table = table_create("", columns);
     for (int n = 0; n < 2 * KINDS * WAYS * SIZES; ++n) {
         const int size = n % SIZES, k = n / SIZES % WAYS, field = n / SIZES / WAYS % KINDS;

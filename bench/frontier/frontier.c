@@ -171,7 +171,7 @@ static void print_results(const struct frontier *frontier)
     print_frontier(frontier, FRONTIER_LINEAR, SIDE_HOST, "and the second");
 }
 
-static void write_results(const struct frontier *frontier)
+static void write_results(const struct frontier *frontier, struct report *report)
 {
     static const char *const parts[] = {"frontier/frontier.gp", NULL};
     const struct settings *settings = &frontier->settings;
@@ -188,11 +188,8 @@ static void write_results(const struct frontier *frontier)
                   parts);
     printf("\nwritten to %s: frontier.csv, frontier_steps.csv, frontier.gp%s\n", settings->output,
            drawn ? ", frontier.png" : "");
-    struct report *report = report_create(settings->threads);
     report_lattice(report, settings, frontier->count, frontier->pairs);
     report_table(report, all);
-    report_table(report, frontier_order(settings));
-    report_write(report, settings->json);
 }
 
 int command_frontier(int argc, char **argv)
@@ -203,8 +200,11 @@ int command_frontier(int argc, char **argv)
                                              .support = 2,
                                              .jitter = 0.2,
                                              .output = "frontier"}};
+    bool order_alone = false;
     const struct command_option options[] = {
         OUTPUT_OPTION(frontier.settings, "CSV, script and picture", "frontier"),
+        {"order", 0, NULL, "order 2 beside order 1 alone", OPTION_FLAG, &order_alone, 0, 0, NULL,
+         NULL},
         LATTICE_OPTIONS(frontier.settings),
         {0}};
     settings_read(&frontier.settings, options,
@@ -212,9 +212,16 @@ int command_frontier(int argc, char **argv)
                   "option) from positions to result, and measures its error on a block with free "
                   "surfaces: which are worth their time.",
                   argc, argv);
-    create_points(&frontier);
-    frontier_measure(&frontier);
-    print_results(&frontier);
-    write_results(&frontier);
+    struct report *report = report_create(frontier.settings.threads);
+    if (order_alone) {
+        text_print_machine(frontier.settings.threads);
+    } else {
+        create_points(&frontier);
+        frontier_measure(&frontier);
+        print_results(&frontier);
+        write_results(&frontier, report);
+    }
+    report_table(report, frontier_order(&frontier.settings));
+    report_write(report, frontier.settings.json);
     return EXIT_SUCCESS;
 }

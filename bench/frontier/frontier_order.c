@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Order 2 beside order 1, over H and N: time from positions to Jacobians against the error at the
- * boundary and inside, of a fixed field on a cube of ever finer particles. */
+ * boundary and inside, of one field on a cube of ever finer particles. */
 #include "fields/field_study.h"
 #include "frontier.h"
 #include "report/machine.h"
@@ -8,7 +8,7 @@
 #include "report/progress.h"
 #include <stdio.h>
 
-enum { WAYS = 4, SUPPORTS = 3, SIZES = 3, POINTS = WAYS * SUPPORTS * SIZES };
+enum { WAYS = 4, SUPPORTS = 3, CUBES = 3 * SUPPORTS, POINTS = WAYS * CUBES };
 
 static const struct study_way ways[WAYS] = {{.name = "order 1", .method = SPHG_KGC},
                                             {.name = "classic", .method = SPHG_CMLS},
@@ -16,38 +16,42 @@ static const struct study_way ways[WAYS] = {{.name = "order 1", .method = SPHG_K
                                             {.name = "order 2 lent", .order = 2, .lent = true}};
 static const double supports[SUPPORTS] = {2, 2.5, 3};
 
-struct order_point {
-    const struct study_way *way;
-    int lattice; /* over supports and sizes */
-    struct study_errors errors;
-    struct samples time;
-};
-
-static void derive(const struct study *study, const struct study_way *way)
+/* Of half, once and twice the particles an axis. */
+static struct study open_cube(const struct settings *settings, int k)
 {
-    study_search(study);
-    study_derive(study, way);
+    const int32_t side = (settings_side(settings->particles, 3) << k / SUPPORTS) / 2;
+    const struct study_setting setting = {.dimension = 3,
+                                          .threads = settings->threads,
+                                          .side = side > 6 ? side : 6,
+                                          .support = supports[k % SUPPORTS],
+                                          .jitter = settings->jitter};
+    struct study study = study_open(&setting);
+    study_fill(&study, FIELD_TRIGONOMETRIC);
+    return study;
 }
 
-static void measure(const struct settings *settings, const struct study *studies,
-                    struct order_point *points)
+/* The first round warms up, and leaves the errors. */
+static void measure(const struct settings *settings, const struct study cubes[CUBES],
+                    struct study_errors errors[POINTS], struct samples times[POINTS])
 {
-    for (int32_t round = -1; round < settings->repetitions; ++round)
+    for (int32_t round = 0; round <= settings->repetitions; ++round)
         for (int k = 0; k < POINTS; ++k) {
-            const struct study *study = &studies[points[k].lattice];
-            progress_show("order 2: round %d of %d", round + 1, settings->repetitions);
+            const struct study *cube = &cubes[k / WAYS];
+            progress_show("order 2: round %d of %d", round, settings->repetitions);
             const struct moment start = now();
-            derive(study, points[k].way);
-            if (round < 0)
-                points[k].errors = study_compare(study, NULL, NULL);
+            study_search(cube);
+            study_derive(cube, &ways[k % WAYS]);
+            if (round > 0)
+                samples_add(&times[k], since(start));
             else
-                samples_add(&points[k].time, since(start));
+                errors[k] = study_compare(cube, NULL, NULL);
         }
     progress_clear();
 }
 
-static struct table *table_of_points(const struct study *studies, const struct order_point *points)
+const struct table *frontier_order(const struct settings *settings)
 {
+    static const char *const parts[] = {"frontier/frontier_order.gp", NULL};
     static const struct column columns[] = {{"", "way", NULL, NULL},
                                             {"H", "support", NULL, NULL},
                                             {"N", "side", NULL, NULL},
@@ -58,60 +62,38 @@ static struct table *table_of_points(const struct study *studies, const struct o
                                             {"inside max", "inside_max", "%.2e", NULL},
                                             {"mean", "inside_mean", "%.2e", NULL},
                                             {0}};
+    struct study cubes[CUBES];
+    struct study_errors errors[POINTS];
+    struct samples *times = allocate_to_the_end(POINTS, sizeof *times);
     struct table *table = table_create("order", columns);
+    for (int k = 0; k < CUBES; ++k)
+        cubes[k] = open_cube(settings, k);
+    measure(settings, cubes, errors, times);
     for (int k = 0; k < POINTS; ++k) {
-        const struct order_point *point = &points[k];
-        const struct study *study = &studies[point->lattice];
-        const struct study_errors *e = &point->errors;
-        if (k > 0 && k % (WAYS * SUPPORTS) == 0)
+        const struct study *cube = &cubes[k / WAYS];
+        if (k > 0 && k % WAYS == 0)
             table_section(table, NULL);
-        TABLE_ROW(table, cell_text(point->way->name),
-                  cell_text(table_text("%g", study->setting.support)),
-                  cell_text(table_text("%d", study->setting.side)),
-                  cell_time(&point->time, 1e6 / study->count), cell_time(&point->time, 1),
-                  cell_number(e->most[STUDY_BOUNDARY]), cell_number(e->mean[STUDY_BOUNDARY]),
-                  cell_number(e->most[STUDY_INSIDE]), cell_number(e->mean[STUDY_INSIDE]));
+        TABLE_ROW(table, cell_text(ways[k % WAYS].name),
+                  cell_text(table_text("%g", cube->setting.support)),
+                  cell_text(table_text("%d", cube->setting.side)),
+                  cell_time(&times[k], 1e6 / cube->count), cell_time(&times[k], 1),
+                  cell_number(errors[k].most[STUDY_BOUNDARY]),
+                  cell_number(errors[k].mean[STUDY_BOUNDARY]),
+                  cell_number(errors[k].most[STUDY_INSIDE]),
+                  cell_number(errors[k].mean[STUDY_INSIDE]));
     }
-    return table;
-}
-
-const struct table *frontier_order(const struct settings *settings)
-{
-    static const char *const parts[] = {"frontier/frontier_order.gp", NULL};
-    const int32_t middle = settings_side(settings->particles, 3);
-    struct study studies[SUPPORTS * SIZES];
-    struct order_point *points = allocate_to_the_end(POINTS, sizeof *points);
-    for (int k = 0; k < SUPPORTS * SIZES; ++k) {
-        const int32_t side = (middle << k / SUPPORTS) / 2;
-        const struct study_setting setting = {.dimension = 3,
-                                              .threads = settings->threads,
-                                              .side = side > 6 ? side : 6,
-                                              .support = supports[k % SUPPORTS],
-                                              .jitter = settings->jitter};
-        studies[k] = study_open(&setting);
-        study_fill(&studies[k], FIELD_TRIGONOMETRIC);
-    }
-    for (int k = 0; k < POINTS; ++k) {
-        points[k].way = &ways[k / SUPPORTS % WAYS];
-        points[k].lattice = k / SUPPORTS / WAYS * SUPPORTS + k % SUPPORTS;
-    }
-    measure(settings, studies, points);
-    const struct table *table = table_of_points(studies, points);
     printf("\norder 2 beside order 1: N^3 particles in [-1, 1]^3, v = (cos 2x, cos y - sin 3x, cos "
            "2z), KGC (classic: CMLS), f32;\nerror |J_i - J|_F of the two outermost layers, and "
            "inside\n");
     table_print(table);
     table_write_csv(table, settings->output, "frontier_order.csv");
-    const bool drawn =
-        plot_draw(settings->output, "frontier_order.gp",
-                  table_text("title = \"N = %d, %d, %d, jitter %g, %d thread%s, %s\"\n",
-                             studies[0].setting.side, studies[SUPPORTS].setting.side,
-                             studies[2 * SUPPORTS].setting.side, settings->jitter,
-                             settings->threads, settings->threads > 1 ? "s" : "", machine_cpu()),
-                  parts);
+    const char *given = table_text(
+        "title = \"order 2 beside order 1: jitter %g, %d thread%s, %s\"\n", settings->jitter,
+        settings->threads, settings->threads > 1 ? "s" : "", machine_cpu());
     printf("\nwritten to %s: frontier_order.csv, frontier_order.gp%s\n", settings->output,
-           drawn ? ", frontier_order.png" : "");
-    for (int k = 0; k < SUPPORTS * SIZES; ++k)
-        study_close(&studies[k]);
+           plot_draw(settings->output, "frontier_order.gp", given, parts) ? ", frontier_order.png"
+                                                                          : "");
+    for (int k = 0; k < CUBES; ++k)
+        study_close(&cubes[k]);
     return table;
 }

@@ -135,6 +135,7 @@ static void print_places(const struct stability *stability)
 
 static struct table *table_of_cases(const struct stability *stability)
 {
+    /* The last is the time. */
     static const char *const keys[] = {"sweep",
                                        "policy",
                                        "method",
@@ -163,7 +164,7 @@ static struct table *table_of_cases(const struct stability *stability)
                                        "correction_jump",
                                        "correction_jump_left",
                                        "other_bits",
-                                       "" /* the time */};
+                                       ""};
     enum { KEYS = sizeof keys / sizeof keys[0] };
     static struct column columns[KEYS + 1];
     for (int k = 0; k < KEYS; ++k)

@@ -109,15 +109,18 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
     cloud->target_count = balls;
 }
 
-/* Spacing, radii and volumes grow along x, so many times over the block. */
+/* Spacing, radii and volumes grow along x, so many times over the block, which becomes a fan. */
 static void grade(struct stability_cloud *cloud, int32_t side, double ratio)
 {
+    const double factor = pow(ratio, 1 / (side - 1.0));
     cloud->radius = allocate_or_exit((size_t)cloud->count, sizeof *cloud->radius);
     for (int32_t i = 0; i < cloud->count; ++i) {
-        const double wide = pow(ratio, (i % side) / (side - 1.0));
+        double *x = cloud->x[i];
+        const double column = i % side, wide = pow(factor, column);
         cloud->radius[i] = (double)(float)(cloud->support * wide);
-        for (int axis = 0; axis < 3; ++axis)
-            cloud->x[i][axis] = (cloud->x[i][axis] + 0.5) * wide;
+        x[0] = (ratio > 1 ? (wide - 1) / (factor - 1) : column) + (x[0] - column) * wide;
+        x[1] = (x[1] - side / 2.0) * wide;
+        x[2] = (x[2] - side / 2.0) * wide;
     }
 }
 

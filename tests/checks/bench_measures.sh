@@ -69,6 +69,13 @@ case $command in
             frontier/KGC/cubic/f32 linear_max 0 1e-5 \
             frontier/CMLS/cubic/f64 linear_max 0 1e-13 \
             frontier/SPH linear_mean 0.1 1 frontier/ ns_per_particle 0.1 1e9
+        # of cubes of 6, 8 and 16 particles an axis: order 2 inside, and lent at the surface, is nearer
+        measure --order --particles 512 --repetitions 1 --threads 1 --output "$work/order"
+        "$checker" "$work/report.json" 'order/order 1/2/16' boundary_max 0.2 0.8 \
+            'order/order 1/2/16' inside_max 0.08 0.4 'order/order 2/2/16' inside_max 0.02 0.14 \
+            'order/order 2/2.5/16' boundary_max 0.05 0.3 'order/order 2 lent/2/16' boundary_max 0.05 0.3
+        [ "$(grep -c '^[oc]' "$work/order/frontier_order.csv")" -eq 36 ]
+        ! grep -q 'frontier_order.png' "$work/output" || [ -s "$work/order/frontier_order.png" ]
         [ "$(grep -c '^[A-Z]' "$work/frontier/frontier.csv")" -eq 693 ]
         # each field has a frontier, with and without a search of the library's own
         for side in 'kept lists\|list-free' "host's lists"; do
@@ -125,6 +132,14 @@ case $command in
                      if (key == last && $10 > rank) exit failed = 1; last = key; rank = $10 }
                  END { exit failed || seen != 60 }' "$work/stability/stability.csv"
         ! grep -q 'pictures' "$work/output" || [ -s "$work/stability/stability_reading.png" ]
+        # sweeps that run alone: radii, and order 2
+        for sweep in grading curvature thinning; do
+            measure --quick --sweep $sweep --threads 1 --output "$work/one"
+            "$checker" "$work/report.json" "stability/$sweep/" not_finite 0 0 "stability/$sweep/" wrong_ranks 0 0 \
+                "stability/$sweep/" compared 2 1e6 "stability/$sweep/" ratio_full 0 10
+        done
+        "$checker" "$work/report.json" stability/thinning/blend/KGC/f64/1e+12 rank 2 2 \
+            stability/thinning/blend/KGC/f32/10000 rank 2 2 stability/thinning/ ratio_touched 0 4
         # a sweep alone, with other numbers
         measure --quick --sweep jitter --repetitions 2 --particles 64 --threads 1 --output "$work/one"
         [ "$(grep -c '^jitter,' "$work/one/stability.csv")" -eq 72 ]

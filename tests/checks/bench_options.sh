@@ -28,6 +28,9 @@ refuses --order random
 refuses --repetitions 0
 refuses --jitter -1
 refuses fields --input /nonexistent.csv
+refuses fields --input /nonexistent.csv --support 1
+refuses fields --mass 1
+refuses fields --support 21
 refuses --input /nonexistent.csv
 refuses --isa sse9
 refuses limit --support 1
