@@ -174,9 +174,8 @@ static void write_convergence(const char *folder, const struct lattice_results r
 
 /* ---- A file's particles ---------------------------------------------------------------------- */
 
-/* Of waves of ten support radii; those who resolve all slopes, or curvature, by order 2. */
-static void measure_input(const char *folder, const struct particle_source *source,
-                          struct study_setting setting)
+/* Relative errors of waves, for those who resolve curvature, slopes alone, or not all of these. */
+static struct table *table_of_waves(struct study *study, struct study_errors *last)
 {
     static const struct column columns[] = {{"", "method", NULL, NULL},
                                             {"curvature: mean", "curvature_mean", "%.3e", NULL},
@@ -186,33 +185,39 @@ static void measure_input(const char *folder, const struct particle_source *sour
                                             {"neither: mean", "neither_mean", "%.3e", NULL},
                                             {"max", "neither_max", "%.3e", NULL},
                                             {0}};
-    struct particles particles = particles_create(source);
-    setting.dimension = particles.dimension;
-    struct study study = study_of_particles(&setting, &particles.positions, &particles.volumes);
-    const double size = 2 * 3.14159265358979323846 / (10 * setting.support);
+    const double k = 2 * 3.14159265358979323846 / (10 * study->support_radius);
     struct table *table = table_create("", columns);
-    struct study_errors e = {.curl_max = 0};
-    study_fill(&study, FIELD_WAVES);
-    for (int k = 0; k < WAYS; ++k) {
-        struct cell cells[1 + 2 * STUDY_GROUPS] = {cell_text(ways[k].name)};
-        study_derive(&study, &ways[k]);
-        e = study_compare(&study, NULL, NULL);
-        for (int group = 0; group < STUDY_GROUPS; ++group) {
-            const int at = 1 + 2 * (STUDY_CURVATURE - group);
-            cells[at] = e.counts[group] ? cell_number(e.mean[group] / size) : cell_none();
-            cells[at + 1] = e.counts[group] ? cell_number(e.most[group] / size) : cell_none();
+    study_fill(study, FIELD_WAVES);
+    for (int way = 0; way < WAYS; ++way) {
+        struct cell cells[1 + 2 * STUDY_GROUPS] = {cell_text(ways[way].name)};
+        study_derive(study, &ways[way]);
+        *last = study_compare(study, NULL, NULL);
+        for (int n = 0; n < 2 * STUDY_GROUPS; ++n) {
+            const int group = STUDY_CURVATURE - n / 2;
+            const double error = n % 2 ? last->most[group] : last->mean[group];
+            cells[1 + n] = last->counts[group] ? cell_number(error / k) : cell_none();
         }
         table_add(table, cells, 1 + 2 * STUDY_GROUPS);
     }
+    return table;
+}
+
+static void measure_input(const char *folder, const struct particle_source *source,
+                          struct study_setting setting)
+{
+    struct particles particles = particles_create(source);
+    setting.dimension = particles.dimension;
+    struct study study = study_of_particles(&setting, &particles.positions, &particles.volumes);
+    struct study_errors e;
+    const struct table *table = table_of_waves(&study, &e);
+    const double percent = 100.0 / study.count;
     printf(
         "particles  %d of %s, %dD, H = %g, volume %s\n"
-        "resolved   slopes and curvature by %.2f %% (order 2 is exact on quadratic fields), slopes "
-        "alone by %.2f %%\n           (order 1 is exact on linear fields), neither by %.2f %%\n"
+        "resolved   slopes and curvature by %.2f %%, slopes alone by %.2f %%, neither by %.2f %%\n"
         "errors     |J_i - J|_F / k of v_a = sin(k x_a) cos(k x_b), 10 H a wave\n",
         (int)study.count, source->input, (int)setting.dimension, setting.support,
-        particles.volume_origin, 100.0 * e.counts[STUDY_CURVATURE] / study.count,
-        100.0 * e.counts[STUDY_SLOPES] / study.count,
-        100.0 * e.counts[STUDY_NEITHER] / study.count);
+        particles.volume_origin, percent * e.counts[STUDY_CURVATURE],
+        percent * e.counts[STUDY_SLOPES], percent * e.counts[STUDY_NEITHER]);
     table_print(table);
     table_write_csv(table, folder, "fields_input.csv");
     printf("\nwritten to %s: fields_input.csv\n", folder);

@@ -49,9 +49,10 @@ static void measure(const struct settings *settings, const struct study cubes[CU
     progress_clear();
 }
 
-const struct table *frontier_order(const struct settings *settings)
+static struct table *table_of_points(const struct study cubes[CUBES],
+                                     const struct study_errors errors[POINTS],
+                                     const struct samples times[POINTS])
 {
-    static const char *const parts[] = {"frontier/frontier_order.gp", NULL};
     static const struct column columns[] = {{"", "way", NULL, NULL},
                                             {"H", "support", NULL, NULL},
                                             {"N", "side", NULL, NULL},
@@ -62,13 +63,7 @@ const struct table *frontier_order(const struct settings *settings)
                                             {"inside max", "inside_max", "%.2e", NULL},
                                             {"mean", "inside_mean", "%.2e", NULL},
                                             {0}};
-    struct study cubes[CUBES];
-    struct study_errors errors[POINTS];
-    struct samples *times = allocate_to_the_end(POINTS, sizeof *times);
     struct table *table = table_create("order", columns);
-    for (int k = 0; k < CUBES; ++k)
-        cubes[k] = open_cube(settings, k);
-    measure(settings, cubes, errors, times);
     for (int k = 0; k < POINTS; ++k) {
         const struct study *cube = &cubes[k / WAYS];
         if (k > 0 && k % WAYS == 0)
@@ -82,6 +77,19 @@ const struct table *frontier_order(const struct settings *settings)
                   cell_number(errors[k].most[STUDY_INSIDE]),
                   cell_number(errors[k].mean[STUDY_INSIDE]));
     }
+    return table;
+}
+
+const struct table *frontier_order(const struct settings *settings)
+{
+    static const char *const parts[] = {"frontier/frontier_order.gp", NULL};
+    struct study cubes[CUBES];
+    struct study_errors errors[POINTS];
+    struct samples *times = allocate_to_the_end(POINTS, sizeof *times);
+    for (int k = 0; k < CUBES; ++k)
+        cubes[k] = open_cube(settings, k);
+    measure(settings, cubes, errors, times);
+    const struct table *table = table_of_points(cubes, errors, times);
     printf("\norder 2 beside order 1: N^3 particles in [-1, 1]^3, v = (cos 2x, cos y - sin 3x, cos "
            "2z), KGC (classic: CMLS), f32;\nerror |J_i - J|_F of the two outermost layers, and "
            "inside\n");
@@ -90,9 +98,9 @@ const struct table *frontier_order(const struct settings *settings)
     const char *given = table_text(
         "title = \"order 2 beside order 1: jitter %g, %d thread%s, %s\"\n", settings->jitter,
         settings->threads, settings->threads > 1 ? "s" : "", machine_cpu());
+    const bool drawn = plot_draw(settings->output, "frontier_order.gp", given, parts);
     printf("\nwritten to %s: frontier_order.csv, frontier_order.gp%s\n", settings->output,
-           plot_draw(settings->output, "frontier_order.gp", given, parts) ? ", frontier_order.png"
-                                                                          : "");
+           drawn ? ", frontier_order.png" : "");
     for (int k = 0; k < CUBES; ++k)
         study_close(&cubes[k]);
     return table;
