@@ -30,6 +30,8 @@ static void check_combination(const struct table1 *table, bool particles_given, 
         command_line_refuse("--jitter: only for the lattice, not with --input");
     if (with_input && support <= 0)
         command_line_refuse("--input: give the support radius in the file's unit with --support");
+    if (with_input && table->settings.output)
+        command_line_refuse("--output: the picture is of the lattice, not of --input");
     if (!with_input && table->source.mass > 0)
         command_line_refuse("--mass: only with --input");
     if (!with_input && support > 50)
@@ -68,6 +70,7 @@ static void read_options(struct table1 *table, int argc, char **argv)
         THREADS_OPTION(*settings),
         {"repetitions", 0, "N", "of each measurement, after one warm-up (9)", OPTION_WHOLE,
          &settings->repetitions, 1, 10000, NULL, NULL},
+        OUTPUT_OPTION(*settings, "Table 1 as CSV and as a picture", "nowhere"),
         JSON_OPTION(*settings),
         {0}};
     settings_read(settings, options,

@@ -17,7 +17,10 @@ measure() {
 
 case $command in
     table1)
-        measure --particles 4096 --repetitions 2
+        measure --particles 4096 --repetitions 2 --output "$work/table1"
+        [ "$(grep -c '^[A-Z]' "$work/table1/table1.csv")" -eq 6 ]
+        grep -q '^method,.*paper_matrix,paper_gradient$' "$work/table1/table1.csv"
+        ! grep -q 'table1.png' "$work/output" || [ -s "$work/table1/table1.png" ]
         "$checker" "$work/report.json" table1/KGC/gradient gradient_error 0 1e-5 table1/KGC/ kept_error 0 1e-5 \
             probe/ particles 4096 4096
         grep -q '^yardstick ' "$work/output"

@@ -27,6 +27,8 @@ refuses --precision f16
 refuses --order random
 refuses --repetitions 0
 refuses --jitter -1
+refuses --input /dev/null --support 1 --output .
+refuses --output /proc/nothing
 refuses fields --input /nonexistent.csv
 refuses fields --input /nonexistent.csv --support 1
 refuses fields --mass 1
