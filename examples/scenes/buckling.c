@@ -165,7 +165,7 @@ static struct outcome sink(const struct run *run, const struct sph *sph, const i
                 write_sheet(run, &sheet.fluid, "early");
         }
         if (kept && k % 25 == 0)
-            output_state(run, k / 25, &sheet.fluid);
+            output_state(run, k / 25, step * (k + 1), &sheet.fluid);
     }
     if (kept)
         write_sheet(run, &sheet.fluid, "late");
@@ -243,18 +243,21 @@ static void draw(const struct picture *picture)
     static const char *const labels[] = {"early", "late"};
     const double times[] = {early, late};
     FILE *script = picture->script;
-    picture_begin(picture, 1300, 520, 1, 4);
-    fprintf(script,
-            "set size ratio -1\nset cbrange [0:4]\nset xrange [-0.85:1.05]\n"
-            "set yrange [0:2.5]\nset xtics 0.5\nset xlabel 'x [m]'\nset ylabel 'y [m]'\n"
-            "set cblabel 'speed [m/s]'\nset cbtics 1\nset bmargin 9\n"
-            "set colorbox horizontal user origin graph 0, graph -0.36 size graph 1, 0.03\n");
+    picture_begin(picture, 1300, 480);
+    fprintf(script, "set size ratio -1\nset cbrange [0:4]\nset xrange [-0.85:1.05]\n"
+                    "set yrange [0:2.5]\nset xtics 0.5\nset xlabel 'x [m]'\nset ylabel 'y [m]'\n"
+                    "set cbtics 1\n");
+    picture_bar(picture, 0.94, "speed [m/s]");
     for (int t = 0; t < 2; ++t)
-        for (int k = 0; k < 2; ++k)
+        for (int k = 0; k < 2; ++k) {
+            const double left = 0.06 + 0.218 * (2 * t + k);
+            picture_panel(picture, left, left + 0.21);
             fprintf(script,
                     "set title '%s, %g s'\n"
-                    "plot 'buckling_%s_%s.dat' using 1:2:(0.025):3 with circles lc palette\n",
+                    "plot 'buckling_%s_%s.dat' using 1:2:(0.025):3 with circles lc palette\n"
+                    "unset ylabel\nset format y ''\n",
                     picture->titles[k], times[t], picture->methods[k], labels[t]);
+        }
 }
 
 int main(int argc, char **argv)
@@ -272,6 +275,6 @@ int main(int argc, char **argv)
                                         {"top_late", EACH_CORRECTED, AT_MOST, 1.2},
                                         {0}};
     static const struct scene scene = {
-        "buckling", "A sinking sheet of viscous fluid.", simulate, draw, gates, false};
+        "buckling", "A sinking sheet of viscous fluid.", simulate, draw, gates, false, false};
     return scene_main(&scene, argc, argv);
 }

@@ -105,11 +105,12 @@ static void measure_losses(const struct run *run, const struct state *before,
     metrics_set(run->metrics, "momentum_loss", 1 - after.momentum / before->momentum);
 }
 
-static void write_cube(const struct run *run, const struct particles *cube, int32_t frame)
+static void write_cube(const struct run *run, const struct particles *cube, int32_t frame,
+                       double time)
 {
     static const double eye[3] = {1, -1.6, 2.2};
     output_speeds(run, "cube", eye, cube);
-    output_state(run, frame, cube);
+    output_state(run, frame, time, cube);
 }
 
 /* Turns the cube and measures what is left. */
@@ -132,7 +133,7 @@ static void spin(const struct run *run, const struct sph *sph, double turns)
         viscosity_solve(&viscosity, &cube, step);
         turn(&cube);
         if (k % 25 == 0 || k == steps - 1)
-            write_cube(run, &cube, k / 25);
+            write_cube(run, &cube, (k + 24) / 25, step * (k + 1));
     }
     if (!run->options->brief) {
         measure_losses(run, &before, &cube);
@@ -200,10 +201,11 @@ static void simulate(const struct run *run)
 
 static void draw(const struct picture *picture)
 {
-    picture_begin(picture, 1000, 520, 1, 2);
-    fprintf(picture->script, "set cbrange [0:2.2]\nset cblabel 'speed [m/s]'\n");
+    picture_begin(picture, 900, 460);
+    picture_bar(picture, 0.9, "speed [m/s]");
+    fprintf(picture->script, "set cbrange [0:2.2]\n");
     picture_views(picture, "cube", 0.5 * spacing,
-                  picture->full ? "the cube after ten turns" : "the cube after two turns");
+                  picture->full ? "the cube after ten turns" : "the cube after two turns", 0.44);
 }
 
 int main(int argc, char **argv)
@@ -221,6 +223,6 @@ int main(int argc, char **argv)
                                         {"noise_left", EACH_CORRECTED, AT_MOST, 0.05},
                                         {0}};
     static const struct scene scene = {
-        "cube", "A rotating cube under viscosity alone.", simulate, draw, gates, true};
+        "cube", "A rotating cube under viscosity alone.", simulate, draw, gates, true, false};
     return scene_main(&scene, argc, argv);
 }

@@ -162,7 +162,7 @@ static struct roundness form(const struct run *run, const struct sph *sph, doubl
         if (series && k % 10 == 0)
             fprintf(series, "%g %g\n", step * k, measure(&drop.fluid).variation);
         if (series && k % 50 == 0)
-            output_state(run, k / 50, &drop.fluid);
+            output_state(run, k / 50, step * (k + 1), &drop.fluid);
     }
     const struct roundness found = measure(&drop.fluid);
     if (kept == KEEPS_FILES) {
@@ -222,10 +222,10 @@ static void simulate(const struct run *run)
 
 static void draw(const struct picture *picture)
 {
-    picture_begin(picture, 1300, 440, 1, 3);
-    fprintf(picture->script, "set cbrange [0.7:1.3]\n"
-                             "set cblabel 'distance from the centre / radius of a ball'\n");
-    picture_views(picture, "drop", 0.5 * spacing, "what was a cube");
+    picture_begin(picture, 1300, 420);
+    picture_bar(picture, 0.59, "distance from the centre [radii]");
+    fprintf(picture->script, "set cbrange [0.8:1.15]\n");
+    picture_views(picture, "drop", 0.5 * spacing, "what was a cube", 0.295);
     fprintf(picture->script, "set key top right\nset title 'how round'\n"
                              "set ylabel 'variation of the extent'\nset yrange [0:0.11]\n");
     picture_series(picture, "roundness");
@@ -243,6 +243,6 @@ int main(int argc, char **argv)
                                         {"printed_drift", EACH_CORRECTED, AT_LEAST, 5e-3},
                                         {0}};
     static const struct scene scene = {
-        "droplet", "A cube of water in zero gravity.", simulate, draw, gates, false};
+        "droplet", "A cube of water in zero gravity.", simulate, draw, gates, false, false};
     return scene_main(&scene, argc, argv);
 }

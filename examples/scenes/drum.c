@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "drum.h"
+#include "bunny.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,25 +72,6 @@ bool drum_holds(const double *x)
 
 /* ---- Load ---- */
 
-/* The bunny is a union of balls, none of them thinner than what particles can show. */
-static bool in_bunny(const double *x, double spacing)
-{
-    static const double balls[][4] = {
-        {0, 0.05, 0, 0.11},        {0.1, 0.13, 0, 0.07},       {0.09, 0.2, 0.03, 0.025},
-        {0.08, 0.24, 0.04, 0.025}, {0.09, 0.2, -0.03, 0.025},  {0.08, 0.24, -0.04, 0.025},
-        {-0.12, 0.05, 0, 0.035},   {0.04, -0.03, 0.06, 0.035}, {0.04, -0.03, -0.06, 0.035},
-    };
-    for (size_t k = 0; k < sizeof balls / sizeof balls[0]; ++k) {
-        vector off = {0};
-        add_scaled(off, 1, x);
-        add_scaled(off, -1, balls[k]);
-        const double radius = fmax(balls[k][3], 1.1 * spacing);
-        if (dot(off, off) < radius * radius)
-            return true;
-    }
-    return false;
-}
-
 enum phase { NOTHING, BODY, SOAP, WATER };
 
 static enum phase phase_at(const double *x, double spacing)
@@ -97,7 +79,7 @@ static enum phase phase_at(const double *x, double spacing)
     const double margin = 0.9 * spacing; /* nearer to the wall a lattice would be compressed */
     if (hypot(x[0], x[1]) > drum_radius - margin || fabs(x[2]) > 0.5 * drum_depth - margin)
         return NOTHING;
-    if (in_bunny(x, spacing))
+    if (bunny_holds(x, spacing))
         return BODY;
     if (x[1] > surface)
         return NOTHING;

@@ -187,7 +187,7 @@ static void simulate(const struct run *run)
         if (step * k > settled)
             watch_heights(&frame, &grid, &heights);
         if (k % 100 == 0)
-            output_state(run, k / 100, &grid);
+            output_state(run, k / 100, step * (k + 1), &grid);
     }
     metrics_set(run->metrics, "wall_particles", wall.count);
     if (!run->options->brief)
@@ -202,16 +202,19 @@ static void simulate(const struct run *run)
 static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
-    picture_begin(picture, 1100, 560, 1, 2);
+    picture_begin(picture, 1100, 520);
     fprintf(script,
             "set size ratio -1\nset cbrange [0:0.5]\nset xrange [-0.5:3]\nset yrange [-1.75:1.75]\n"
-            "set cblabel 'distance from the place in the grid [m]'\n"
             "set xlabel 'downhill [m]'\nset ylabel 'across [m]'\n");
-    for (int k = 0; k < 2; ++k)
+    picture_bar(picture, 0.9, "distance from the place in the grid [m]");
+    for (int k = 0; k < 2; ++k) {
+        picture_panel(picture, 0.07 + 0.42 * k, 0.46 + 0.42 * k);
         fprintf(script,
                 "set title '%s: the grid at the end of its slide, from above'\n"
-                "plot 'grid_%s_places.dat' using 1:2:3 with points pt 7 ps 0.8 lc palette\n",
+                "plot 'grid_%s_places.dat' using 1:2:3 with points pt 7 ps 1 lc palette\n"
+                "unset ylabel\nset format y ''\n",
                 picture->titles[k], picture->methods[k]);
+    }
 }
 
 int main(int argc, char **argv)
@@ -225,6 +228,7 @@ int main(int argc, char **argv)
                                         {"height_range_in_r", EACH_CORRECTED, AT_MOST, 1.5},
                                         {0}};
     static const struct scene scene = {
-        "grid", "A grid of particles slides down an inclined plane.", simulate, draw, gates, true};
+        "grid", "A grid of particles slides down an inclined plane.", simulate, draw, gates, true,
+        false};
     return scene_main(&scene, argc, argv);
 }

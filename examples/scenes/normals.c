@@ -198,31 +198,41 @@ static void measure_beside_fluid(const struct run *run, const struct sph *sph,
     wall_free(&wall);
 }
 
-/* Wall particles, and above a raster of places what the normal has along the wall. */
+/* The row of the raster that is drawn, from the side: what the normal has along x, and its angle.
+ */
+static void write_row(const struct run *run, const struct wall *wall,
+                      const struct particles *points, const struct contact *contact)
+{
+    FILE *sampled = output_open(run, "wall"), *found = output_open(run, "normals");
+    const int32_t begin = PICTURE_SIDE / 2 * PICTURE_SIDE;
+    for (int32_t k = 0; sampled && k < wall->count; ++k)
+        if (fabs(wall->x[k][1] - points->x[begin][1]) < 0.5 * support_radius)
+            fprintf(sampled, "%g\n", wall->x[k][0]);
+    for (int32_t i = begin; found && i < begin + PICTURE_SIDE; ++i) {
+        const double *slope = contact->slope[i];
+        const vector up = {0, 0, 1}, normal = {-slope[0], -slope[1], -slope[2]};
+        fprintf(found, "%g %g %g\n", points->x[i][0], normal[0] / normal[2],
+                angle_between(normal, up));
+    }
+    output_close(sampled);
+    output_close(found);
+}
+
+/* Normals above a raster of places on a plane. */
 static void write_tables(const struct run *run, const struct sph *sph, struct random *random)
 {
     struct wall wall = plane(sph, random, 0.45);
     struct particles points = queries(PICTURE_SIDE * PICTURE_SIDE);
     struct contact contact = contact_new(sph, &wall, points.count);
-    FILE *sampled = output_open(run, "wall"), *found = output_open(run, "normals");
     for (int32_t i = 0; i < points.count; ++i) {
         points.x[i][0] = 0.6 * ((i % PICTURE_SIDE + 0.5) / PICTURE_SIDE - 0.5);
         points.x[i][1] = 0.6 * ((i / PICTURE_SIDE + 0.5) / PICTURE_SIDE - 0.5);
         points.x[i][2] = 0.5 * support_radius;
     }
     contact_update(sph, &contact, &points);
-    for (int32_t k = 0; sampled && k < wall.count; ++k)
-        fprintf(sampled, "%g %g\n", wall.x[k][0], wall.x[k][1]);
-    for (int32_t i = 0; found && i < points.count; ++i) {
-        const double *slope = contact.slope[i];
-        const vector up = {0, 0, 1}, normal = {-slope[0], -slope[1], -slope[2]};
-        fprintf(found, "%g %g %g %g %g\n", points.x[i][0], points.x[i][1], normal[0] / normal[2],
-                normal[1] / normal[2], angle_between(normal, up));
-    }
-    output_close(sampled);
-    output_close(found);
+    write_row(run, &wall, &points, &contact);
     const struct output_field fields[] = {{"slope", contact.slope[0], 3}, {NULL, NULL, 0}};
-    output_particles(run, 0, points.count, points.x, fields);
+    output_particles(run, 0, 0, points.count, points.x, fields);
     contact_free(&contact);
     particles_free(&points);
     wall_free(&wall);
@@ -240,22 +250,31 @@ static void simulate(const struct run *run)
     sph_close(&sph);
 }
 
+/* Arrows of one length, whose tilt is drawn three times as large. */
 static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
-    picture_begin(picture, 1100, 560, 1, 2);
-    fprintf(script, "set size ratio -1\n"
-                    "set xrange [-0.3:0.3]\nset yrange [-0.3:0.3]\nset cbrange [0:15]\n"
-                    "set cblabel 'angle to the true normal [degrees]'\n"
-                    "set xlabel 'x [m]'\nset ylabel 'y [m]'\n");
-    for (int k = 0; k < 2; ++k)
-        fprintf(script,
-                "set title '%s: tilt of the normal above an irregular wall, enlarged'\n"
-                "plot 'normals_%s_wall.dat' using 1:2:(0.012) with circles lc rgb '#dddddd', "
-                "'normals_%s_normals.dat' using 1:2:($3*0.15):($4*0.15):5 "
-                "with vectors filled head lw 1.5 lc palette, "
-                "'' using 1:2:5 with points pt 7 ps 0.6 lc palette\n",
-                picture->titles[k], picture->methods[k], picture->methods[k]);
+    picture_begin(picture, 1100, 460);
+    fprintf(script, "set xrange [-0.31:0.31]\nset yrange [-0.005:0.11]\nset cbrange [0:15]\n"
+                    "set palette defined (0 '#0072b2', 6 '#cc79a7', 15 '#d55e00')\n"
+                    "set border 0\nunset ytics\nset xtics 0.1 nomirror out\n"
+                    "angle(tilt) = atan(3 * tilt)\n");
+    picture_bar(picture, 0.92, "angle to the true normal [degrees]");
+    for (int k = 0; k < 2; ++k) {
+        picture_panel(picture, 0.02, 0.9);
+        fprintf(
+            script,
+            "set bmargin at screen %g\nset tmargin at screen %g\n%s"
+            "set title \"{/:Bold %s}: off by up to %.*g degrees above a flat wall of irregular "
+            "particles; tilt drawn three times\"\n"
+            "plot 'normals_%s_wall.dat' using 1:(0) with points pt 7 ps 1.1 lc rgb '#999999', "
+            "'normals_%s_normals.dat' using 1:(0.04):(0.05*sin(angle($2))):(0.05*cos(angle($2))):3 "
+            "with vectors filled head size screen 0.012,20 lw 3 lc palette\n",
+            0.6 - 0.45 * k, 0.9 - 0.45 * k,
+            k ? "set xtics 0.1 format '%g'\nset xlabel 'x [m]'\n" : "set xtics 0.1 format ''\n",
+            picture->titles[k], 2, metrics_get(picture->metrics[k], "plane_max_degrees"),
+            picture->methods[k], picture->methods[k]);
+    }
 }
 
 int main(int argc, char **argv)
@@ -269,6 +288,6 @@ int main(int argc, char **argv)
                                         {"sphere_mean_degrees", EACH_CORRECTED, SHARE_OF_SPH, 0.5},
                                         {0}};
     static const struct scene scene = {
-        "normals", "Boundary normals above irregular walls.", simulate, draw, gates, true};
+        "normals", "Boundary normals above irregular walls.", simulate, draw, gates, true, false};
     return scene_main(&scene, argc, argv);
 }

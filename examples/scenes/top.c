@@ -106,11 +106,12 @@ static void rigid_rotation(const struct run *run, const struct sph *sph)
     free(force);
 }
 
-static void write_top(const struct run *run, const struct particles *top, int32_t frame)
+static void write_top(const struct run *run, const struct particles *top, int32_t frame,
+                      double time)
 {
     static const double eye[3] = {1, -2, 1.2};
     output_speeds(run, "top", eye, top);
-    output_state(run, frame, top);
+    output_state(run, frame, time, top);
 }
 
 static void step_explicitly(struct elasticity *elasticity, struct particles *top, vector *force,
@@ -145,7 +146,7 @@ static double spin(const struct run *run, const struct sph *sph, bool implicit)
         if (series)
             fprintf(series, "%g %.9g\n", dt * (k + 1), now[2] / before[2]);
         if (implicit && (k % 100 == 0 || k == steps - 1))
-            write_top(run, &top, k / 100);
+            write_top(run, &top, (k + 99) / 100, dt * (k + 1));
     }
     if (implicit)
         metrics_set(run->metrics, "iterations", (double)elasticity.implicit.iterations / steps);
@@ -266,9 +267,11 @@ static void simulate(const struct run *run)
 
 static void draw(const struct picture *picture)
 {
-    picture_begin(picture, 1300, 460, 1, 3);
-    fprintf(picture->script, "set cbrange [0:2.8]\nset cblabel 'speed [m/s]'\n");
-    picture_views(picture, "top", 0.5 * spacing_of(picture->full), "after the time of five turns");
+    picture_begin(picture, 1300, 420);
+    picture_bar(picture, 0.59, "speed [m/s]");
+    fprintf(picture->script, "set cbrange [0:2.8]\n");
+    picture_views(picture, "top", 0.5 * spacing_of(picture->full), "after the time of five turns",
+                  0.295);
     fprintf(picture->script, "set key bottom left\nset title 'implicit steps'\n"
                              "set ylabel 'angular momentum / initial'\nset yrange [0:1.05]\n");
     picture_series(picture, "momentum");
@@ -291,7 +294,7 @@ int main(int argc, char **argv)
                                         {"ground_height", EACH_CORRECTED, AT_LEAST, 0.4},
                                         {"ground_height", EACH_CORRECTED, AT_MOST, 1.1},
                                         {0}};
-    static const struct scene scene = {"top", "A spinning elastic top.", simulate, draw, gates,
-                                       false};
+    static const struct scene scene = {
+        "top", "A spinning elastic top.", simulate, draw, gates, false, false};
     return scene_main(&scene, argc, argv);
 }

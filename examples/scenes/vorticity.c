@@ -16,6 +16,7 @@ static const double rotation[3] = {0.6, -1.2, 3}; /* Omega [1/s] */
 static const double transfer = 0.1;               /* nu_t [m^2/s] */
 static const double inertia = 0.01; /* Theta [m^2]: spin follows within Theta / (2 nu_t) = 50 ms */
 static const double step = 2e-3;
+static const int32_t held_steps = 1000; /* of the held rotation: 2 s */
 
 static double length(const double *a)
 {
@@ -111,7 +112,7 @@ static void write_layer(const struct run *run, const struct particles *block, ve
                     length(spin[i]) / length(rotation));
     output_close(table);
     const struct output_field fields[] = {{"spin", spin[0], 3}, {"velocity", block->v[0], 3}, {0}};
-    output_particles(run, 0, block->count, block->x, fields);
+    output_particles(run, 0, step * held_steps, block->count, block->x, fields);
 }
 
 /* Spin in a fluid that is held in rigid rotation for 2 s. */
@@ -123,7 +124,7 @@ static void held_rotation(const struct run *run, const struct sph *sph, struct p
     rotate(block);
     operators_update(&operators, block);
     find_curl(sph, &operators, block->v, curl);
-    for (int32_t k = 0; k < 1000; ++k)
+    for (int32_t k = 0; k < held_steps; ++k)
         advance_spin(block->count, curl, spin);
     metrics_set(run->metrics, "curl_error", curl_error(curl, block->count));
     if (run->method != SPH)
@@ -210,16 +211,19 @@ static void simulate(const struct run *run)
 static void draw(const struct picture *picture)
 {
     FILE *script = picture->script;
-    picture_begin(picture, 1000, 520, 1, 2);
+    picture_begin(picture, 1000, 460);
     fprintf(script, "set size ratio -1\nset cbrange [0.4:1.15]\n"
                     "set xrange [-0.33:0.33]\nset yrange [-0.33:0.33]\n"
-                    "set cblabel 'spin / angular velocity'\n"
-                    "set xlabel 'x [m]'\nset ylabel 'y [m]'\n");
-    for (int k = 0; k < 2; ++k)
+                    "set xtics 0.2\nset ytics 0.2\nset xlabel 'x [m]'\nset ylabel 'y [m]'\n");
+    picture_bar(picture, 0.9, "spin / angular velocity");
+    for (int k = 0; k < 2; ++k) {
+        picture_panel(picture, 0.085 + 0.41 * k, 0.47 + 0.41 * k);
         fprintf(script,
                 "set title '%s: spin in a rigid rotation, middle layer'\n"
-                "plot 'vorticity_%s_spin.dat' using 1:2:(0.025):3 with circles lc palette\n",
+                "plot 'vorticity_%s_spin.dat' using 1:2:(0.025):3 with circles lc palette\n"
+                "unset ylabel\nset format y ''\n",
                 picture->titles[k], picture->methods[k]);
+    }
 }
 
 int main(int argc, char **argv)
@@ -233,6 +237,6 @@ int main(int argc, char **argv)
                                         {"angular_momentum_lost", EACH_CORRECTED, AT_MOST, 1e-10},
                                         {0}};
     static const struct scene scene = {
-        "vorticity", "Vorticity and spin near a free surface.", simulate, draw, gates, true};
+        "vorticity", "Vorticity and spin near a free surface.", simulate, draw, gates, true, false};
     return scene_main(&scene, argc, argv);
 }

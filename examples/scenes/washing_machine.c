@@ -3,6 +3,7 @@
  * with its Table 2: where the time of a step goes, and how little of it the correction matrices
  * take. */
 #include "drum.h"
+#include "drum_view.h"
 #include "solver/elasticity.h"
 #include "solver/laplacian.h"
 #include "solver/output.h"
@@ -48,18 +49,20 @@ struct machine {
     struct viscosity soap;
     struct laplacian water;
     double worst_compression, least_volume, fastest;
-    int32_t steps;
+    int32_t steps, frames; /* made, and written */
+    enum bunny_part *parts;
 };
 
-static double spacing_of(bool full)
+/* Films are for the eye, which sees no bunny in the few particles of the quick size. */
+static double spacing_of(const struct options *options)
 {
-    return full ? 0.0105 : 0.028;
+    return options->full ? 0.0105 : options->frames ? 0.019 : 0.028;
 }
 
 /* Full: the drum turns twice. */
-static double duration_of(bool full)
+static double duration_of(const struct options *options)
 {
-    return full ? 3.7 : 1.2;
+    return options->full ? 3.7 : options->frames ? 1.8 : 1.2;
 }
 
 static void sort(struct machine *machine, bool with_body)
@@ -73,7 +76,7 @@ static void machine_init(struct machine *machine, const struct run *run, const s
 {
     memset(machine, 0, sizeof *machine);
     machine->sph = sph;
-    machine->spacing = spacing_of(run->options->full);
+    machine->spacing = spacing_of(run->options);
     machine->load = load_new(machine->spacing, run->options->seed);
     machine->wall = drum_wall(sph, machine->spacing);
     const int32_t capacity = machine->load.capacity;
@@ -84,6 +87,8 @@ static void machine_init(struct machine *machine, const struct run *run, const s
     machine->pressure = pressure_new(sph, &machine->contact, capacity);
     machine->pressure.kept = 0.8;
     sort(machine, true);
+    machine->parts = array_new(machine->load.body, sizeof *machine->parts);
+    bunny_paint(machine->load.body, machine->load.all.x, machine->parts);
     machine->elasticity = elasticity_new(sph, &body, young, poisson);
     machine->elasticity.implicit.tolerance = 1e-3;
     machine->soap_operators = operators_new(sph, NULL, capacity);
@@ -106,6 +111,7 @@ static void machine_free(struct machine *machine)
     contact_free(&machine->contact);
     wall_free(&machine->wall);
     load_free(&machine->load);
+    free(machine->parts);
 }
 
 static double drum_speed(double time)
@@ -169,40 +175,40 @@ static void advance(struct machine *machine)
     }
 }
 
-/* Seen from the front, fluids in front of the drum's middle cut away, or they would hide the bunny.
- * The picture's upward axis is z. */
-static void draw_machine(const struct run *run, const struct load *load, const double *phase)
-{
-    static const double eye[3] = {0.25, -1, 0.15};
-    double *colour = array_new(load->all.count, sizeof *colour);
-    vector *upright = array_new(load->all.count, sizeof *upright);
-    int32_t shown = 0;
-    for (int32_t i = 0; i < load->all.count; ++i) {
-        const double *x = load->all.x[i];
-        if (i >= load->body && x[2] > 0)
-            continue;
-        colour[shown] = phase[i];
-        upright[shown][0] = x[0];
-        upright[shown][1] = -x[2];
-        upright[shown++][2] = x[1];
-    }
-    output_view(run, "drum", eye, shown, upright, colour);
-    free(colour);
-    free(upright);
-}
-
-static void write_machine(const struct run *run, const struct machine *machine, int32_t frame)
+/* Fluids, body and drum as the phases 0 (body), 1 (soap), 2 (water) and 3 (drum). */
+static void write_particles(const struct run *run, const struct machine *machine, int32_t frame)
 {
     const struct load *load = &machine->load;
-    const int32_t count = load->all.count;
+    const struct wall *wall = &machine->wall;
+    const int32_t inside = load->all.count, count = inside + wall->count;
     double *phase = array_new(count, sizeof *phase);
+    vector *x = array_new(count, sizeof *x), *v = array_new(count, sizeof *v);
     for (int32_t i = 0; i < count; ++i)
-        phase[i] = (i >= load->body) + (i >= load->soap);
-    const struct output_field fields[] = {
-        {"phase", phase, 1}, {"velocity", load->all.v[0], 3}, {0}};
-    draw_machine(run, load, phase);
-    output_particles(run, frame, count, load->all.x, fields);
+        phase[i] = (i >= load->body) + (i >= load->soap) + (i >= inside);
+    memcpy(x, load->all.x, (size_t)inside * sizeof *x);
+    memcpy(v, load->all.v, (size_t)inside * sizeof *v);
+    memcpy(x + inside, wall->x, (size_t)wall->count * sizeof *x);
+    memcpy(v + inside, wall->v, (size_t)wall->count * sizeof *v);
+    const struct output_field fields[] = {{"phase", phase, 1}, {"velocity", v[0], 3}, {0}};
+    output_particles(run, frame, machine->time, count, x, fields);
     free(phase);
+    free(x);
+    free(v);
+}
+
+static void write_view(const struct machine *machine, FILE *table)
+{
+    const struct drum_view view = {&machine->load, &machine->wall, machine->parts, machine->spacing,
+                                   machine->angle};
+    drum_view_write(&view, table);
+    output_close(table);
+}
+
+/* Frames of the film that are due. */
+static void write_frames(const struct run *run, struct machine *machine, double share)
+{
+    for (; machine->frames < run_frames(run, fmin(1, share)); ++machine->frames)
+        write_view(machine, output_open_frame(run, "drum", machine->frames));
 }
 
 static void note_share(struct shares *shares, const double *spent, double all_seconds)
@@ -323,10 +329,10 @@ static void measure_start(const struct run *run, struct machine *machine)
 
 static void simulate(const struct run *run)
 {
-    const double duration = run->options->brief ? 0 : duration_of(run->options->full);
+    const double duration = run->options->brief ? 0 : duration_of(run->options);
     const double apart = 0.05;
     struct sph sph =
-        run_open(run, 3, 2 * spacing_of(run->options->full), run->options->full ? 70000 : 3000);
+        run_open(run, 3, 2 * spacing_of(run->options), run->options->full ? 70000 : 3000);
     struct machine machine;
     static struct shares shares;
     int32_t frame = 0;
@@ -344,10 +350,13 @@ static void simulate(const struct run *run)
             note_share(&shares, sph.spent, seconds);
         run_progress(run, machine.time, duration);
         if (run->options->output && machine.time >= apart * frame) {
-            write_machine(run, &machine, frame++);
+            write_particles(run, &machine, frame++);
             write_state(series, &machine);
         }
+        write_frames(run, &machine, machine.time / duration);
     }
+    if (run->options->output)
+        write_view(&machine, output_open(run, "drum"));
     output_close(series);
     if (!run->options->brief) {
         set_outcome(run, &machine);
@@ -360,26 +369,7 @@ static void simulate(const struct run *run)
 
 static void draw(const struct picture *picture)
 {
-    FILE *script = picture->script;
-    picture_begin(picture, 1100, 600, 1, 2);
-    fprintf(script,
-            "set size ratio -1\nset cbrange [0:2]\nunset xtics\nunset ytics\n"
-            "unset border\nunset colorbox\nset xrange [-0.45:0.45]\n"
-            "set yrange [-0.45:0.45]\nset object 1 circle at 0,0 size 0.4 "
-            "fillstyle empty border lc rgb '#888888'\n"
-            "set palette defined (0 '#d55e00', 1 '#f0e442', 2 '#56b4e9')\n"
-            "set key below horizontal maxrows 1 samplen 1 width -3\n"
-            "radius = %g\n",
-            0.5 * spacing_of(picture->full));
-    for (int k = 0; k < 2; ++k)
-        fprintf(script,
-                "set title '%s: after %g s, fluids in front cut away'\n"
-                "plot 'washing_machine_%s_drum.dat' using 1:2:(radius):3 with circles lc palette "
-                "fillstyle solid border lc rgb '#333333' notitle, "
-                "NaN with points pt 7 ps 1.5 lc rgb '#d55e00' title 'elastic bunny', "
-                "NaN with points pt 7 ps 1.5 lc rgb '#f0e442' title 'soap', "
-                "NaN with points pt 7 ps 1.5 lc rgb '#56b4e9' title 'water'\n",
-                picture->titles[k], duration_of(picture->full), picture->methods[k]);
+    drum_view_draw(picture, picture->share * duration_of(picture->options));
 }
 
 int main(int argc, char **argv)
@@ -400,6 +390,7 @@ int main(int argc, char **argv)
                                        simulate,
                                        draw,
                                        gates,
-                                       false};
+                                       false,
+                                       true};
     return scene_main(&scene, argc, argv);
 }

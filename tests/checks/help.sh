@@ -40,6 +40,7 @@ helps '^  bench/run COMMAND' "$tree/bench/run"
 helps '^  bench/run COMMAND' "$tree/bench/run" limit
 helps '^  bench/run COMMAND' "$tree/bench/run" stability --quick
 helps '^  examples/run SCENE' "$tree/examples/run"
+helps '^  examples/run film SCENE' "$tree/examples/run" film dam_break
 helps '^  examples/run SCENE' "$tree/examples/run" all
 helps '^  examples/run SCENE' "$tree/examples/run" cube --seed 2
 helps '^  --quick ' "$tree/tests/run"

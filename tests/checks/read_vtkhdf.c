@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* read_vtkhdf FILE FIELD: whether FILE is what the reader of VTK 9.1 asks for: VTKHDF 1.0, an
- * UnstructuredGrid of vertices, with a vector FIELD beside the points. Says the first thing that is
- * wrong. */
+/* read_vtkhdf FILE FIELD TIME: whether FILE is what the reader of VTK 9.1 asks for: VTKHDF 1.0, an
+ * UnstructuredGrid of vertices, with a vector FIELD beside the points; and what later ones ask for
+ * beyond: a group Steps of one step, at TIME. Says the first thing that is wrong. */
 #include <hdf5.h>
 #include <math.h>
 #include <stdbool.h>
@@ -41,14 +41,15 @@ static void check_type(hid_t group)
     H5Aclose(attribute);
 }
 
-/* The numbers of a dataset that must have `count` rows of `columns`. */
-static double *read(hid_t group, const char *name, hsize_t count, hsize_t columns)
+/* The numbers of a dataset that must have `count` rows of `columns`, as a table or a row. */
+static double *read_of(hid_t group, const char *name, int dimensions, hsize_t count,
+                       hsize_t columns)
 {
     hsize_t sizes[2] = {0, 1};
     const hid_t set = H5Dopen2(group, name, H5P_DEFAULT);
     demand(set >= 0, name);
     const hid_t space = H5Dget_space(set);
-    demand(H5Sget_simple_extent_ndims(space) == (columns > 1 ? 2 : 1), name);
+    demand(H5Sget_simple_extent_ndims(space) == dimensions, name);
     H5Sget_simple_extent_dims(space, sizes, NULL);
     demand(sizes[0] == count && sizes[1] == columns, name);
     double *values = calloc(count * columns, sizeof *values);
@@ -57,6 +58,11 @@ static double *read(hid_t group, const char *name, hsize_t count, hsize_t column
     H5Sclose(space);
     H5Dclose(set);
     return values;
+}
+
+static double *read(hid_t group, const char *name, hsize_t count, hsize_t columns)
+{
+    return read_of(group, name, columns > 1 ? 2 : 1, count, columns);
 }
 
 static hsize_t read_count(hid_t group, const char *name)
@@ -91,9 +97,37 @@ static void check_numbers(hid_t group, const char *name, hsize_t count)
     free(values);
 }
 
+/* One step, at this time, of one part in which everything begins at the beginning. */
+static void check_steps(hid_t group, const char *field, double time)
+{
+    static const struct {
+        const char *name;
+        int dimensions;
+        double value;
+    } sets[] = {{"NumberOfParts", 1, 1}, {"PartOffsets", 1, 0},           {"PointOffsets", 1, 0},
+                {"CellOffsets", 2, 0},   {"ConnectivityIdOffsets", 2, 0}, {"Values", 1, NAN}};
+    int64_t steps = 0;
+    const hid_t attribute = H5Aopen(group, "NSteps", H5P_DEFAULT);
+    demand(attribute >= 0 && H5Aread(attribute, H5T_NATIVE_INT64, &steps) >= 0 && steps == 1,
+           "NSteps is not 1");
+    H5Aclose(attribute);
+    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; ++k) {
+        double *value = read_of(group, sets[k].name, sets[k].dimensions, 1, 1);
+        const double wanted = isnan(sets[k].value) ? time : sets[k].value;
+        demand(fabs(*value - wanted) <= 1e-9 * fabs(wanted), sets[k].name);
+        free(value);
+    }
+    const hid_t data = H5Gopen2(group, "PointDataOffsets", H5P_DEFAULT);
+    demand(data >= 0, "no group PointDataOffsets");
+    double *offset = read_of(data, field, 1, 1, 1);
+    demand(*offset == 0, "the field does not begin at the beginning");
+    free(offset);
+    H5Gclose(data);
+}
+
 int main(int argc, char **argv)
 {
-    demand(argc == 3, "usage: read_vtkhdf FILE FIELD");
+    demand(argc == 4, "usage: read_vtkhdf FILE FIELD TIME");
     const hid_t file = H5Fopen(argv[1], H5F_ACC_RDONLY, H5P_DEFAULT);
     demand(file >= 0, "no HDF5 file");
     const hid_t group = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
@@ -110,6 +144,10 @@ int main(int argc, char **argv)
     demand(data >= 0, "no group PointData");
     check_numbers(data, argv[2], count);
     H5Gclose(data);
+    const hid_t steps = H5Gopen2(group, "Steps", H5P_DEFAULT);
+    demand(steps >= 0, "no group Steps");
+    check_steps(steps, argv[2], atof(argv[3]));
+    H5Gclose(steps);
     H5Gclose(group);
     H5Fclose(file);
     return EXIT_SUCCESS;

@@ -72,6 +72,15 @@ ROWS = {
         "top of the sheet": "top_late",
         "power of a shear flow": "shear_error",
     },
+    "dam_break": {
+        "gradients off by 10 %": "gradient_bad_share",
+        "mean error of a gradient": "gradient_mean_error",
+        "worst of those that can": "gradient_worst_error",
+        "at the start: error of the wall's slope": "slope_error",
+        "at the start: error of the power": "shear_error",
+        "front at 1.2 m": "arrival",
+        "particles outside": "outside",
+    },
     "washing_machine": {
         "particles that escaped": "escaped",
         "largest mean compression": "mean_compression",

@@ -25,6 +25,9 @@ refuses --threads -1
 refuses --output /dev/null
 refuses --check --alone
 refuses --brief --output "$directory"
+refuses --frames 2
+refuses --frames 2 --output "$directory"
+refuses --frames 1 --output "$directory"
 
 rm -rf "$directory"
 lines=$("$program" --method mls --seed 7 --output "$directory") || complain "the scene failed"
@@ -37,7 +40,9 @@ in_turn=$("$program" --method mls --seed 7 --threads 1) || complain "the scene f
 for method in sph mls; do
     [ -s "$directory/vorticity_${method}_spin.dat" ] || complain "no table for $method"
     if [ -n "$reader" ]; then
-        "$reader" "$directory/vorticity_${method}_0000.vtkhdf" spin || complain "particles of $method"
+        "$reader" "$directory/vorticity_${method}_0000.vtkhdf" spin 2 || complain "particles of $method"
+        grep -qxF "{\"name\": \"vorticity_${method}_0000.vtkhdf\", \"time\": 2}" \
+            "$directory/vorticity_${method}_particles.vtkhdf.series" || complain "no time of the particles of $method"
     fi
 done
 mkdir "$directory/obstacle" "$directory/obstacle/vorticity_sph_spin.dat"

@@ -9,6 +9,8 @@ static void check_combination(const struct options *options)
 {
     if (options->check && options->alone)
         command_line_refuse("gates compare with sph: --check cannot go with --alone");
+    if (options->frames && (!options->output || options->alone))
+        command_line_refuse("--frames needs --output, and another method beside sph");
     if (options->brief && options->output)
         command_line_refuse("--brief has nothing to write to --output");
 }
@@ -33,6 +35,9 @@ struct options options_read(const char *scene, const char *about, int argc, char
          OPTION_WHOLE, &options.threads, 0, 4096, NULL, NULL},
         {"output", 'o', "DIR", "write pictures, tables and particles there", OPTION_FOLDER,
          &options.output, 0, 0, NULL, NULL},
+        {"frames", 'f', "N",
+         "of a film of the whole run, as pictures in the output directory (default: none)",
+         OPTION_WHOLE, &options.frames, 2, 9999, NULL, NULL},
         {"check", 'c', NULL, "compare with the gates of this scene; status 1 if one fails",
          OPTION_FLAG, &options.check, 0, 0, NULL, NULL},
         {"brief", 'b', NULL,

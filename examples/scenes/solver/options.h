@@ -18,7 +18,8 @@ struct options {
     uint64_t seed;
     enum method method; /* runs beside SPH; SPH: runs alone */
     bool method_given;
-    bool alone; /* without SPH beside it */
+    bool alone;     /* without SPH beside it */
+    int32_t frames; /* of a film; 0: none */
     bool full;
     bool check;
     bool brief; /* no simulation: what the scene finds at its beginning */

@@ -43,13 +43,36 @@ FILE *output_open(const struct run *run, const char *label)
     return file;
 }
 
+FILE *output_open_frame(const struct run *run, const char *label, int32_t frame)
+{
+    char numbered[64];
+    snprintf(numbered, sizeof numbered, "%s_%04d", label, (int)frame);
+    return output_open(run, numbered);
+}
+
 void output_close(FILE *file)
 {
     if (file && (ferror(file) | fclose(file)) != 0)
         fail("a table");
 }
 
-void output_particles(const struct run *run, int32_t frame, int32_t count, vector *x,
+/* Lists the file with its time, behind those before it. */
+static void list_frame(const struct run *run, int32_t frame, double time)
+{
+    static const char end[] = "\n]}\n";
+    char path[PATH_LENGTH];
+    make_path(path, run, "particles.vtkhdf.series");
+    FILE *list = fopen(path, frame ? "r+" : "w");
+    if (!list || (frame && fseek(list, -(long)strlen(end), SEEK_END) != 0))
+        fail(path);
+    fprintf(list, "%s\n{\"name\": \"%s_%s_%04d.vtkhdf\", \"time\": %.9g}%s",
+            frame ? "," : "{\"file-series-version\": \"1.0\", \"files\": [", run->options->scene,
+            method_names[run->method], (int)frame, time, end);
+    if (ferror(list) | fclose(list))
+        fail(path);
+}
+
+void output_particles(const struct run *run, int32_t frame, double time, int32_t count, vector *x,
                       const struct output_field *fields)
 {
     char path[PATH_LENGTH], end[64];
@@ -57,17 +80,19 @@ void output_particles(const struct run *run, int32_t frame, int32_t count, vecto
         return;
     snprintf(end, sizeof end, "%04d.vtkhdf", (int)frame);
     make_path(path, run, end);
-    if (!vtkhdf_write(path, count, x, fields)) {
+    if (!vtkhdf_write(path, time, count, x, fields)) {
         fprintf(stderr, "cannot write %s\n", path);
         exit(EXIT_FAILURE);
     }
+    list_frame(run, frame, time);
 }
 
-void output_state(const struct run *run, int32_t frame, const struct particles *particles)
+void output_state(const struct run *run, int32_t frame, double time,
+                  const struct particles *particles)
 {
     const struct output_field fields[] = {
         {"velocity", particles->v[0], 3}, {"density", particles->density, 1}, {0}};
-    output_particles(run, frame, particles->count, particles->x, fields);
+    output_particles(run, frame, time, particles->count, particles->x, fields);
 }
 
 void output_view(const struct run *run, const char *label, const double eye[3], int32_t count,

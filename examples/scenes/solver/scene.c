@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE /* fork, isatty, MAP_ANONYMOUS */
 #include "scene.h"
+#include "command_line.h"
 #include "output.h"
 #include "stopwatch.h"
 #include <signal.h>
@@ -18,6 +19,12 @@ struct sph run_open(const struct run *run, int32_t dimension, double support_rad
     const int32_t few = particles < 10000;
     const int32_t threads = run->options->threads ? run->options->threads : few;
     return sph_open(threads, dimension, support_radius, methods[run->method]);
+}
+
+int32_t run_frames(const struct run *run, double share)
+{
+    const int32_t frames = run->options->frames;
+    return frames ? 1 + (int32_t)(share * (frames - 1) + 1e-9) : 0;
 }
 
 void run_progress(const struct run *run, double done, double of)
@@ -107,12 +114,19 @@ static struct metrics *shared_metrics(void)
     return memory;
 }
 
-static void draw(const struct scene *scene, const struct options *options)
+static void draw(const struct scene *scene, const struct options *options,
+                 const struct metrics *runs)
 {
     if (!options->output || options->alone || options->method == SPH)
         return;
-    const struct picture picture = picture_open(options);
+    struct picture picture = picture_open(options, runs);
     scene->draw(&picture);
+    picture_end(&picture);
+    for (int32_t frame = 0; frame < options->frames; ++frame) {
+        picture_frame(&picture, frame, options->frames);
+        scene->draw(&picture);
+        picture_end(&picture);
+    }
     picture_close(&picture);
 }
 
@@ -120,12 +134,14 @@ int scene_main(const struct scene *scene, int argc, char **argv)
 {
     const struct options options = options_read(scene->name, scene->about, argc, argv);
     struct metrics *runs = shared_metrics();
+    if (options.frames && !scene->has_film)
+        command_line_refuse("--frames: this scene has no film");
     if (options.output)
         output_explain();
     if (options.full || options.threads)
         simulate_in_turn(scene, &options, runs);
     else
         simulate_side_by_side(scene, &options, runs);
-    draw(scene, &options);
+    draw(scene, &options, runs);
     return !options.check || gates_hold(&options, scene->gates, runs) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

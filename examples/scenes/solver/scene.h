@@ -20,6 +20,7 @@ struct scene {
     void (*draw)(const struct picture *picture);
     const struct gate *gates;
     bool checks_all; /* --check runs all methods, else SPH and KGC */
+    bool has_film;   /* draw and simulate know frames */
 };
 
 /* Quick sizes run their methods side by side, a process with a thread each, unless the user names a
@@ -31,6 +32,9 @@ int scene_main(const struct scene *scene, int argc, char **argv);
  * on a busy machine very much longer. */
 struct sph run_open(const struct run *run, int32_t dimension, double support_radius,
                     int32_t particles);
+
+/* How many frames of a film are due when a share of the run is over. */
+int32_t run_frames(const struct run *run, double share);
 
 /* Shows how far a run is, on a terminal only. */
 void run_progress(const struct run *run, double done, double of);

@@ -6,5 +6,8 @@
 #include "output.h"
 
 bool vtkhdf_is_there(void); /* false: built without HDF5 */
-bool vtkhdf_write(const char *path, int32_t count, vector *x, const struct output_field *fields);
+
+/* One moment, and when it is [s]. */
+bool vtkhdf_write(const char *path, double time, int32_t count, vector *x,
+                  const struct output_field *fields);
 #endif
