@@ -2,6 +2,7 @@
 /* A column of fluid breaks down and runs along a tank (2D) whose walls are particles at irregular
  * distances. All along it is asked what gradients are worth where a fluid has a surface, sheets and
  * drops: of the field of the places x, whose gradient is I everywhere. */
+#include "numbers.h"
 #include "solver/output.h"
 #include "solver/pressure.h"
 #include "solver/time_step.h"
@@ -152,8 +153,8 @@ static void read_gradients(const struct sph *sph, struct dam *dam)
             0.5 * ((j[0] - 1) * (j[0] - 1) + j[1] * j[1] + j[3] * j[3] + (j[4] - 1) * (j[4] - 1)));
         found->sum += found->error[i];
         found->bad += !(found->error[i] <= good);
-        if (found->rank[i] == 2 && !(found->error[i] <= found->worst)) /* NaN stays */
-            found->worst = found->error[i];
+        if (found->rank[i] == 2)
+            found->worst = numbers_larger(found->worst, found->error[i]);
     }
     found->count += dam->fluid.count;
 }
@@ -227,7 +228,7 @@ static double slope_error(const struct dam *dam, double support_radius)
             continue;
         vector off = {0, 1, 0};
         add_scaled(off, x[1], dam->contact.slope[i]);
-        worst = fmax(worst, sqrt(dot(off, off)));
+        worst = numbers_larger(worst, sqrt(dot(off, off)));
     }
     return worst;
 }

@@ -80,7 +80,7 @@ void drum_view_draw(const struct picture *picture, double time)
     for (int k = 0; k < 2; ++k) {
         picture_panel(picture, 0.005 + 0.5 * k, 0.495 + 0.5 * k);
         fprintf(script,
-                "set title \"{/:Bold=15 %s}\\nleast volume of the bunny, det F: %.2g\"\n"
+                "set title \"{/:Bold=15 %s}\\nleast det F in the bunny: %.2g (1 at rest)\"\n"
                 "plot 'washing_machine_%s_drum%s.dat' using 1:2:3:(rgb($4, $5)) with circles "
                 "lc rgb variable fillstyle solid border lc rgb '#80333333' notitle\n"
                 "unset label 1\n",
