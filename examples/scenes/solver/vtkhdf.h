@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Particles in the form VTKHDF 1.0, UnstructuredGrid, a vertex per particle: what VTK 9.1
- * (ParaView 5.11) reads. docs.vtk.org, "VTKHDF file format". */
+ * (ParaView 5.11) reads; and their time in the group Steps of version 2.0. Readers that take a
+ * single step for none find times in the list of output.h. docs.vtk.org, "VTKHDF file format". */
 #ifndef SOLVER_VTKHDF_H
 #define SOLVER_VTKHDF_H
 #include "output.h"
