@@ -84,11 +84,13 @@ static sphg_result operate(world *own, fuzz_bytes *from, const sphg_neighbors *o
     const sphg_view field = sphg_view_f32(own->field, 4), out = sphg_view_f32(own->out, d * 4);
     const sphg_subset subset = {0, fuzz_below(from, MOST + 1), NULL, NULL};
     const sphg_subset *chosen = fuzz_byte(from) % 2 ? &subset : NULL;
+    sphg_view table = sphg_view_f32(own->out, 180);
+    table.layout = (sphg_layout)(subset.end % 3); /* refused where it has no meaning */
     if (kind == 0)
         return sphg_gradient(own->context, &own->scheme, &sources, chosen, field, out);
     if (kind == 1)
-        return sphg_correction(own->context, &own->scheme, &sources, chosen,
-                               sphg_view_f32(own->out, 180), sphg_view_u8(own->rank, 1));
+        return sphg_correction(own->context, &own->scheme, &sources, chosen, table,
+                               sphg_view_u8(own->rank, 1));
     if (kind == 2)
         return sphg_force(own->context, &own->scheme, &sources, chosen, SPHG_SCALAR, field, out);
     sphg_pairs pairs = {.offsets = own->offsets, .capacity = fuzz_byte(from)};
