@@ -24,7 +24,8 @@
  *           particles are by then.
  * Threads   one call at a time per context, any number of contexts at once; what a call takes
  *           as const may be shared by concurrent calls. Same input, same bits: for any number
- *           of threads, any executor, any split into subsets. Children of fork() may use contexts
+ *           of threads, any executor, any split into subsets, on all instruction sets with fused
+ *           multiply-add (x86-64-v3, v4, AArch64). Children of fork() may use contexts
  *           old and new: on the calling thread alone, or parallel_for, once OpenMP's threads have
  *           worked in the parent. If the parent ran OpenMP by other means, set threads = 1 in
  *           the child.
@@ -180,8 +181,8 @@ typedef void sphg_task(void *data, int32_t begin, int32_t end, int32_t worker);
 typedef struct sphg_config {
     int32_t threads; /* 0: as many as OpenMP has; 1: the calling thread alone, no OpenMP region;
                         with parallel_for: the number of its workers */
-    sphg_isa isa;    /* BEST, or for tests; BASE: same bits on every x86-64 machine; X86_V3 and
-                        X86_V4: the same bits as one another */
+    sphg_isa isa;    /* BEST, or for tests; BASE: same bits on every x86-64 machine; X86_V3, X86_V4
+                        and NEON: the same bits as one another */
     int32_t trusted; /* 1: do not look for bad numbers in positions, volumes and lists, nor compare
                         the targets of source sets; arguments are always checked */
     void *(*allocate)(size_t size, size_t alignment, void *user); /* both or neither */

@@ -17,6 +17,16 @@ SPHGI_TEMPLATE vec vmax(vec a, vec b)
     return a > b ? a : b;
 }
 
+SPHGI_TEMPLATE vec plus(vec sum, vec a, vec b)
+{
+    return sum + a * b;
+}
+
+SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b)
+{
+    return sum - a * b;
+}
+
 SPHGI_TEMPLATE bool less(vec a, vec b)
 {
     return a < b;
@@ -67,7 +77,7 @@ double sphgi_kernel_mu4(sphg_kernel kernel, int32_t dimension)
 
 double sphgi_kernel_w(sphg_kernel kernel, double q)
 {
-    return kernel_w(kernel, q);
+    return kernel_w(kernel, ratio_of(q, 1));
 }
 
 double sphgi_power(double scale, int32_t power)
@@ -90,11 +100,12 @@ __attribute__((noinline)) static void kernel_value(const sphg_scheme *scheme, do
 {
     const int32_t d = scheme->dimension == 2 ? 2 : 3;
     const double inverse_h = 1 / scheme->support_radius;
-    const double q = r * inverse_h, sigma = sphgi_kernel_sigma(scheme->kernel, d);
+    const struct ratio at = ratio_of(r, inverse_h);
+    const double sigma = sphgi_kernel_sigma(scheme->kernel, d);
     const double scale = sigma * sphgi_power(inverse_h, d);
     const bool inside = r < scheme->support_radius;
-    *value = inside ? scale * kernel_w(scheme->kernel, q) : 0;
-    *slope = inside ? scale * inverse_h * inverse_h * kernel_d(scheme->kernel, q) : 0;
+    *value = inside ? scale * kernel_w(scheme->kernel, at) : 0;
+    *slope = inside ? scale * inverse_h * inverse_h * kernel_d(scheme->kernel, at) : 0;
 }
 
 static void checked_value(const sphg_scheme *scheme, double r, double *value, double *slope)

@@ -8,7 +8,7 @@
 SPHGI_TEMPLATE vec smooth_step(vec x, vec low, vec high)
 {
     const vec part = vmin(vmax((x - low) / (high - low), splat(R(0))), splat(R(1)));
-    return part * part * (R(3) - R(2) * part);
+    return part * part * minus(splat(R(3)), splat(R(2)), part);
 }
 
 /* ---- Lenders --------------------------------------------------------------------------------- */
@@ -68,7 +68,7 @@ SPHGI_TEMPLATE void weigh_lenders(const struct sphgi_second *second, const real 
         for (int k = 0; k < n; ++k) {
             vec sum = load(linear + pair_index(a, 0, d) * SPHGI_WIDTH) * m3[0][k];
             for (int c = 1; c < d; ++c)
-                sum += load(linear + pair_index(a, c, d) * SPHGI_WIDTH) * m3[c][k];
+                sum = plus(sum, load(linear + pair_index(a, c, d) * SPHGI_WIDTH), m3[c][k]);
             store(transport + (a * n + k) * SPHGI_WIDTH, sum);
         }
 }
@@ -103,7 +103,8 @@ SPHGI_TEMPLATE void note_borrowing(const struct sphgi_second *second, const real
         const vec lent = load((const real *)borrowing->lent + l);
         weigh_lenders(second, sums, (const real *)borrowing->linear + l, f, r, kept,
                       (real *)borrowing->prior + l, (real *)borrowing->transport + l, three);
-        confidence += (splat(R(1)) - confidence) * taken(lent, factor, R(1. / 16), R(1. / 4));
+        confidence =
+            plus(confidence, splat(R(1)) - confidence, taken(lent, factor, R(1. / 16), R(1. / 4)));
     }
     store((real *)borrowing->confidence + l, confidence);
 }
@@ -118,10 +119,10 @@ static void sum_lent(const struct sphgi_tile *tile, const void *rows, int32_t co
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const struct four row = gather_rows(rows, ids_at(tile, k));
         const vec s = from(tile, SPHGI_S, k);
-        sum[0] -= row.x * s;
-        sum[1] -= row.y * s;
-        sum[2] -= row.z * s;
-        sum[3] -= row.w * s;
+        sum[0] = minus(sum[0], row.x, s);
+        sum[1] = minus(sum[1], row.y, s);
+        sum[2] = minus(sum[2], row.z, s);
+        sum[3] = minus(sum[3], row.w, s);
     }
     end_tile(tile, sum, count, sums);
 }
@@ -155,19 +156,20 @@ SPHGI_TEMPLATE void add_borrowed_as(int32_t count, const struct sphgi_second *se
         for (int k = 0; k < n; ++k) {
             y[k] = load(prior + pair_index(k, 0, n) * SPHGI_WIDTH) * mean[0];
             for (int p = 1; p < n; ++p)
-                y[k] += load(prior + pair_index(k, p, n) * SPHGI_WIDTH) * mean[p];
+                y[k] = plus(y[k], load(prior + pair_index(k, p, n) * SPHGI_WIDTH), mean[p]);
         }
         for (int a = 0; a < d; ++a) {
             real *to = j + (i * d + a) * SPHGI_WIDTH;
             vec sum = load(transport + a * n * SPHGI_WIDTH) * y[0];
             for (int k = 1; k < n; ++k)
-                sum += load(transport + (a * n + k) * SPHGI_WIDTH) * y[k];
-            store(to, select(some, load(to) - splat(scale) * sum, load(to)));
+                sum = plus(sum, load(transport + (a * n + k) * SPHGI_WIDTH), y[k]);
+            store(to, select(some, minus(load(to), splat(scale), sum), load(to)));
         }
         whiten(second, R(2), y, three);
         for (int k = 0; k < n; ++k) {
             real *to = h + (i * n + k) * SPHGI_WIDTH;
-            const vec own = load(to), sum = select(some, own + splat(scale * scale) * y[k], own);
+            const vec own = load(to), more = plus(own, splat(scale * scale), y[k]);
+            const vec sum = select(some, more, own);
             store(to, sum);
             if (is_square(k, three))
                 squares += sum;

@@ -13,33 +13,27 @@ SPHGI_TEMPLATE void classic_orders(const struct sphgi_tile *tile, real *sums, bo
     vec sum[10];
     clear(sum, n);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const vec x = from(tile, SPHGI_X, k), y = from(tile, SPHGI_Y, k);
-        const vec z = three ? from(tile, SPHGI_Z, k) : x;
-        vec s = from(tile, part == 0 ? SPHGI_S : SPHGI_D, k);
+        vec s = from(tile, part == 0 ? SPHGI_S : SPHGI_D, k), x[3], sx[3];
         if (weighted)
             s *= from(tile, SPHGI_V, k);
-        const vec sx = s * x, sy = s * y, sz = s * z;
-        const vec first_order[3] = {sx, sy, sz};
-        const vec second[6] = {sx * x, sx * y, three ? sx * z : sy * y, sy * y, sy * z, sz * z};
-        if (part == 0)
-            sum[0] += s;
-        if (part < 2) {
-            const int32_t o = part == 0;
-            for (int32_t c = 0; c < d; ++c)
-                sum[o + c] += first_order[c];
-            for (int32_t c = 0; c < pairs; ++c)
-                sum[o + d + c] += second[c];
-        } else if (three) {
-            const vec third[10] = {second[0] * x, second[0] * y, second[0] * z, second[1] * y,
-                                   second[1] * z, second[2] * z, second[3] * y, second[3] * z,
-                                   second[4] * z, second[5] * z};
-            for (int32_t c = 0; c < 10; ++c)
-                sum[c] += third[c];
-        } else {
-            const vec third[4] = {second[0] * x, second[0] * y, second[1] * y, second[2] * y};
-            for (int32_t c = 0; c < 4; ++c)
-                sum[c] += third[c];
+        for (int32_t a = 0; a < d; ++a) {
+            x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+            sx[a] = s * x[a];
         }
+        int32_t at = 0;
+        if (part == 0)
+            sum[at++] += s;
+        for (int32_t a = 0; part < 2 && a < d; ++a)
+            sum[at++] += sx[a];
+        for (int32_t a = 0; a < d; ++a)
+            for (int32_t b = a; b < d; ++b) {
+                if (part < 2) {
+                    sum[at] = plus(sum[at], sx[a], x[b]);
+                    ++at;
+                }
+                for (int32_t c = b; part == 2 && c < d; ++c, ++at)
+                    sum[at] = plus(sum[at], sx[a] * x[b], x[c]);
+            }
     }
     end_tile(tile, sum, n, sums + first * SPHGI_WIDTH);
 }
@@ -87,12 +81,12 @@ SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_tile *tile, const real
         for (int32_t m = 0; m < width; ++m) {
             polynomial[m] = c[m * width];
             for (int32_t a = 0; a < d; ++a)
-                polynomial[m] -= c[m * width + 1 + a] * x[a];
+                polynomial[m] = minus(polynomial[m], c[m * width + 1 + a], x[a]);
         }
         const vec slope_y = slope * polynomial[0];
         real *g = array_of(tile->arrays, SPHGI_GX) + k;
         for (int32_t a = 0; a < d; ++a)
-            store(g + a * SPHGI_TILE, slope_y * x[a] + s * polynomial[1 + a]);
+            store(g + a * SPHGI_TILE, plus(slope_y * x[a], s, polynomial[1 + a]));
         store(array_of(tile->arrays, SPHGI_PHI) + k, s * polynomial[0]);
     }
 }
@@ -127,16 +121,17 @@ SPHGI_TEMPLATE void transposed_classic_as(const struct sphgi_tile *tile, const v
         vec polynomial[4];
         for (int32_t m = 0; m <= d; ++m) {
             const struct four c = gather_rows(rows[m], ids_at(tile, k));
-            polynomial[m] = c.x + c.y * x[0] + c.z * x[1];
+            polynomial[m] = plus(plus(c.x, c.y, x[0]), c.z, x[1]);
             if (three)
-                polynomial[m] += c.w * x[2];
+                polynomial[m] = plus(polynomial[m], c.w, x[2]);
         }
         /* Units meet the coefficients first: both may be far from 1, their quotient is not. */
         const vec slope = weight * from(tile, SPHGI_D, k) * (volume * (polynomial[0] / y_unit));
         const vec s = weight * from(tile, SPHGI_S, k);
         real *t = array_of(tile->arrays, SPHGI_TX) + k;
         for (int32_t a = 0; a < d; ++a)
-            store(t + a * SPHGI_TILE, slope * x[a] - s * (volume * (polynomial[1 + a] / z_unit)));
+            store(t + a * SPHGI_TILE,
+                  minus(slope * x[a], s, volume * (polynomial[1 + a] / z_unit)));
     }
 }
 

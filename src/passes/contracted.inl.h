@@ -18,8 +18,11 @@ SPHGI_TEMPLATE void add_contracted(sphg_shape shape, int d, const vec *a, const 
 {
     for (int row = 0; row < (shape == SPHG_VECTOR ? 1 : d); ++row) {
         vec product = a[shape == SPHG_VECTOR ? 0 : tensor_index(shape, row, 0, d)] * b[0];
-        for (int k = 1; k < d; ++k) /* apart from the sum, which each pair would wait for d times */
-            product += a[shape == SPHG_VECTOR ? k : tensor_index(shape, row, k, d)] * b[k];
+        for (int k = 1; k < d;
+             ++k) { /* apart from the sum, which each pair would wait for d times */
+            const vec component = a[shape == SPHG_VECTOR ? k : tensor_index(shape, row, k, d)];
+            product = plus(product, component, b[k]);
+        }
         sum[row] += product;
     }
 }
@@ -129,12 +132,12 @@ SPHGI_TEMPLATE void squares_as(const struct sphgi_tile *tile, enum sphgi_vectors
         vectors_at(tile, k, vectors, three, g);
         vec square = g[0] * g[0];
         for (int b = 1; b < d; ++b)
-            square += g[b] * g[b];
+            square = plus(square, g[b], g[b]);
         if (trace)
-            sum[0] += a * square;
+            sum[0] = plus(sum[0], a, square);
         for (int b = 0; b < d && !trace; ++b)
             for (int c = b; c < d; ++c)
-                sum[pair_index(b, c, d)] += a * g[b] * g[c];
+                sum[pair_index(b, c, d)] = plus(sum[pair_index(b, c, d)], a * g[b], g[c]);
     }
     end_tile(tile, sum, count, sums);
 }
@@ -173,8 +176,8 @@ SPHGI_TEMPLATE vec trace_between_as(const real *correction, const real *sums, in
         for (int b = 0; b < d; ++b) {
             vec product = c[pair_index(a, 0, d)] * s[pair_index(0, b, d)];
             for (int k = 1; k < d; ++k)
-                product += c[pair_index(a, k, d)] * s[pair_index(k, b, d)];
-            trace += c[pair_index(a, b, d)] * product;
+                product = plus(product, c[pair_index(a, k, d)], s[pair_index(k, b, d)]);
+            trace = plus(trace, c[pair_index(a, b, d)], product);
         }
     return trace;
 }

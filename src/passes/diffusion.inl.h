@@ -8,9 +8,9 @@ SPHGI_TEMPLATE vec along(const vec *m, const vec *x, int d)
 {
     vec square = splat(R(0)), product = splat(R(0)), trace = splat(R(0));
     for (int a = 0; a < d; ++a) {
-        square += x[a] * x[a];
+        square = plus(square, x[a], x[a]);
         trace += m[pair_index(a, a, d)];
-        product += m[pair_index(a, a, d)] * x[a] * x[a];
+        product = plus(product, m[pair_index(a, a, d)] * x[a], x[a]);
         for (int b = a + 1; b < d; ++b) {
             const vec mixed = m[pair_index(a, b, d)] * x[a] * x[b];
             product += mixed + mixed;
@@ -42,13 +42,12 @@ SPHGI_TEMPLATE void pair_laplacian_as(const struct sphgi_tile *tile, const real 
             const vec weight = scale * weight_of(tile, k, NULL, kind);
             folded_at(tile, k, table, n, theirs);
             for (int c = 0; c < n; ++c)
-                m[c] += weight * theirs[c];
+                m[c] = plus(m[c], weight, theirs[c]);
         }
-        vec pair = -from(tile, SPHGI_S, k) * along(m, x, d);
+        const vec s = from(tile, SPHGI_S, k), direction = along(m, x, d);
         real *at = array_of(tile->arrays, SPHGI_L) + k;
-        if (add)
-            pair += load(at);
-        store(at, pair);
+        const vec alone = -s * direction;
+        store(at, add ? minus(load(at), s, direction) : alone);
     }
 }
 
@@ -71,10 +70,9 @@ static void pair_laplacian_plain(const struct sphgi_tile *tile, double factor, c
         by *= load(each);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         real *at = array_of(tile->arrays, SPHGI_L) + k;
-        vec pair = by * from(tile, SPHGI_S, k);
-        if (add)
-            pair += load(at);
-        store(at, pair);
+        const vec s = from(tile, SPHGI_S, k);
+        const vec alone = by * s;
+        store(at, add ? plus(load(at), by, s) : alone);
     }
 }
 
@@ -101,7 +99,7 @@ SPHGI_TEMPLATE void diffusion_as(const struct sphgi_tile *tile, const real *rows
         if (coefficients)
             pair *= harmonic_mean(here, gather_rows(coefficients, ids_at(tile, k)).x);
         for (int32_t c = 0; c < count; ++c)
-            sum[c] += (value[c] - own[c]) * pair;
+            sum[c] = plus(sum[c], value[c] - own[c], pair);
     }
     end_tile(tile, sum, count, sums);
 }

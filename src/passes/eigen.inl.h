@@ -45,6 +45,49 @@ SPHGI_TEMPLATE dvec dsqrt(dvec v)
 #endif
 }
 
+#if REAL_IS_F64
+#define dplus  plus
+#define dminus minus
+#elif !FUSES
+SPHGI_TEMPLATE dvec dplus(dvec sum, dvec a, dvec b) /* plus, in double */
+{
+    return sum + a * b;
+}
+SPHGI_TEMPLATE dvec dminus(dvec sum, dvec a, dvec b)
+{
+    return sum - a * b;
+}
+#elif defined(__FMA__)
+SPHGI_TEMPLATE dvec dplus(dvec sum, dvec a, dvec b)
+{
+    return (dvec)VECTOR_OP(fmadd_pd)((VECTOR_TYPE(d))a, (VECTOR_TYPE(d))b, (VECTOR_TYPE(d))sum);
+}
+SPHGI_TEMPLATE dvec dminus(dvec sum, dvec a, dvec b)
+{
+    return (dvec)VECTOR_OP(fnmadd_pd)((VECTOR_TYPE(d))a, (VECTOR_TYPE(d))b, (VECTOR_TYPE(d))sum);
+}
+#elif defined(__aarch64__)
+SPHGI_TEMPLATE dvec dplus(dvec sum, dvec a, dvec b)
+{
+    return (dvec)vfmaq_f64((float64x2_t)sum, (float64x2_t)a, (float64x2_t)b);
+}
+SPHGI_TEMPLATE dvec dminus(dvec sum, dvec a, dvec b)
+{
+    return (dvec)vfmsq_f64((float64x2_t)sum, (float64x2_t)a, (float64x2_t)b);
+}
+#else
+SPHGI_TEMPLATE dvec dplus(dvec sum, dvec a, dvec b)
+{
+    for (int k = 0; k < DLANES; ++k)
+        sum[k] = __builtin_fma(a[k], b[k], sum[k]);
+    return sum;
+}
+SPHGI_TEMPLATE dvec dminus(dvec sum, dvec a, dvec b)
+{
+    return dplus(sum, -a, b);
+}
+#endif
+
 SPHGI_TEMPLATE dvec dabs(dvec v)
 {
     return (dvec)((dmask)v & ~(dmask)dsplat(-0.0));
@@ -105,23 +148,23 @@ SPHGI_TEMPLATE void turn(struct turning *m, int p, int r, int o, bool three)
 {
     const dmask open = dabs(m->off[o]) > negligible;
     const dvec d = m->a[r] - m->a[p], b = m->off[o] + m->off[o];
-    const dvec h = dabs(d) + dsqrt(d * d + b * b), g = dsqrt(h * h + b * b);
+    const dvec h = dabs(d) + dsqrt(dplus(d * d, b, b)), g = dsqrt(dplus(h * h, b, b));
     const dmask sign = (dmask)d & (dmask)dsplat(-0.0);
     const dvec s = dwhere(open, (dvec)((dmask)(b / g) ^ sign));
     const dvec half = dwhere(open, (dvec)((dmask)(b / (h + g)) ^ sign));
-    const dvec shift = s * ((b - s * half * b) - s * d);
-    m->a[p] -= shift;
-    m->a[r] += shift;
+    const dvec step = dminus(dminus(b, s * half, b), s, d);
+    m->a[p] = dminus(m->a[p], s, step);
+    m->a[r] = dplus(m->a[r], s, step);
     m->off[o] = dsplat(0);
     if (three) {
         const dvec to_p = m->off[r], to_r = m->off[p];
-        m->off[r] = to_p - s * (to_r + half * to_p);
-        m->off[p] = to_r + s * (to_p - half * to_r);
+        m->off[r] = dminus(to_p, s, dplus(to_r, half, to_p));
+        m->off[p] = dplus(to_r, s, dminus(to_p, half, to_r));
     }
     for (int k = 0; k < (three ? 3 : 2); ++k) {
         const dvec kp = m->q[3 * k + p], kr = m->q[3 * k + r];
-        m->q[3 * k + p] = kp - s * (kr + half * kp);
-        m->q[3 * k + r] = kr + s * (kp - half * kr);
+        m->q[3 * k + p] = dminus(kp, s, dplus(kr, half, kp));
+        m->q[3 * k + r] = dplus(kr, s, dminus(kp, half, kr));
     }
 }
 
@@ -142,7 +185,7 @@ SPHGI_TEMPLATE struct turning begin_turning(const dvec *m, bool three)
     dvec a[6];
     for (int k = 0; k < (three ? 6 : 3); ++k) {
         a[k] = m[k] * lift * scale;
-        out.poison += 0 * a[k];
+        out.poison = dplus(out.poison, dsplat(0), a[k]);
     }
     out.a[0] = a[0];
     out.a[1] = three ? a[3] : a[2];
@@ -167,7 +210,7 @@ SPHGI_TEMPLATE struct eigen end_turning(const struct turning *m)
 {
     struct eigen e;
     for (int k = 0; k < 3; ++k)
-        e.l[k] = m->a[k] * m->unit[0] * m->unit[1] + m->poison;
+        e.l[k] = dplus(m->poison, m->a[k] * m->unit[0], m->unit[1]);
     for (int k = 0; k < 9; ++k)
         e.q[k] = m->q[k] + m->poison;
     return e;

@@ -48,15 +48,14 @@ SPHGI_TEMPLATE void folded_as(const struct sphgi_tile *tile, enum sphgi_fold fol
         vectors_at(tile, k, SPHGI_FACTORS, d == 3, g);
         if (fold == SPHGI_FOLDED_NUMBER)
             for (int a = 0; a < d; ++a)
-                sum[a] += b[0] * g[a];
+                sum[a] = plus(sum[a], b[0], g[a]);
         else
             add_contracted(fold == SPHGI_FOLDED_VECTOR      ? SPHG_VECTOR
                            : fold == SPHGI_FOLDED_SYMMETRIC ? SPHG_SYM_TENSOR
                                                             : SPHG_TENSOR,
                            d, b, g, sum);
-        const vec density = dense ? b[numbers] : splat(R(1));
         for (int a = 0; a < d; ++a)
-            own[a] += density * rounded(g[a]); /* the bits of sum_vectors */
+            own[a] = plus_vector(own[a], g[a], dense ? &b[numbers] : NULL);
     }
     end_tile(tile, sum, results, sums);
     if (vectors)

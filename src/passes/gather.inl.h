@@ -19,11 +19,11 @@ SPHGI_TEMPLATE struct wrap wrap_of(double period)
 SPHGI_TEMPLATE vec wrapped(vec difference, struct wrap w)
 {
     const vec magic = splat(REAL_IS_F64 ? R(0x1.8p52) : R(0x1.8p23));
-    const vec turns = (difference * w.inverse + magic) - magic;
-    const vec near = difference - rounded(turns * w.period);
+    const vec turns = plus(magic, difference, w.inverse) - magic;
+    const vec near = difference - turns * w.period;
     const vec more =
         where(less(w.half, near), splat(R(1))) - where(less(near, -w.half), splat(R(1)));
-    return difference - rounded((turns + more) * w.period);
+    return difference - (turns + more) * w.period;
 }
 
 struct wraps {
@@ -38,12 +38,12 @@ SPHGI_TEMPLATE struct wraps wraps_of(const double *period)
 /* r^2 as docs/theory.md section 1 defines it: every product and sum rounded on its own. */
 SPHGI_TEMPLATE vec square_distance(vec dx, vec dy, vec dz)
 {
-    return rounded(rounded(dx * dx) + rounded(dy * dy)) + rounded(dz * dz);
+    return (dx * dx + dy * dy) + dz * dz;
 }
 
 SPHGI_TEMPLATE vec square_of(double length)
 {
-    return rounded(splat(R(length)) * splat(R(length)));
+    return splat(R(length)) * splat(R(length));
 }
 
 enum { AHEAD = 64 /* steps: ids come from memory, those to come are asked for */ };

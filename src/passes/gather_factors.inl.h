@@ -19,9 +19,9 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         __builtin_prefetch(ids + ahead);
         const struct four row = gather_rows(rows, ids);
         const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
-        vec square = dx * dx + dy * dy;
+        vec square = plus(dx * dx, dy, dy);
         if (three)
-            square += dz * dz;
+            square = plus(square, dz, dz);
         store(at + SPHGI_X * SPHGI_TILE, dx);
         store(at + SPHGI_Y * SPHGI_TILE, dy);
         if (three)

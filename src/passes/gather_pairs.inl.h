@@ -28,8 +28,8 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
         radius = own.w;
         unit = R(1) / radius;
     }
-    const vec far = radius + radius;
-    const vec cutoff = g->all ? splat((real)__builtin_inf()) : rounded(radius * radius);
+    const vec far = radius + radius, infinite = splat((real)__builtin_inf());
+    const vec square_radius = radius * radius, cutoff = g->all ? infinite : square_radius;
     const struct wraps w = wraps_of(g->period);
     const uint32_t *ids = tile->ids + first;
     const ptrdiff_t stride = tile->id_stride;
@@ -53,9 +53,9 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
             dy = where(inside, dy);
             dz = where(inside, dz);
         }
-        vec square = dx * dx + dy * dy;
+        vec square = plus(dx * dx, dy, dy);
         if (how.three)
-            square += dz * dz;
+            square = plus(square, dz, dz);
         vec r = vsqrt(square);
         if (how.masked)
             r = select(inside, r, far);

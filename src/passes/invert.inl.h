@@ -8,7 +8,7 @@ SPHGI_TEMPLATE dvec share_kept(dvec lambda, dvec eps)
     dvec t = (lambda - eps) / (3 * eps);
     t = dselect(t < 0, dsplat(0), t);
     t = dselect(t > 1, dsplat(1), t);
-    return t * t * (3 - 2 * t);
+    return t * t * dminus(dsplat(3), dsplat(2), t);
 }
 
 /* What the threshold makes of one eigenvalue. low: what a dropped direction gets (linearised: 1,
@@ -21,7 +21,7 @@ SPHGI_TEMPLATE dvec filtered(dvec lambda, dvec eps, sphg_policy policy, double l
         const dvec w = share_kept(lambda, eps);
         *full = lambda >= 4 * eps;
         *kept *= dselect(*full, dsplat(1), w);
-        const dvec blended = w * inverse + (1 - w) * low;
+        const dvec blended = dplus(w * inverse, 1 - w, dsplat(low));
         const dvec above = dselect(*full, inverse, blended);
         return dselect(lambda <= eps, dsplat(low), above);
     }
@@ -62,9 +62,10 @@ SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold,
     out.lambda_min = dselect(out.lambda_min <= 0, dsplat(0), out.lambda_min);
     for (int a = 0, c = 0; a < d; ++a)
         for (int b = a; b < d; ++b, ++c) {
-            out.c[c] = e->q[3 * a] * f[0] * e->q[3 * b] + e->q[3 * a + 1] * f[1] * e->q[3 * b + 1];
+            const dvec *qa = e->q + 3 * a, *qb = e->q + 3 * b;
+            out.c[c] = dplus(qa[0] * f[0] * qb[0], qa[1] * f[1], qb[1]);
             if (three)
-                out.c[c] += e->q[3 * a + 2] * f[2] * e->q[3 * b + 2];
+                out.c[c] = dplus(out.c[c], qa[2] * f[2], qb[2]);
         }
     return out;
 }
@@ -73,9 +74,9 @@ SPHGI_TEMPLATE struct corrected correct(const struct sphgi_threshold *threshold,
 SPHGI_TEMPLATE vec square_norm(const vec *c, bool three)
 {
     if (!three)
-        return c[0] * c[0] + c[2] * c[2] + R(2) * (c[1] * c[1]);
-    const vec diagonal = c[0] * c[0] + c[3] * c[3] + c[5] * c[5];
-    return diagonal + R(2) * (c[1] * c[1] + c[2] * c[2] + c[4] * c[4]);
+        return plus(plus(c[0] * c[0], c[2], c[2]), splat(R(2)), c[1] * c[1]);
+    const vec diagonal = plus(plus(c[0] * c[0], c[3], c[3]), c[5], c[5]);
+    return plus(diagonal, splat(R(2)), plus(plus(c[1] * c[1], c[2], c[2]), c[4], c[4]));
 }
 
 /* LDL^T inverse of one symmetric matrix a lane; gives the lanes that pass the certificate
@@ -89,26 +90,28 @@ SPHGI_TEMPLATE mask certified_inverse(const vec *m, real eps_high, bool three, v
     mask pivots;
     if (three) {
         const vec i0 = R(1) / m[0], l1 = m[1] * i0, l2 = m[2] * i0;
-        const vec d1 = m[3] - l1 * m[1], i1 = R(1) / d1, t = m[4] - l1 * m[2], l3 = t * i1;
-        const vec d2 = m[5] - l2 * m[2] - l3 * t, i2 = R(1) / d2, k2 = l1 * l3 - l2;
+        const vec d1 = minus(m[3], l1, m[1]), i1 = R(1) / d1;
+        const vec t = minus(m[4], l1, m[2]), l3 = t * i1;
+        const vec d2 = minus(minus(m[5], l2, m[2]), l3, t), i2 = R(1) / d2;
+        const vec k2 = plus(-l2, l1, l3);
         pivots = less(zero, m[0]) & less(zero, d1) & less(zero, d2);
         trace = m[0] + m[3] + m[5];
         c[5] = i2;
         c[4] = -l3 * i2;
-        c[3] = i1 - l3 * c[4];
+        c[3] = minus(i1, l3, c[4]);
         c[2] = k2 * i2;
-        c[1] = -l1 * i1 - l3 * c[2];
-        c[0] = i0 + l1 * l1 * i1 + k2 * c[2];
+        c[1] = minus(-l1 * i1, l3, c[2]);
+        c[0] = plus(plus(i0, l1 * l1, i1), k2, c[2]);
     } else {
-        const vec i0 = R(1) / m[0], l1 = m[1] * i0, d1 = m[2] - l1 * m[1], i1 = R(1) / d1;
+        const vec i0 = R(1) / m[0], l1 = m[1] * i0, d1 = minus(m[2], l1, m[1]), i1 = R(1) / d1;
         pivots = less(zero, m[0]) & less(zero, d1);
         trace = m[0] + m[2];
         c[2] = i1;
         c[1] = -l1 * i1;
-        c[0] = i0 - l1 * c[1];
+        c[0] = minus(i0, l1, c[1]);
     }
     *square = square_norm(c, three);
-    const vec bound = eps_high + R(80 * UNIT_ROUNDOFF) * trace;
+    const vec bound = plus(splat(eps_high), splat(R(80 * UNIT_ROUNDOFF)), trace);
     const mask exact = less(splat(REAL_IS_F64 ? R(0x1p-800) : R(0x1p-80)), *square);
     return pivots & exact & less(*square * (bound * bound), splat(R(1)));
 }
@@ -363,8 +366,8 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
     for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
             const int k = pair_index(a, b, d);
-            const vec centred = load(wxx + k * SPHGI_WIDTH) * inverse - mean[a] * mean[b];
-            m[k] = centred * inverse_mu2;
+            const vec second = load(wxx + k * SPHGI_WIDTH) * inverse;
+            m[k] = minus(second, mean[a], mean[b]) * inverse_mu2;
         }
     vec largest = classic_inverse(threshold, m, l, c, lambda_min, verdict, three);
     verdict->largest_square = verdict->largest_square > largest_of(largest)
@@ -377,10 +380,10 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
     for (int a = 0; a < d; ++a) {
         y[a] = splat(R(0));
         for (int b = 0; b < d; ++b)
-            y[a] -= full[a][b] * mean[b];
+            y[a] = minus(y[a], full[a][b], mean[b]);
     }
     for (int a = 0; a < d; ++a)
-        y0 -= mean[a] * y[a];
+        y0 = minus(y0, mean[a], y[a]);
     store(out, where(some, y0 * inverse));
     for (int a = 0; a < d; ++a)
         store(out + (1 + a) * SPHGI_WIDTH, where(some, y[a] * inverse));
@@ -388,21 +391,21 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
         vec r0 = -(load(dx + k * SPHGI_WIDTH) * y0), t[3];
         for (int a = 0; a < d; ++a) {
             const vec dka = load(dxx + pair_index(k, a, d) * SPHGI_WIDTH);
-            r0 += dka * y[a];
+            r0 = plus(r0, dka, y[a]);
             t[a] = dka * y0;
             for (int b = 0; b < d; ++b)
-                t[a] -= load(dxxx + triple_index(k, a, b, d) * SPHGI_WIDTH) * y[b];
+                t[a] = minus(t[a], load(dxxx + triple_index(k, a, b, d) * SPHGI_WIDTH), y[b]);
         }
         r0 *= inverse;
         for (int a = 0; a < d; ++a)
-            t[a] = t[a] * inverse + splat(R(a == k)) - mean[a] * r0;
+            t[a] = minus(plus(splat(R(a == k)), t[a], inverse), mean[a], r0);
         vec z0 = r0;
         real *z = out + (k + 1) * (d + 1) * SPHGI_WIDTH;
         for (int a = 0; a < d; ++a) {
             vec za = splat(R(0));
             for (int b = 0; b < d; ++b)
-                za += full[a][b] * t[b];
-            z0 -= mean[a] * za;
+                za = plus(za, full[a][b], t[b]);
+            z0 = minus(z0, mean[a], za);
             store(z + (1 + a) * SPHGI_WIDTH, where(some, za * inverse));
         }
         store(z, where(some, z0 * inverse));

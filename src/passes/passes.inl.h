@@ -2,6 +2,7 @@
 /* All passes for one scalar type and one instruction set. Include once per translation unit, with
  *   REAL_IS_F64   0 or 1
  *   SUFFIX        of the one exported symbol, sphgi_passes_SUFFIX
+ *   FUSES         1: products are fused to sums (vec.inl.h); may be left to the machine
  * The instruction set comes from the compile flags of the including file. Everything is static:
  * code for one instruction set must never be merged with that for another. */
 #include "passes.h"

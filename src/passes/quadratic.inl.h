@@ -42,7 +42,7 @@ SPHGI_TEMPLATE void whiten(const struct sphgi_second *second, real squares, vec 
     trace *= splat(R(second->trace) * squares);
     for (int k = 0; k < n; ++k)
         if (is_square(k, three))
-            v[k] = diagonal * v[k] + trace;
+            v[k] = plus(trace, diagonal, v[k]);
         else
             v[k] *= off;
 }
@@ -60,13 +60,13 @@ SPHGI_TEMPLATE mask inverse_by_columns(vec a[PAIRS_MOST][PAIRS_MOST], vec shift,
     for (int j = 0; j < n; ++j) {
         pivot[j] = a[j][j] + shift;
         for (int k = 0; k < j; ++k)
-            pivot[j] -= l[j][k] * l[j][k] * pivot[k];
+            pivot[j] = minus(pivot[j], l[j][k] * l[j][k], pivot[k]);
         positive &= less(splat(R(0)), pivot[j]);
         inverse[j] = R(1) / pivot[j];
         for (int i = j + 1; i < n; ++i) {
             vec t = a[i][j];
             for (int k = 0; k < j; ++k)
-                t -= l[i][k] * l[j][k] * pivot[k];
+                t = minus(t, l[i][k] * l[j][k], pivot[k]);
             l[i][j] = t * inverse[j];
         }
     }
@@ -76,12 +76,12 @@ SPHGI_TEMPLATE mask inverse_by_columns(vec a[PAIRS_MOST][PAIRS_MOST], vec shift,
         for (int i = c + 1; i < n; ++i) {
             y[i] = -l[i][c];
             for (int k = c + 1; k < i; ++k)
-                y[i] -= l[i][k] * y[k];
+                y[i] = minus(y[i], l[i][k], y[k]);
         }
         for (int i = n - 1; i >= c; --i) {
             vec t = y[i] * inverse[i];
             for (int k = i + 1; k < n; ++k)
-                t -= l[k][i] * x[k][c];
+                t = minus(t, l[k][i], x[k][c]);
             x[i][c] = t;
         }
     }
@@ -100,11 +100,11 @@ SPHGI_TEMPLATE vec frobenius_square(vec a[PAIRS_MOST][PAIRS_MOST], int n)
 {
     vec diagonal = splat(R(0)), off = splat(R(0));
     for (int k = 0; k < n; ++k) {
-        diagonal += a[k][k] * a[k][k];
+        diagonal = plus(diagonal, a[k][k], a[k][k]);
         for (int l = 0; l < k; ++l)
-            off += a[k][l] * a[k][l];
+            off = plus(off, a[k][l], a[k][l]);
     }
-    return diagonal + R(2) * off;
+    return plus(diagonal, splat(R(2)), off);
 }
 
 /* ---- One vector of targets ------------------------------------------------------------------- */
@@ -122,23 +122,25 @@ SPHGI_TEMPLATE void solve_for_pairs(const vec *m2, vec m3[3][PAIRS_MOST], vec k[
 {
     const int n = three ? 6 : 3;
     const vec i0 = R(1) / m2[0], l1 = m2[1] * i0, none = splat(R(0));
-    const vec d1 = m2[three ? 3 : 2] - l1 * m2[1], i1 = R(1) / d1;
+    const vec d1 = minus(m2[three ? 3 : 2], l1, m2[1]), i1 = R(1) / d1;
     vec l2 = none, l3 = none, i2 = none;
     if (three) {
-        const vec t = m2[4] - l1 * m2[2];
+        const vec t = minus(m2[4], l1, m2[2]);
         l2 = m2[2] * i0;
         l3 = t * i1;
-        i2 = R(1) / (m2[5] - l2 * m2[2] - l3 * t);
+        i2 = R(1) / minus(minus(m2[5], l2, m2[2]), l3, t);
     }
     for (int c = 0; c < n; ++c) {
-        const vec y0 = m3[0][c], y1 = m3[1][c] - l1 * y0;
-        vec z2 = none;
+        const vec y0 = m3[0][c], y1 = minus(m3[1][c], l1, y0);
+        k[0][c] = y0 * i0;
+        k[1][c] = y1 * i1;
         if (three) {
-            z2 = (m3[2][c] - l2 * y0 - l3 * y1) * i2;
-            k[2][c] = z2;
+            k[2][c] = minus(minus(m3[2][c], l2, y0), l3, y1) * i2;
+            k[1][c] = minus(k[1][c], l3, k[2][c]);
         }
-        k[1][c] = y1 * i1 - l3 * z2;
-        k[0][c] = y0 * i0 - l1 * k[1][c] - l2 * z2;
+        k[0][c] = minus(k[0][c], l1, k[1][c]);
+        if (three)
+            k[0][c] = minus(k[0][c], l2, k[2][c]);
     }
 }
 
@@ -177,7 +179,7 @@ SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sum
     for (int k = 0; k < n; ++k)
         for (int l = 0; l <= k; ++l)
             for (int a = 0; a < d; ++a)
-                b->s[k][l] -= m3[a][k] * b->k[a][l];
+                b->s[k][l] = minus(b->s[k][l], m3[a][k], b->k[a][l]);
 }
 
 /* The shift s: 0 from t = 4 eps_q on, 4 eps_q up to t = eps_q; other policies know no between. */
@@ -187,8 +189,8 @@ SPHGI_TEMPLATE vec shift_of(const struct sphgi_second *second, vec t, vec eps)
     if (second->policy != SPHG_BLEND)
         return select(less(eps, t), zero, R(4) * eps);
     const vec part = vmin(vmax((t - eps) / (R(3) * eps), zero), one);
-    const vec open = where(less(t, R(4) * eps), one - part * part * (R(3) - R(2) * part));
-    return R(4) * eps * open;
+    const vec rest = minus(one, part * part, minus(splat(R(3)), splat(R(2)), part));
+    return R(4) * eps * where(less(t, R(4) * eps), rest);
 }
 
 /* How far the curvature of a target is resolved. */
@@ -208,8 +210,8 @@ SPHGI_TEMPLATE void measure(const struct sphgi_second *second, const struct bloc
     vec norm = zero;
     for (int a = 0; a < (three ? 3 : 2); ++a)
         for (int k = 0; k < n; ++k)
-            norm += b->k[a][k] * b->k[a][k];
-    const vec floor = R(16 * UNIT_ROUNDOFF) * (b->trace4 + norm * b->trace2);
+            norm = plus(norm, b->k[a][k], b->k[a][k]);
+    const vec floor = R(16 * UNIT_ROUNDOFF) * plus(b->trace4, norm, b->trace2);
     r->eps = select(less(given, floor), floor, given);
     const vec square = frobenius_square(inverse, n);
     r->t = where(positive & less(zero, square), R(1) / vsqrt(square));
@@ -231,7 +233,7 @@ SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, v
     if (borrows) {
         const vec given = splat(R(second->high));
         r->high = shift_of(second, r->t, select(less(given, r->eps), r->eps, given));
-        shift += r->beta * r->high;
+        shift = plus(shift, r->beta, r->high);
     }
     const mask whole = at_most(shift, zero);
     r->left = splat(R(n)); /* tr F S / kept = n - s tr (S + s)^-1 */
@@ -242,7 +244,7 @@ SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, v
         for (int k = 0; k < n; ++k)
             for (int l = 0; l <= k; ++l)
                 f[k][l] = select(whole, f[k][l], where(sound, shifted[k][l]));
-        const vec lost = splat(R(n)) - shift * trace_of(shifted, n);
+        const vec lost = minus(splat(R(n)), shift, trace_of(shifted, n));
         r->left = select(whole, r->left, where(sound, lost));
     }
     const mask some = less(zero, kept);
@@ -267,7 +269,7 @@ SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct 
         for (int k = 0; k < n; ++k) {
             vec sum = b->k[a][0] * f[0][k];
             for (int l = 1; l < n; ++l)
-                sum += b->k[a][l] * f[l][k];
+                sum = plus(sum, b->k[a][l], f[l][k]);
             q[a][k] = where(some, -sum);
         }
     for (int a = 0; a < d; ++a)
@@ -275,8 +277,8 @@ SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct 
             real *p = out + pair_index(a, c, d) * SPHGI_WIDTH;
             vec sum = splat(R(0));
             for (int k = 0; k < n; ++k)
-                sum += q[a][k] * b->k[c][k];
-            store(p, load(p) - factor * where(some, sum));
+                sum = plus(sum, q[a][k], b->k[c][k]);
+            store(p, minus(load(p), factor, where(some, sum)));
         }
     for (int a = 0; a < d; ++a) {
         whiten(second, R(2), q[a], three);

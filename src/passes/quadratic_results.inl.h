@@ -76,10 +76,10 @@ SPHGI_TEMPLATE void quadratic_gradients_as(const struct sphgi_tile *tile, const 
         for (int a = 0; a < d; ++a) {
             vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * g[0];
             for (int b = 1; b < d; ++b)
-                sum += load(c + pair_index(a, b, d) * SPHGI_WIDTH) * g[b];
+                sum = plus(sum, load(c + pair_index(a, b, d) * SPHGI_WIDTH), g[b]);
             for (int m = 0; m < n; ++m)
-                sum -= load(cross + (a * n + m) * SPHGI_WIDTH) *
-                       ((is_square(m, three) ? R(.5) : R(1)) * p[m]);
+                sum = minus(sum, load(cross + (a * n + m) * SPHGI_WIDTH),
+                            (is_square(m, three) ? R(.5) : R(1)) * p[m]);
             store(array_of(tile->arrays, SPHGI_GX) + a * SPHGI_TILE + k, scale * sum);
         }
     }
@@ -120,10 +120,10 @@ SPHGI_TEMPLATE void transposed_quadratic_as(const struct sphgi_tile *tile, const
         for (int a = 0; a < d; ++a) {
             vec sum = splat(R(0));
             for (int m = 0; m < n; ++m)
-                sum += c[n + a * n + m] * ((is_square(m, three) ? R(.5) : R(1)) * p[m]);
+                sum = plus(sum, c[n + a * n + m], (is_square(m, three) ? R(.5) : R(1)) * p[m]);
             sum *= between;
             for (int b = 0; b < d; ++b)
-                sum += c[pair_index(a, b, d)] * g[b];
+                sum = plus(sum, c[pair_index(a, b, d)], g[b]);
             store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
         }
     }
@@ -158,18 +158,18 @@ SPHGI_TEMPLATE void apply_quadratic_as(int32_t count, const real *c, const real 
         for (int a = 0; a < d; ++a) {
             vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * b[0];
             for (int p = 1; p < d; ++p)
-                sum += load(c + pair_index(a, p, d) * SPHGI_WIDTH) * b[p];
+                sum = plus(sum, load(c + pair_index(a, p, d) * SPHGI_WIDTH), b[p]);
             for (int k = 0; k < n; ++k)
-                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * e[k];
+                sum = plus(sum, load(cross + (a * n + k) * SPHGI_WIDTH), e[k]);
             store(j + (i * d + a) * SPHGI_WIDTH, once * sum);
         }
         vec squares = splat(R(0));
         for (int k = 0; h && k < n; ++k) {
             vec sum = load(cross + k * SPHGI_WIDTH) * b[0];
             for (int a = 1; a < d; ++a)
-                sum += load(cross + (a * n + k) * SPHGI_WIDTH) * b[a];
+                sum = plus(sum, load(cross + (a * n + k) * SPHGI_WIDTH), b[a]);
             for (int p = 0; p < n; ++p)
-                sum += load(rest + pair_index(k, p, n) * SPHGI_WIDTH) * e[p];
+                sum = plus(sum, load(rest + pair_index(k, p, n) * SPHGI_WIDTH), e[p]);
             sum = twice * sum;
             if (is_square(k, three))
                 squares += sum;

@@ -29,14 +29,14 @@ SPHGI_TEMPLATE void third_moments_as(const struct sphgi_tile *tile, real *sums, 
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
         pair_products(g, x, three, p);
         for (int c = 0; c < (three ? 6 : 3); ++c)
-            sum[c] += p[c] * x[0];
+            sum[c] = plus(sum[c], p[c], x[0]);
         if (three) {
-            sum[6] += p[3] * x[1];
-            sum[7] += p[3] * x[2];
-            sum[8] += p[4] * x[2];
-            sum[9] += p[5] * x[2];
+            sum[6] = plus(sum[6], p[3], x[1]);
+            sum[7] = plus(sum[7], p[3], x[2]);
+            sum[8] = plus(sum[8], p[4], x[2]);
+            sum[9] = plus(sum[9], p[5], x[2]);
         } else {
-            sum[3] += p[2] * x[1];
+            sum[3] = plus(sum[3], p[2], x[1]);
         }
     }
     end_tile(tile, sum, n, sums);
@@ -61,7 +61,7 @@ SPHGI_TEMPLATE void fourth_moments_as(const struct sphgi_tile *tile, real *sums,
         pair_products(x, x, three, plain);
         for (int c = 0; c < count; ++c) {
             const int *of = three ? fourth_of_three[first + c] : fourth_of_two[first + c];
-            sum[c] -= weighted[of[0]] * plain[of[1]];
+            sum[c] = minus(sum[c], weighted[of[0]], plain[of[1]]);
         }
     }
     end_tile(tile, sum, count, sums + first * SPHGI_WIDTH);
@@ -104,9 +104,9 @@ SPHGI_TEMPLATE void quadratic_vectors_as(const struct sphgi_tile *tile, const re
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
         pair_products(g, x, three, p);
         for (int32_t a = 0; a < d; ++a)
-            sum[a] += density * g[a];
+            sum[a] = plus(sum[a], density, g[a]);
         for (int32_t b = 0; b < n; ++b)
-            sum[d + b] -= density * p[b];
+            sum[d + b] = minus(sum[d + b], density, p[b]);
     }
     end_tile(tile, sum, d + n, sums);
 }
@@ -141,7 +141,7 @@ SPHGI_TEMPLATE void first_sums_as(const struct sphgi_tile *tile, const real *row
             const vec difference = value[c] - own[c];
             store(kept + c * SPHGI_TILE, difference);
             for (int32_t b = 0; b < d; ++b)
-                sum[c * d + b] += difference * g[b];
+                sum[c * d + b] = plus(sum[c * d + b], difference, g[b]);
         }
     }
     end_tile(tile, sum, count * d, sums);
@@ -161,7 +161,7 @@ SPHGI_TEMPLATE void second_sums_as(const struct sphgi_tile *tile, int32_t first,
         for (int32_t c = 0; c < count; ++c) {
             const vec difference = from(tile, (enum sphgi_array)(SPHGI_GX + first + c), k);
             for (int32_t b = 0; b < n; ++b)
-                sum[c * n + b] -= difference * p[b];
+                sum[c * n + b] = minus(sum[c * n + b], difference, p[b]);
         }
     }
     end_tile(tile, sum, count * n, sums + first * n * SPHGI_WIDTH);

@@ -18,7 +18,7 @@ SPHGI_TEMPLATE void apply_as(int32_t count, const real *correction, const real *
             if (correction) {
                 sum = c[pair_index(row, 0, d)] * b[0];
                 for (int32_t k = 1; k < d; ++k)
-                    sum += c[pair_index(row, k, d)] * b[k];
+                    sum = plus(sum, c[pair_index(row, k, d)], b[k]);
             }
             store(j + row * SPHGI_WIDTH, factor * sum);
         }
@@ -57,7 +57,7 @@ static void pair_gradients(const struct sphgi_tile *tile, int32_t dimension,
         for (int32_t a = 0; a < d; ++a) {
             vec sum = matrix[a][0] * in[0];
             for (int32_t b = 1; b < d; ++b)
-                sum += matrix[a][b] * in[b];
+                sum = plus(sum, matrix[a][b], in[b]);
             store(g + a * SPHGI_TILE, factor * sum);
         }
     }
@@ -124,7 +124,7 @@ static void add_outer(int32_t width, int32_t dimension, int32_t count, const voi
                 factor *= load((const real *)each + l);
             for (int32_t k = 0; k < dimension; ++k) {
                 real *j = (real *)jacobian + (i * dimension + k) * SPHGI_WIDTH + l;
-                store(j, load(j) + factor * load((const real *)b + k * SPHGI_WIDTH + l));
+                store(j, plus(load(j), factor, load((const real *)b + k * SPHGI_WIDTH + l)));
             }
         }
 }
@@ -160,8 +160,8 @@ static void double_product(int32_t width, int32_t count, const void *a, const vo
     for (int32_t l = 0; l < width; l += LANES) {
         vec sum = load((const real *)a + l) * load((const real *)b + l);
         for (int32_t k = 1; k < count; ++k)
-            sum += load((const real *)a + k * SPHGI_WIDTH + l) *
-                   load((const real *)b + k * SPHGI_WIDTH + l);
+            sum = plus(sum, load((const real *)a + k * SPHGI_WIDTH + l),
+                       load((const real *)b + k * SPHGI_WIDTH + l));
         store((real *)out + l, sum);
     }
 }

@@ -261,7 +261,7 @@ SPHGI_TEMPLATE mask near_box(const struct box *box, const struct three *coordina
             d = vmax(vabs(d) - box->half[a], (vec){0});
         } else
             d = at[a] - vmin(vmax(at[a], box->low[a]), box->high[a]);
-        square += d * d;
+        square = plus(square, d, d);
     }
     return at_most(square, box->square_reach); /* both may be infinite */
 }
@@ -433,8 +433,8 @@ SPHGI_TEMPLATE void find_few(const struct sphgi_find *find, const struct candida
 /* Squares of the radii that count, rounded like those of distances. */
 SPHGI_TEMPLATE vec square_of_radius(vec radius, vec stretch)
 {
-    const vec reach = rounded(radius * stretch);
-    return rounded(reach * reach);
+    const vec reach = radius * stretch;
+    return reach * reach;
 }
 
 /* radii: targets have their own, in the 4th number of their rows. */

@@ -10,8 +10,8 @@ SPHGI_TEMPLATE real *array_of(void *arrays, enum sphgi_array array)
 SPHGI_TEMPLATE vec factor_of(vec scale, vec inverse_h, vec r, vec volume, sphg_kernel kernel,
                              sphg_method method)
 {
-    const vec q = inverse_h * r;
-    const vec value = method == SPHG_KGC ? kernel_d(kernel, q) : kernel_w(kernel, q);
+    const struct ratio at = ratio_of(r, inverse_h);
+    const vec value = method == SPHG_KGC ? kernel_d(kernel, at) : kernel_w(kernel, at);
     vec weight = scale;
     if (method != SPHG_MLS)
         weight *= volume;
@@ -44,9 +44,9 @@ SPHGI_TEMPLATE void weights_as(const struct sphgi_shape *shape, real *a, int32_t
 {
     const vec scale = splat(R(shape->value_scale)), inverse_h = inverse_radius(shape);
     for (int32_t k = 0; k < count; k += LANES, a += LANES) {
-        const vec q = inverse_h * load(a + SPHGI_R * SPHGI_TILE);
-        store(a + SPHGI_S * SPHGI_TILE, scale * kernel_w(kernel, q));
-        store(a + SPHGI_D * SPHGI_TILE, scale * kernel_d(kernel, q));
+        const struct ratio at = ratio_of(load(a + SPHGI_R * SPHGI_TILE), inverse_h);
+        store(a + SPHGI_S * SPHGI_TILE, scale * kernel_w(kernel, at));
+        store(a + SPHGI_D * SPHGI_TILE, scale * kernel_d(kernel, at));
     }
 }
 

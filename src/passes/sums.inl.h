@@ -111,16 +111,16 @@ SPHGI_TEMPLATE void moments_as(const struct sphgi_tile *tile, void *sums, bool t
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const vec x = from(tile, SPHGI_X, k), y = from(tile, SPHGI_Y, k);
         const vec s = from(tile, SPHGI_S, k), gx = s * x, gy = s * y;
-        m[0] -= gx * x;
-        m[1] -= gx * y;
+        m[0] = minus(m[0], gx, x);
+        m[1] = minus(m[1], gx, y);
         if (three) {
             const vec z = from(tile, SPHGI_Z, k), gz = s * z;
-            m[2] -= gx * z;
-            m[3] -= gy * y;
-            m[4] -= gy * z;
-            m[5] -= gz * z;
+            m[2] = minus(m[2], gx, z);
+            m[3] = minus(m[3], gy, y);
+            m[4] = minus(m[4], gy, z);
+            m[5] = minus(m[5], gz, z);
         } else {
-            m[2] -= gy * y;
+            m[2] = minus(m[2], gy, y);
         }
     }
     end_tile(tile, m, n, sums);
@@ -148,14 +148,13 @@ SPHGI_TEMPLATE void field_as(const struct sphgi_tile *tile, enum sphgi_vectors v
     clear(sum, count * d);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const struct four row = gather_rows(rows, ids_at(tile, k));
-        const vec value[4] = {row.x, row.y, row.z, row.w};
-        vec g[3];
+        vec difference[4] = {row.x, row.y, row.z, row.w}, g[3];
+        for (int32_t c = 0; c < count; ++c)
+            difference[c] -= own[c];
         vectors_at(tile, k, vectors, three, g);
-        for (int32_t c = 0; c < count; ++c) {
-            const vec difference = value[c] - own[c];
+        for (int32_t c = 0; c < count; ++c)
             for (int32_t b = 0; b < d; ++b)
-                sum[c * d + b] += difference * g[b];
-        }
+                sum[c * d + b] = plus(sum[c * d + b], difference[c], g[b]);
     }
     end_tile(tile, sum, count * d, sums);
 }
@@ -211,12 +210,20 @@ static void sum_value(const struct sphgi_tile *tile, const void *rows, int32_t c
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const struct four row = gather_rows(rows, ids_at(tile, k));
         const vec phi = from(tile, SPHGI_PHI, k);
-        sum[0] += (row.x - own[0]) * phi;
-        sum[1] += (row.y - own[1]) * phi;
-        sum[2] += (row.z - own[2]) * phi;
-        sum[3] += (row.w - own[3]) * phi;
+        sum[0] = plus(sum[0], row.x - own[0], phi);
+        sum[1] = plus(sum[1], row.y - own[1], phi);
+        sum[2] = plus(sum[2], row.z - own[2], phi);
+        sum[3] = plus(sum[3], row.w - own[3], phi);
     }
     end_tile(tile, sum, count, sums);
+}
+
+/* sum + rho_j g, or sum + g */
+SPHGI_TEMPLATE vec plus_vector(vec sum, vec g, const vec *density)
+{
+    if (density)
+        return plus(sum, *density, g);
+    return sum + g;
 }
 
 /* sum g, or sum rho_j g with the density in the first number of the rows */
@@ -227,11 +234,12 @@ SPHGI_TEMPLATE void vectors_as(const struct sphgi_tile *tile, enum sphgi_vectors
     vec sum[3];
     clear(sum, d);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const vec density = dense ? gather_rows(rows, ids_at(tile, k)).x : splat(R(1));
-        vec g[3];
+        vec density, g[3];
+        if (dense)
+            density = gather_rows(rows, ids_at(tile, k)).x;
         vectors_at(tile, k, vectors, three, g);
         for (int32_t c = 0; c < d; ++c)
-            sum[c] += density * rounded(g[c]);
+            sum[c] = plus_vector(sum[c], g[c], dense ? &density : NULL);
     }
     end_tile(tile, sum, d, sums);
 }
@@ -293,13 +301,13 @@ SPHGI_TEMPLATE void transposed_as(const struct sphgi_tile *tile, const void *con
         vec t[3] = {gx, gy, gz};
         if (!plain) {
             const struct four c = gather_rows(rows[0], ids_at(tile, k));
-            t[0] = c.x * gx + c.y * gy;
-            t[1] = c.y * gx + (three ? c.w : c.z) * gy;
+            t[0] = plus(c.x * gx, c.y, gy);
+            t[1] = plus(c.y * gx, three ? c.w : c.z, gy);
             if (three) {
                 const struct four e = gather_rows(rows[1], ids_at(tile, k));
-                t[0] += c.z * gz;
-                t[1] += e.x * gz;
-                t[2] = c.z * gx + e.x * gy + e.y * gz;
+                t[0] = plus(t[0], c.z, gz);
+                t[1] = plus(t[1], e.x, gz);
+                t[2] = plus(plus(c.z * gx, e.x, gy), e.y, gz);
             }
         }
         for (int a = 0; a < (three ? 3 : 2); ++a)

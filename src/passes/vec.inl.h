@@ -1,10 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /* Vectors of REAL: GCC and Clang vector extensions, and the few operations that those lack.
- * Parameters: REAL_IS_F64. Gives real, vec, mask, LANES, UNIT_ROUNDOFF. */
+ * Parameters: REAL_IS_F64, FUSES. Gives real, vec, mask, LANES, UNIT_ROUNDOFF. */
 #if defined(__SSE2__)
 #include <immintrin.h>
 #elif defined(__aarch64__)
 #include <arm_neon.h>
+#endif
+
+/* Whether plus and minus round once. The base path of x86 never does, whatever its compiler may
+ * use: it has the same bits on every machine. */
+#ifndef FUSES
+#if defined(__aarch64__) || defined(__riscv) || defined(__powerpc64__) || defined(__s390x__)
+#define FUSES 1
+#else
+#define FUSES 0
+#endif
 #endif
 
 #if defined(__AVX512F__)
@@ -235,16 +245,50 @@ SPHGI_TEMPLATE vec vmin(vec a, vec b)
 }
 #endif
 
-/* Keeps the compiler from fusing a product into a following sum: the neighbour predicate is
- * defined without FMA (docs/theory.md, section 1). */
-SPHGI_TEMPLATE vec rounded(vec v)
+/* ---- Products and sums -----------------------------------------------------------------------
+ * Which product is fused to which sum, into one rounding, stands in the formulas and is left to no
+ * compiler (-ffp-contract=off): what is written with + and * is rounded after each, and plus and
+ * minus round once where the path fuses. Of a sum of products the first is rounded and the others
+ * are fused to it in their order: a b + c d + e f is plus(plus(a * b, c, d), e, f). So all paths
+ * that fuse give the same bits, on every machine and with every compiler. */
+
+#if !FUSES
+SPHGI_TEMPLATE vec plus(vec sum, vec a, vec b) /* sum + a b */
 {
-#if defined(__AVX512F__)
-    __asm__("" : "+v"(v));
-#elif defined(__FMA__)
-    __asm__("" : "+x"(v));
-#elif defined(__aarch64__)
-    __asm__("" : "+w"(v));
-#endif
-    return v;
+    return sum + a * b;
 }
+SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b) /* sum - a b */
+{
+    return sum - a * b;
+}
+#elif defined(__FMA__)
+SPHGI_TEMPLATE vec plus(vec sum, vec a, vec b)
+{
+    return (vec)OP(fmadd)((NATIVE)a, (NATIVE)b, (NATIVE)sum);
+}
+SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b)
+{
+    return (vec)OP(fnmadd)((NATIVE)a, (NATIVE)b, (NATIVE)sum);
+}
+#elif defined(__aarch64__)
+SPHGI_TEMPLATE vec plus(vec sum, vec a, vec b)
+{
+    return (vec)OP(fma)((NATIVE)sum, (NATIVE)a, (NATIVE)b);
+}
+SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b)
+{
+    return (vec)OP(fms)((NATIVE)sum, (NATIVE)a, (NATIVE)b);
+}
+#else
+SPHGI_TEMPLATE vec plus(vec sum, vec a, vec b)
+{
+    for (int k = 0; k < LANES; ++k)
+        sum[k] = REAL_IS_F64 ? R(__builtin_fma(a[k], b[k], sum[k]))
+                             : R(__builtin_fmaf((float)a[k], (float)b[k], (float)sum[k]));
+    return sum;
+}
+SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b)
+{
+    return plus(sum, -a, b);
+}
+#endif

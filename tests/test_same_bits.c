@@ -1,0 +1,397 @@
+/* SPDX-License-Identifier: MIT */
+/* Two numbers for all results: one for the base path of x86-64, one for all paths that fuse
+ * products and sums, x86-64-v3, x86-64-v4 and AArch64, whichever compiler made them. Every pass
+ * takes part: each kernel, method and form in 2D and 3D, radii of their own, periodic boxes, order
+ * 2, lenders, diffusion, pairs, small matrices. */
+#include "support/setup.h"
+#include "support/pins.h"
+
+#if PINS_HOLD_HERE
+
+/* A change that adds in another order changes these, and says so in its message. */
+typedef struct pins {
+    uint64_t base[3][2], fused[3][2]; /* [precision][2D, 3D] */
+} pins;
+
+/* ---- Scene ----------------------------------------------------------------------------------- */
+
+enum { MOST_OUTPUTS = 64 };
+
+typedef struct scene {
+    const test_case *test;
+    cloud points;
+    sphg_type type;
+    setup_array position, radius, volume, density, scalar, vector, tensor, coefficient;
+    sphg_context *context;
+    sphg_scheme scheme;
+    sphg_sources sources;
+    setup_array outputs[MOST_OUTPUTS];
+    int output_count;
+    uint64_t hash;
+} scene;
+
+static setup_array numbers_of(const scene *of, sphg_type type, int width, double low, double high,
+                              random_state *random)
+{
+    const int count = of->points.count * width;
+    double *numbers = test_memory((size_t)count * sizeof *numbers);
+    for (int k = 0; k < count; ++k)
+        numbers[k] = random_between(random, low, high);
+    return setup_numbers(type, of->points.count, width, numbers);
+}
+
+/* Thin at one side and full at the other, so that some particles are isolated, some moments are
+ * decomposed and some lists take several chunks. */
+static scene scene_on(const test_case *test, sphg_isa isa)
+{
+    random_state random = random_seeded(227);
+    const int d = test->dimension;
+    scene of = {.test = test, .type = test_field_type(test), .hash = FNV1A_BEGIN};
+    of.points = cloud_random(d, d == 2 ? 250 : 400, d == 2 ? 16 : 7, &random);
+    for (int i = 0; i < of.points.count; ++i)
+        of.points.x[d * i] *= of.points.x[d * i] / 8;
+    of.position = setup_positions(test, &of.points);
+    of.radius = numbers_of(&of, test_position_type(test), 1, 1.5, 2.5, &random);
+    of.volume = numbers_of(&of, of.type, 1, .5, 1.5, &random);
+    of.density = numbers_of(&of, of.type, 1, .5, 1.5, &random);
+    of.scalar = numbers_of(&of, of.type, 1, -1, 1, &random);
+    of.vector = numbers_of(&of, of.type, d, -1, 1, &random);
+    of.tensor = numbers_of(&of, of.type, d * d, -1, 1, &random);
+    of.coefficient = numbers_of(&of, of.type, 1, .1, 10, &random);
+    of.context = setup_context_on(isa);
+    of.scheme = setup_scheme(test, 2);
+    of.sources.volume = setup_view(&of.volume);
+    of.sources.density = setup_view(&of.density);
+    return of;
+}
+
+typedef enum domain { OPEN, PERIODIC, OWN_RADII } domain;
+
+static void search(scene *of, domain in)
+{
+    sphg_geometry geometry = setup_geometry(of->test, &of->points, &of->position);
+    if (in == PERIODIC)
+        geometry.period[0] = geometry.period[1] = 15;
+    if (in == OWN_RADII) {
+        geometry.source_support = setup_view(&of->radius);
+        geometry.mutual = 1;
+    }
+    of->sources.neighbors = setup_search(of->context, &of->scheme, &geometry);
+}
+
+static sphg_view output(scene *of, sphg_type type, int width)
+{
+    TEST_REQUIRE(of->output_count < MOST_OUTPUTS, "room for %d outputs", MOST_OUTPUTS);
+    setup_array *array = &of->outputs[of->output_count++];
+    *array = setup_output(type, of->points.count, width);
+    return setup_view(array);
+}
+
+/* What the calls since the last one have written. */
+static void mix_outputs(scene *of)
+{
+    for (int k = 0; k < of->output_count; ++k) {
+        const setup_array *array = &of->outputs[k];
+        const size_t number = array->type == SPHG_F64 ? 8 : array->type == SPHG_F32 ? 4 : 1;
+        of->hash =
+            fnv1a(of->hash, array->data, (size_t)array->count * (size_t)array->width * number);
+    }
+    of->output_count = 0;
+}
+
+static void evaluate(scene *of, const sphg_field *fields, int count, bool corrections)
+{
+    sphg_request request = {
+        .sources = &of->sources, .set_count = 1, .fields = fields, .field_count = count};
+    if (corrections) {
+        request.rank = output(of, SPHG_U8, 1);
+        request.lambda_min = output(of, of->type, 1);
+        request.correction = output(of, of->type, sphg_correction_width(&of->scheme));
+    }
+    SETUP_OK(of->context, sphg_evaluate(of->context, &of->scheme, &request));
+    if (corrections)
+        of->sources.correction = request.correction;
+}
+
+/* ---- What is asked for -------------------------------------------------------------------------
+ */
+
+static bool is_classic(const scene *of)
+{
+    return of->scheme.method == SPHG_CMLS || of->scheme.method == SPHG_CRKPM;
+}
+
+/* Corrections, with forms that need none of the sources'. */
+static void one_sided(scene *of)
+{
+    const int d = of->test->dimension;
+    const sphg_view scalar = setup_view(&of->scalar), vector = setup_view(&of->vector);
+    const sphg_view tensor = setup_view(&of->tensor), volume = setup_view(&of->density);
+    const bool classic = is_classic(of);
+    sphg_field fields[] = {
+        {.shape = SPHG_VECTOR, .at_sources = &vector},
+        {.shape = SPHG_TENSOR, .at_sources = &tensor},
+        {.shape = SPHG_VECTOR, .form = SPHG_DIRECT, .at_sources = &vector},
+        {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &scalar},
+        {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &scalar, .shepard = !classic}};
+    fields[0].value = output(of, of->type, d);
+    fields[0].gradient = output(of, of->type, d * d);
+    fields[0].divergence = output(of, of->type, 1);
+    fields[0].curl = output(of, of->type, d == 3 ? 3 : 1);
+    fields[0].tensor = tensor;
+    fields[0].contraction = output(of, of->type, 1);
+    fields[1].divergence = output(of, of->type, d);
+    fields[2].value = output(of, of->type, d);
+    fields[2].divergence = output(of, of->type, 1);
+    fields[3].square = output(of, of->type, 1);
+    fields[4].value = output(of, of->type, 1);
+    fields[4].value_volume = classic ? NULL : &volume;
+    of->sources.correction = sphg_absent();
+    evaluate(of, fields, 5, of->scheme.method != SPHG_PLAIN);
+}
+
+/* Forms that read the table which is there by now; of classic methods without what they have not.
+ */
+static void two_sided(scene *of)
+{
+    const int d = of->test->dimension;
+    const sphg_view scalar = setup_view(&of->scalar), vector = setup_view(&of->vector);
+    const sphg_view tensor = setup_view(&of->tensor), coefficient = setup_view(&of->coefficient);
+    const bool flows = !is_classic(of);
+    sphg_field fields[] = {{.shape = SPHG_SCALAR, .form = SPHG_ADJOINT, .at_sources = &scalar},
+                           {.shape = SPHG_VECTOR, .form = SPHG_ADJOINT, .at_sources = &vector},
+                           {.shape = SPHG_TENSOR, .form = SPHG_ADJOINT, .at_sources = &tensor},
+                           {.shape = SPHG_VECTOR, .form = SPHG_SYMMETRIC, .at_sources = &vector},
+                           {.shape = SPHG_TENSOR, .form = SPHG_SYMMETRIC, .at_sources = &tensor},
+                           {.shape = SPHG_VECTOR, .form = SPHG_ADJOINT, .at_sources = &vector},
+                           {.shape = SPHG_SCALAR, .form = SPHG_ADJOINT, .at_sources = &scalar}};
+    fields[0].gradient = output(of, of->type, d);
+    fields[1].divergence = output(of, of->type, 1);
+    fields[2].divergence = output(of, of->type, d);
+    fields[3].gradient = output(of, of->type, d * d);
+    fields[4].divergence = output(of, of->type, d);
+    if (flows) {
+        fields[5].laplacian = output(of, of->type, d);
+        fields[5].coefficient = &coefficient;
+        fields[6].laplacian = output(of, of->type, 1);
+    }
+    evaluate(of, fields, flows ? 7 : 5, false);
+}
+
+static void pairs(scene *of)
+{
+    const int d = of->test->dimension, n = of->points.count;
+    sphg_pairs found = {.offsets = test_memory((size_t)(n + 1) * sizeof(int64_t))};
+    SETUP_OK(of->context, sphg_pair_gradients(of->context, &of->scheme, &of->sources, NULL,
+                                              sphg_absent(), &found));
+    setup_array gradient = setup_output(of->type, (int)found.count, d);
+    found.indices = test_memory((size_t)found.count * sizeof(int32_t));
+    found.gradient = setup_view(&gradient);
+    found.capacity = found.count;
+    SETUP_OK(of->context, sphg_pair_gradients(of->context, &of->scheme, &of->sources, NULL,
+                                              sphg_absent(), &found));
+    of->outputs[of->output_count++] = gradient;
+}
+
+static void every_form(scene *of)
+{
+    one_sided(of);
+    two_sided(of);
+    pairs(of);
+    mix_outputs(of);
+}
+
+/* Derivatives of order 2; their table, and who reads it; then what is lent and borrowed. */
+static void second_order(scene *of)
+{
+    const int d = of->test->dimension, products = d * (d + 1) / 2;
+    const sphg_view scalar = setup_view(&of->scalar), vector = setup_view(&of->vector);
+    const sphg_view tensor = setup_view(&of->tensor);
+    sphg_field own[] = {{.shape = SPHG_SCALAR, .at_sources = &scalar},
+                        {.shape = SPHG_VECTOR, .at_sources = &vector}};
+    own[0].gradient = output(of, of->type, d);
+    own[0].hessian = output(of, of->type, products);
+    own[1].gradient = output(of, of->type, d * d);
+    own[1].divergence = output(of, of->type, 1);
+    own[1].laplacian = output(of, of->type, d);
+    evaluate(of, own, 2, true);
+    sphg_field force = {.shape = SPHG_TENSOR, .form = SPHG_ADJOINT, .at_sources = &tensor};
+    force.divergence = output(of, of->type, d);
+    evaluate(of, &force, 1, false);
+    pairs(of);
+    of->sources.correction = sphg_absent();
+    sphg_view lent = sphg_absent();
+    sphg_field lends = {.shape = SPHG_VECTOR, .at_sources = &vector};
+    for (int round = 0; round < 3; ++round) {
+        lends.lenders = round ? &lent : NULL;
+        lends.gradient = output(of, of->type, d * d);
+        lends.laplacian = output(of, of->type, d);
+        lends.curvature = output(of, of->type, 1 + d * products);
+        evaluate(of, &lends, 1, false);
+        lent = lends.curvature;
+    }
+    mix_outputs(of);
+}
+
+/* The tensors of the scene as moments, from nearly the unit matrix to far from positive. */
+static void small_matrices(scene *of)
+{
+    const int d = of->test->dimension, n = of->points.count, width = d * (d + 1) / 2;
+    setup_array moments = setup_output(of->type, n, width);
+    for (int i = 0; i < n; ++i)
+        for (int a = 0, k = 0; a < d; ++a)
+            for (int b = a; b < d; ++b, ++k)
+                setup_put(&moments, i * width + k,
+                          (a == b) + 1.5 * i / n * setup_get(&of->tensor, i, a * d + b));
+    for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
+        of->scheme.policy = (sphg_policy)policy;
+        const sphg_inversion wanted = {.correction = output(of, of->type, width),
+                                       .rank = output(of, SPHG_U8, 1),
+                                       .lambda_min = output(of, of->type, 1)};
+        SETUP_OK(of->context, sphg_invert_moments(of->context, &of->scheme, n, setup_view(&moments),
+                                                  of->sources.volume, &wanted));
+    }
+    const sphg_view values = output(of, of->type, d), vectors = output(of, of->type, d * d);
+    SETUP_OK(of->context, sphg_eigen(of->context, d, n, setup_view(&moments), values, vectors));
+    mix_outputs(of);
+}
+
+/* ---- Properties --------------------------------------------------------------------------------
+ */
+
+static void every_method(scene *of)
+{
+    search(of, OPEN);
+    for (int method = SPHG_KGC; method <= SPHG_PLAIN; ++method) {
+        of->scheme.method = (sphg_method)method;
+        every_form(of);
+    }
+}
+
+static void every_kernel(scene *of)
+{
+    search(of, OPEN);
+    for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel)
+        for (int method = SPHG_KGC; method <= SPHG_CMLS; ++method) {
+            of->scheme.kernel = (sphg_kernel)kernel;
+            of->scheme.method = (sphg_method)method;
+            one_sided(of);
+            mix_outputs(of);
+        }
+}
+
+static void every_domain(scene *of)
+{
+    for (domain in = PERIODIC; in <= OWN_RADII; ++in) {
+        search(of, in);
+        for (int method = SPHG_KGC; method <= SPHG_RKPM; ++method) {
+            of->scheme.method = (sphg_method)method;
+            every_form(of);
+        }
+    }
+}
+
+static void every_order(scene *of)
+{
+    search(of, OPEN);
+    of->scheme.order = 2;
+    for (int method = SPHG_KGC; method <= SPHG_RKPM; ++method) {
+        of->scheme.method = (sphg_method)method;
+        second_order(of);
+    }
+}
+
+static void require_pinned(const test_case *test, void (*compute)(scene *), const pins *expected)
+{
+    int paths = 0;
+    if (random_chosen()) { /* the pins are those of the tests' own numbers */
+        print_message("skipped: SPHG_TEST_SEED is set (%d)\n", (int)test->precision);
+        return;
+    }
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        if (!setup_context_on(isa))
+            continue;
+        scene of = scene_on(test, isa);
+        compute(&of);
+        const uint64_t pinned =
+            (pins_are_of_fused(isa) ? expected->fused
+                                    : expected->base)[test->precision][test->dimension == 3];
+        TEST_REQUIRE(of.hash == pinned, "path %d: UINT64_C(0x%016llx)", (int)isa,
+                     (unsigned long long)of.hash);
+        ++paths;
+    }
+    assert_true(paths > 0);
+}
+
+static void methods_and_forms_have_one_hash_a_kind_of_path(const test_case *test)
+{
+    static const pins pinned = {{{UINT64_C(0x49119b5f62e69f4c), UINT64_C(0x2bad3c8d757f3c8d)},
+                                 {UINT64_C(0x42571e56cdcc2e72), UINT64_C(0xbb3baaede2a53691)},
+                                 {UINT64_C(0xf9261ce57932f8a5), UINT64_C(0xdc4e38ae44951cf3)}},
+                                {{UINT64_C(0x840aa956ad26f8a0), UINT64_C(0xf55409d3c3acea62)},
+                                 {UINT64_C(0x675eadf9acffae0a), UINT64_C(0x3b9c215f93a6aed5)},
+                                 {UINT64_C(0x15a8d7254210c546), UINT64_C(0xbc52d4f08ec322e1)}}};
+    require_pinned(test, every_method, &pinned);
+}
+
+static void kernels_have_one_hash_a_kind_of_path(const test_case *test)
+{
+    static const pins pinned = {{{UINT64_C(0xa44a72a3742d0a0d), UINT64_C(0x776ff97dd7489004)},
+                                 {UINT64_C(0x31898913f23396a7), UINT64_C(0x79124ec1b46ef465)},
+                                 {UINT64_C(0xe816b7686d59790e), UINT64_C(0xffe6bc95a82bfdb5)}},
+                                {{UINT64_C(0x4c3a6b080344b357), UINT64_C(0xc12b8304d317df4e)},
+                                 {UINT64_C(0x38b7b73e0d54a515), UINT64_C(0x9cfd2b258cb7aa96)},
+                                 {UINT64_C(0x6bb18211310c0d67), UINT64_C(0x506882063cd836c9)}}};
+    require_pinned(test, every_kernel, &pinned);
+}
+
+static void domains_and_radii_have_one_hash_a_kind_of_path(const test_case *test)
+{
+    static const pins pinned = {{{UINT64_C(0x56d1f00e650d4608), UINT64_C(0x41f15cc60d2690de)},
+                                 {UINT64_C(0x8920297d2eedac24), UINT64_C(0x03756aa736767f82)},
+                                 {UINT64_C(0xa24acd84167e2149), UINT64_C(0xf5c8605eb490dbb7)}},
+                                {{UINT64_C(0x243eb96ea639ca37), UINT64_C(0x8f4dcfa538e0c072)},
+                                 {UINT64_C(0x95a78cb3603d29dc), UINT64_C(0xc7441c7a37d0f941)},
+                                 {UINT64_C(0x5ab49c6bd99e99bf), UINT64_C(0xe83778c3a98b8e09)}}};
+    require_pinned(test, every_domain, &pinned);
+}
+
+static void order_2_have_one_hash_a_kind_of_path(const test_case *test)
+{
+    static const pins pinned = {{{UINT64_C(0x76d22f9542afc901), UINT64_C(0x41010983ffe84494)},
+                                 {UINT64_C(0x4bd40768b8e7ac49), UINT64_C(0x3630f4d8bbc2e8c4)},
+                                 {UINT64_C(0x8dc81c0638ce3661), UINT64_C(0x25c1deb9d981b40e)}},
+                                {{UINT64_C(0xfd5f45f2e6dfeb16), UINT64_C(0x190c8d55f739f4c9)},
+                                 {UINT64_C(0x30c7dd5f180d13c0), UINT64_C(0x8a281bc6d8365a6f)},
+                                 {UINT64_C(0xfb2e9298dd793d47), UINT64_C(0x758337d2ca10bcb3)}}};
+    require_pinned(test, every_order, &pinned);
+}
+
+static void small_matrices_have_one_hash_a_kind_of_path(const test_case *test)
+{
+    static const pins pinned = {{{UINT64_C(0x1de49512d9ae6aa2), UINT64_C(0x656add1ca3e1ecd5)},
+                                 {UINT64_C(0x243b089d16ef8c4e), UINT64_C(0x382ba7510879e220)},
+                                 {UINT64_C(0x1de49512d9ae6aa2), UINT64_C(0x656add1ca3e1ecd5)}},
+                                {{UINT64_C(0xba1de007aeb2a6d3), UINT64_C(0x9f7f05c4cd14f553)},
+                                 {UINT64_C(0x78096c891e6d7d6a), UINT64_C(0xdf503149a2f577f8)},
+                                 {UINT64_C(0xba1de007aeb2a6d3), UINT64_C(0x9f7f05c4cd14f553)}}};
+    require_pinned(test, small_matrices, &pinned);
+}
+
+#define ENTRY(property)                                                                            \
+    TEST_ENTRY(property##_have_one_hash_a_kind_of_path, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, \
+               0, 0)
+
+static const test_entry entries[] = {ENTRY(methods_and_forms), ENTRY(kernels),
+                                     ENTRY(domains_and_radii), ENTRY(order_2),
+                                     ENTRY(small_matrices)};
+#else
+static void nothing_is_pinned_for_this_machine(const test_case *test)
+{
+    (void)test;
+    test_skip();
+}
+
+static const test_entry entries[] = {TEST_ONCE(nothing_is_pinned_for_this_machine)};
+#endif
+TEST_MAIN(entries)
