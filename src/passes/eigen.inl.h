@@ -78,9 +78,7 @@ SPHGI_TEMPLATE dvec dminus(dvec sum, dvec a, dvec b)
 #else
 SPHGI_TEMPLATE dvec dplus(dvec sum, dvec a, dvec b)
 {
-    for (int k = 0; k < DLANES; ++k)
-        sum[k] = __builtin_fma(a[k], b[k], sum[k]);
-    return sum;
+    return (dvec){__builtin_fma(a[0], b[0], sum[0]), __builtin_fma(a[1], b[1], sum[1])};
 }
 SPHGI_TEMPLATE dvec dminus(dvec sum, dvec a, dvec b)
 {

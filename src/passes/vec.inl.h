@@ -282,10 +282,14 @@ SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b)
 #else
 SPHGI_TEMPLATE vec plus(vec sum, vec a, vec b)
 {
-    for (int k = 0; k < LANES; ++k)
-        sum[k] = REAL_IS_F64 ? R(__builtin_fma(a[k], b[k], sum[k]))
-                             : R(__builtin_fmaf((float)a[k], (float)b[k], (float)sum[k]));
-    return sum;
+#if REAL_IS_F64
+#define FUSED(k) __builtin_fma(a[k], b[k], sum[k])
+    return (vec){FUSED(0), FUSED(1)};
+#else
+#define FUSED(k) __builtin_fmaf(a[k], b[k], sum[k])
+    return (vec){FUSED(0), FUSED(1), FUSED(2), FUSED(3)};
+#endif
+#undef FUSED
 }
 SPHGI_TEMPLATE vec minus(vec sum, vec a, vec b)
 {

@@ -12,10 +12,11 @@ SWAPPED_TOKENS = {
                    "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*="},
     "logic": {"&&": "||", "||": "&&", " & ": " | ", " | ": " & ", "<<": ">>", ">>": "<<", "~": ""},
     "step": {"++": "--", "--": "++"},
+    "fused": {"plus": "minus", "minus": "plus", "dplus": "dminus", "dminus": "dplus"},
     "extreme": {"vmin": "vmax", "vmax": "vmin", "min32": "max32", "max32": "min32"},
 }
 TOKEN = re.compile(r"->|<<=|>>=|<<|>>|<=|>=|==|!=|&&|\|\||\+=|-=|\*=|/=|\+\+|--| [-+*/&|] |[<>~]|"
-                   r"\bvmin\b|\bvmax\b|(?<=sphgi_)m(?:in|ax)32\b")
+                   r"\bd?(?:plus|minus)\b|\bvmin\b|\bvmax\b|(?<=sphgi_)m(?:in|ax)32\b")
 NUMBER = re.compile(r"(?<![\w.])(?:0x[\da-fA-F.]+p[-+]?\d+|\d+\.\d*(?:e[-+]?\d+)?|\d+)(?![\w.])")
 CONDITION = re.compile(r"^(\s*(?:\} else )?(?:if|while) \()(.+)(\)(?: \{)?)$")
 SELECTION = re.compile(r"( = |return )([^=?;{}]+?)( \? )")
