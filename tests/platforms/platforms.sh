@@ -12,6 +12,7 @@ platform_table() {
     sed 's/ *| */|/g' <<'END'
 native   | cc                        |                | -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF | | base
 gcc-11   | gcc-11                    |                | -DBUILD_SHARED_LIBS=ON | | base
+native-march | cc                    |                | -DCMAKE_C_FLAGS=-march=native -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF | | base
 clang    | clang                     |                | -DSPHG_OPENMP=OFF | | base
 musl     | musl-gcc                  |                | -DSPHG_OPENMP=OFF -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF -DCMAKE_EXE_LINKER_FLAGS=-static | | base
 i386     | i686-linux-gnu-gcc        | Linux i686     | -DSPHG_OPENMP=OFF | qemu-i386 -L /usr/i686-linux-gnu | own
@@ -33,6 +34,8 @@ platform_row() {
     local row
     row=$(platform_table | grep "^$1|") || return 1
     IFS='|' read -r _ compiler machine options runner bits <<<"$row"
+    # the rows for this machine are written for x86-64; other machines fuse
+    [ -n "$machine" ] || [ "$bits" != base ] || [ "$(uname -m)" = x86_64 ] || bits=fused
 }
 
 platform_names() { platform_table | cut -d '|' -f 1; }
@@ -44,7 +47,7 @@ needs_of_platforms() {
     for name in ${*:-$(platform_names)}; do
         platform_names | grep -qxFe "$name" || continue # refused below
         case $name in
-            native) ;;
+            native | native-march) ;;
             i386*) echo cross_i386 ;;
             windows*) echo cross_windows ;;
             gcc-11) echo gcc_11 ;;
