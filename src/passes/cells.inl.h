@@ -80,12 +80,7 @@ static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t c
     four_bits far = {0};
     for (int32_t k = 0; k < count; ++k) {
         const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
-        four_doubles t = __builtin_convertvector(row, four_doubles) * scale;
-#if defined(__AVX2__)
-        __asm__("" : "+x"(t)); /* no fused multiply-add with what follows */
-#elif !defined(__SSE2__)
-        __asm__("" : "+m"(t));
-#endif
+        const four_doubles t = __builtin_convertvector(row, four_doubles) * scale;
         /* the whole number stands in the lowest bits; those of larger ones differ further up */
         const four_bits bits = (four_bits)(t - 0.5 + magic);
         far |= bits - nearest;
