@@ -309,7 +309,7 @@ static void room_for_more_pairs_than_32_bits_count_may_be_offered(const test_cas
     sphg_pairs pairs = {.offsets = offsets,
                         .indices = (int32_t *)(void *)memory,
                         .gradient = {memory + for_indices, NULL, NULL, (ptrdiff_t)(width * size),
-                                     test_field_type(test)},
+                                     test_field_type(test), SPHG_AS_SHAPE},
                         .capacity = room};
     SETUP_OK(own->context,
              sphg_pair_gradients(own->context, &scheme, &sources, NULL, sphg_absent(), &pairs));

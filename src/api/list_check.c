@@ -100,11 +100,12 @@ static sphg_result search_again(struct list_check *check, const struct sphgi_sch
 {
     const sphg_neighbors *n = check->tested;
     const ptrdiff_t stride = (ptrdiff_t)check->row_size;
-    sphg_geometry geometry = {.sources = {check->sources, NULL, NULL, stride, n->position_type},
-                              .source_count = n->source_count,
-                              .target_count = n->target_count,
-                              .precision = n->position_type,
-                              .list_free = 1};
+    sphg_geometry geometry = {
+        .sources = {check->sources, NULL, NULL, stride, n->position_type, SPHG_AS_SHAPE},
+        .source_count = n->source_count,
+        .target_count = n->target_count,
+        .precision = n->position_type,
+        .list_free = 1};
     if (!n->part_of)
         geometry.targets =
             (sphg_view){check->targets, NULL, NULL, stride, n->position_type, SPHG_AS_SHAPE};

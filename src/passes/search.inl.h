@@ -213,16 +213,17 @@ struct box {
 
 /* Margins: rounding of the predicate, of distances to the box and of the box itself is relative, a
  * few units in 2^-24, against 2^-16 here; between periodic images it is absolute: the slack. */
-SPHGI_TEMPLATE quad least_of(quad a, quad b)
+/* *a becomes the smaller, or the larger, of both. */
+SPHGI_TEMPLATE void lower_quad(quad *a, const quad *b)
 {
-    const quad_bits first = (quad_bits)(a < b);
-    return (quad)((first & (quad_bits)a) | (~first & (quad_bits)b));
+    const quad_bits first = (quad_bits)(*a < *b);
+    *a = (quad)((first & (quad_bits)*a) | (~first & (quad_bits)*b));
 }
 
-SPHGI_TEMPLATE quad most_of(quad a, quad b)
+SPHGI_TEMPLATE void raise_quad(quad *a, const quad *b)
 {
-    const quad_bits first = (quad_bits)(a < b);
-    return (quad)((first & (quad_bits)b) | (~first & (quad_bits)a));
+    const quad_bits first = (quad_bits)(*a > *b);
+    *a = (quad)((first & (quad_bits)*a) | (~first & (quad_bits)*b));
 }
 
 SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real *targets,
@@ -230,12 +231,15 @@ SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real
 {
     quad low = *(const quad *)targets, high = low;
     for (int32_t k = 1; k < count; ++k) {
-        const quad row = *(const quad *)(targets + SPHGI_ROW * k);
-        low = least_of(low, row);
-        high = most_of(high, row);
+        const quad *row = (const quad *)(targets + SPHGI_ROW * k);
+        lower_quad(&low, row);
+        raise_quad(&high, row);
     }
     const quad middle = low / 2 + high / 2;
-    const quad half = most_of(middle - low, high - middle) * R(1 + 0x1p-20);
+    const quad above = high - middle;
+    quad half = middle - low;
+    raise_quad(&half, &above);
+    half *= R(1 + 0x1p-20);
     struct box box;
     for (int a = 0; a < 3; ++a) {
         box.low[a] = splat(low[a]);
