@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Pairs one by one: export as CSR, with their G_ij. */
-#include "core/check.h"
+#include "core/overlap.h"
 #include "entries.h"
 #include "core/parallel.h"
 #include "plan/make.h"

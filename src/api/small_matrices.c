@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Public batches of small matrices: corrections from the host's own moments, eigenvalues, SVD. */
-#include "core/check.h"
+#include "core/overlap.h"
 #include "core/digits.h"
 #include "core/kernel.h"
 #include "core/parallel.h"

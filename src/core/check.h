@@ -66,18 +66,4 @@ sphg_result sphgi_refuse_list(struct sphgi_checker checker, int32_t target, int6
 sphg_result sphgi_check_subset(struct sphgi_checker checker, const sphg_subset *subset,
                                int32_t target_count);
 
-/* Memory that items of columns occupy, for the rule that outputs overlap nothing. */
-struct sphgi_extent {
-    const char *name;
-    struct sphgi_columns columns;
-    int32_t count;
-    size_t number_size;
-    bool output;
-};
-/* Of columns of numbers of that size. */
-struct sphgi_extent sphgi_extent_of(const char *name, const struct sphgi_columns *columns,
-                                    int32_t count, size_t number_size, bool output);
-sphg_result sphgi_check_overlap(struct sphgi_checker checker, const struct sphgi_extent *extents,
-                                int32_t count);
-
 #endif

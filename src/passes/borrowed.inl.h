@@ -53,7 +53,7 @@ SPHGI_TEMPLATE void weigh_lenders(const struct sphgi_second *second, const real 
     const vec rest = select(r->dropped | ~some, one, one - kept);
     for (int k = 0; k < n; ++k)
         for (int l = k; l < n; ++l)
-            store(prior + pair_index(k, l, n) * SPHGI_WIDTH,
+            store(prior + sphgi_pair_index(k, l, n) * SPHGI_WIDTH,
                   r->beta * (where(some, both * f[k][l]) + (k == l ? rest : none)));
     vec m3[3][PAIRS_MOST];
     for (int a = 0; a < d; ++a) {
@@ -66,9 +66,9 @@ SPHGI_TEMPLATE void weigh_lenders(const struct sphgi_second *second, const real 
     }
     for (int a = 0; a < d; ++a)
         for (int k = 0; k < n; ++k) {
-            vec sum = load(linear + pair_index(a, 0, d) * SPHGI_WIDTH) * m3[0][k];
+            vec sum = load(linear + sphgi_pair_index(a, 0, d) * SPHGI_WIDTH) * m3[0][k];
             for (int c = 1; c < d; ++c)
-                sum = plus(sum, load(linear + pair_index(a, c, d) * SPHGI_WIDTH), m3[c][k]);
+                sum = plus(sum, load(linear + sphgi_pair_index(a, c, d) * SPHGI_WIDTH), m3[c][k]);
             store(transport + (a * n + k) * SPHGI_WIDTH, sum);
         }
 }
@@ -154,9 +154,9 @@ SPHGI_TEMPLATE void add_borrowed_as(int32_t count, const struct sphgi_second *se
             mean[k] = load(lent + (1 + i * n + k) * SPHGI_WIDTH) * over * unit * unit;
         whiten(&back, R(.5), mean, three);
         for (int k = 0; k < n; ++k) {
-            y[k] = load(prior + pair_index(k, 0, n) * SPHGI_WIDTH) * mean[0];
+            y[k] = load(prior + sphgi_pair_index(k, 0, n) * SPHGI_WIDTH) * mean[0];
             for (int p = 1; p < n; ++p)
-                y[k] = plus(y[k], load(prior + pair_index(k, p, n) * SPHGI_WIDTH), mean[p]);
+                y[k] = plus(y[k], load(prior + sphgi_pair_index(k, p, n) * SPHGI_WIDTH), mean[p]);
         }
         for (int a = 0; a < d; ++a) {
             real *to = j + (i * d + a) * SPHGI_WIDTH;

@@ -5,7 +5,7 @@
 /* Component (a, b) of a tensor among those that the shape holds. */
 SPHGI_TEMPLATE int tensor_index(sphg_shape shape, int a, int b, int d)
 {
-    return shape == SPHG_SYM_TENSOR ? pair_index(a, b, d) : a * d + b;
+    return shape == SPHG_SYM_TENSOR ? sphgi_pair_index(a, b, d) : a * d + b;
 }
 
 SPHGI_TEMPLATE int components_of(sphg_shape shape, int d)
@@ -137,7 +137,8 @@ SPHGI_TEMPLATE void squares_as(const struct sphgi_tile *tile, enum sphgi_vectors
             sum[0] = plus(sum[0], a, square);
         for (int b = 0; b < d && !trace; ++b)
             for (int c = b; c < d; ++c)
-                sum[pair_index(b, c, d)] = plus(sum[pair_index(b, c, d)], a * g[b], g[c]);
+                sum[sphgi_pair_index(b, c, d)] =
+                    plus(sum[sphgi_pair_index(b, c, d)], a * g[b], g[c]);
     }
     end_tile(tile, sum, count, sums);
 }
@@ -174,10 +175,10 @@ SPHGI_TEMPLATE vec trace_between_as(const real *correction, const real *sums, in
     }
     for (int a = 0; a < d; ++a)
         for (int b = 0; b < d; ++b) {
-            vec product = c[pair_index(a, 0, d)] * s[pair_index(0, b, d)];
+            vec product = c[sphgi_pair_index(a, 0, d)] * s[sphgi_pair_index(0, b, d)];
             for (int k = 1; k < d; ++k)
-                product = plus(product, c[pair_index(a, k, d)], s[pair_index(k, b, d)]);
-            trace = plus(trace, c[pair_index(a, b, d)], product);
+                product = plus(product, c[sphgi_pair_index(a, k, d)], s[sphgi_pair_index(k, b, d)]);
+            trace = plus(trace, c[sphgi_pair_index(a, b, d)], product);
         }
     return trace;
 }

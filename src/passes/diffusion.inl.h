@@ -9,10 +9,10 @@ SPHGI_TEMPLATE vec along(const vec *m, const vec *x, int d)
     vec square = splat(R(0)), product = splat(R(0)), trace = splat(R(0));
     for (int a = 0; a < d; ++a) {
         square = plus(square, x[a], x[a]);
-        trace += m[pair_index(a, a, d)];
-        product = plus(product, m[pair_index(a, a, d)] * x[a], x[a]);
+        trace += m[sphgi_pair_index(a, a, d)];
+        product = plus(product, m[sphgi_pair_index(a, a, d)] * x[a], x[a]);
         for (int b = a + 1; b < d; ++b) {
-            const vec mixed = m[pair_index(a, b, d)] * x[a] * x[b];
+            const vec mixed = m[sphgi_pair_index(a, b, d)] * x[a] * x[b];
             product += mixed + mixed;
         }
     }

@@ -365,7 +365,7 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
         mean[a] = -(load(wx + a * SPHGI_WIDTH) * inverse);
     for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b) {
-            const int k = pair_index(a, b, d);
+            const int k = sphgi_pair_index(a, b, d);
             const vec second = load(wxx + k * SPHGI_WIDTH) * inverse;
             m[k] = minus(second, mean[a], mean[b]) * inverse_mu2;
         }
@@ -376,7 +376,7 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
     vec full[3][3], y[3], y0 = splat(R(1));
     for (int a = 0; a < d; ++a)
         for (int b = 0; b < d; ++b)
-            full[a][b] = c[pair_index(a, b, d)] * inverse_mu2;
+            full[a][b] = c[sphgi_pair_index(a, b, d)] * inverse_mu2;
     for (int a = 0; a < d; ++a) {
         y[a] = splat(R(0));
         for (int b = 0; b < d; ++b)
@@ -390,7 +390,7 @@ SPHGI_TEMPLATE void classic_as(const struct sphgi_threshold *threshold, double m
     for (int k = 0; k < d; ++k) { /* r = e_k - B_k y, z_k = A^-1 r */
         vec r0 = -(load(dx + k * SPHGI_WIDTH) * y0), t[3];
         for (int a = 0; a < d; ++a) {
-            const vec dka = load(dxx + pair_index(k, a, d) * SPHGI_WIDTH);
+            const vec dka = load(dxx + sphgi_pair_index(k, a, d) * SPHGI_WIDTH);
             r0 = plus(r0, dka, y[a]);
             t[a] = dka * y0;
             for (int b = 0; b < d; ++b)

@@ -274,7 +274,7 @@ SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct 
         }
     for (int a = 0; a < d; ++a)
         for (int c = a; c < d; ++c) {
-            real *p = out + pair_index(a, c, d) * SPHGI_WIDTH;
+            real *p = out + sphgi_pair_index(a, c, d) * SPHGI_WIDTH;
             vec sum = splat(R(0));
             for (int k = 0; k < n; ++k)
                 sum = plus(sum, q[a][k], b->k[c][k]);
@@ -293,6 +293,6 @@ SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct 
             column[k] = f[k][l];
         whiten(second, R(2), column, three);
         for (int k = 0; k <= l; ++k)
-            store(rest + pair_index(k, l, n) * SPHGI_WIDTH, factor * column[k]);
+            store(rest + sphgi_pair_index(k, l, n) * SPHGI_WIDTH, factor * column[k]);
     }
 }

@@ -74,9 +74,9 @@ SPHGI_TEMPLATE void quadratic_gradients_as(const struct sphgi_tile *tile, const 
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
         pair_products(g, x, three, p);
         for (int a = 0; a < d; ++a) {
-            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * g[0];
+            vec sum = load(c + sphgi_pair_index(a, 0, d) * SPHGI_WIDTH) * g[0];
             for (int b = 1; b < d; ++b)
-                sum = plus(sum, load(c + pair_index(a, b, d) * SPHGI_WIDTH), g[b]);
+                sum = plus(sum, load(c + sphgi_pair_index(a, b, d) * SPHGI_WIDTH), g[b]);
             for (int m = 0; m < n; ++m)
                 sum = minus(sum, load(cross + (a * n + m) * SPHGI_WIDTH),
                             (is_square(m, three) ? R(.5) : R(1)) * p[m]);
@@ -123,7 +123,7 @@ SPHGI_TEMPLATE void transposed_quadratic_as(const struct sphgi_tile *tile, const
                 sum = plus(sum, c[n + a * n + m], (is_square(m, three) ? R(.5) : R(1)) * p[m]);
             sum *= between;
             for (int b = 0; b < d; ++b)
-                sum = plus(sum, c[pair_index(a, b, d)], g[b]);
+                sum = plus(sum, c[sphgi_pair_index(a, b, d)], g[b]);
             store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
         }
     }
@@ -156,9 +156,9 @@ SPHGI_TEMPLATE void apply_quadratic_as(int32_t count, const real *c, const real 
         for (int k = 0; k < n; ++k)
             e[k] = (is_square(k, three) ? R(.5) : R(1)) * load(second + (i * n + k) * SPHGI_WIDTH);
         for (int a = 0; a < d; ++a) {
-            vec sum = load(c + pair_index(a, 0, d) * SPHGI_WIDTH) * b[0];
+            vec sum = load(c + sphgi_pair_index(a, 0, d) * SPHGI_WIDTH) * b[0];
             for (int p = 1; p < d; ++p)
-                sum = plus(sum, load(c + pair_index(a, p, d) * SPHGI_WIDTH), b[p]);
+                sum = plus(sum, load(c + sphgi_pair_index(a, p, d) * SPHGI_WIDTH), b[p]);
             for (int k = 0; k < n; ++k)
                 sum = plus(sum, load(cross + (a * n + k) * SPHGI_WIDTH), e[k]);
             store(j + (i * d + a) * SPHGI_WIDTH, once * sum);
@@ -169,7 +169,7 @@ SPHGI_TEMPLATE void apply_quadratic_as(int32_t count, const real *c, const real 
             for (int a = 1; a < d; ++a)
                 sum = plus(sum, load(cross + (a * n + k) * SPHGI_WIDTH), b[a]);
             for (int p = 0; p < n; ++p)
-                sum = plus(sum, load(rest + pair_index(k, p, n) * SPHGI_WIDTH), e[p]);
+                sum = plus(sum, load(rest + sphgi_pair_index(k, p, n) * SPHGI_WIDTH), e[p]);
             sum = twice * sum;
             if (is_square(k, three))
                 squares += sum;

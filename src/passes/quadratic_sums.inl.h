@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Sums of order 2 (theory.md, section 9). Offsets x = x_ij / H, so that xi / H = -x and the weight
- * is -s. Index of x_a x_b: pair_index; sums of third and fourth order hold each product once, in
- * the order of the alphabet. */
+ * is -s. Index of x_a x_b: sphgi_pair_index. Sums of third and fourth order hold each product once,
+ * in the order of the alphabet. */
 
 /* The products x_a x_b, times first[a] instead of x_a. */
 SPHGI_TEMPLATE void pair_products(const vec *first, const vec *x, bool three, vec *products)
@@ -9,7 +9,7 @@ SPHGI_TEMPLATE void pair_products(const vec *first, const vec *x, bool three, ve
     const int d = three ? 3 : 2;
     for (int a = 0; a < d; ++a)
         for (int b = a; b < d; ++b)
-            products[pair_index(a, b, d)] = first[a] * x[b];
+            products[sphgi_pair_index(a, b, d)] = first[a] * x[b];
 }
 
 SPHGI_TEMPLATE void offsets_at(const struct sphgi_tile *tile, int32_t k, bool three, vec *x)

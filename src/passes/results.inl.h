@@ -16,9 +16,9 @@ SPHGI_TEMPLATE void apply_as(int32_t count, const real *correction, const real *
         for (int32_t row = 0; row < d; ++row) {
             vec sum = b[row];
             if (correction) {
-                sum = c[pair_index(row, 0, d)] * b[0];
+                sum = c[sphgi_pair_index(row, 0, d)] * b[0];
                 for (int32_t k = 1; k < d; ++k)
-                    sum = plus(sum, c[pair_index(row, k, d)], b[k]);
+                    sum = plus(sum, c[sphgi_pair_index(row, k, d)], b[k]);
             }
             store(j + row * SPHGI_WIDTH, factor * sum);
         }
@@ -49,7 +49,7 @@ static void pair_gradients(const struct sphgi_tile *tile, int32_t dimension,
     for (int32_t a = 0; a < d; ++a)
         for (int32_t b = 0; b < d; ++b)
             matrix[a][b] =
-                c ? load(c + pair_index(a, b, d) * SPHGI_WIDTH) : splat(R(a == b ? 1 : 0));
+                c ? load(c + sphgi_pair_index(a, b, d) * SPHGI_WIDTH) : splat(R(a == b ? 1 : 0));
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         real *g = array_of(tile->arrays, SPHGI_GX) + k;
         vec in[3];

@@ -1,13 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Sums over the pairs of a tile, each lane's for itself. */
 
-/* Index of x_a x_b in an upper triangle. */
-SPHGI_TEMPLATE int pair_index(int a, int b, int d)
-{
-    const int low = a < b ? a : b, high = a < b ? b : a;
-    return low * d - low * (low - 1) / 2 + high - low;
-}
-
 /* ---- The end of a tile ---------------------------------------------------------------------- */
 
 /* a becomes a + b, rounded; returns what the rounding took (Knuth's two-sum). */

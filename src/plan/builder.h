@@ -3,6 +3,7 @@
 #ifndef SPHGI_BUILDER_H
 #define SPHGI_BUILDER_H
 #include "plan.h"
+#include "core/overlap.h"
 
 #define SPHGI_REFUSE(result, ...) return sphgi_fail(builder->checker.context, result, __VA_ARGS__)
 
