@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "overlap.h"
-
-#define REFUSE(result, ...) return sphgi_fail(checker.context, result, __VA_ARGS__)
+#include "refuse.h"
 
 struct bytes {
     uintptr_t begin, end;

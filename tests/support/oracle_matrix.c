@@ -3,12 +3,13 @@
 
 /* ---- Eigenvalues: cyclic Jacobi ------------------------------------------------------------- */
 
-static void rotate(int n, oracle_matrix a, oracle_matrix vectors, int p, int q)
+/* vectors: NULL where nobody wants them. 0: nothing was left to turn. */
+static int rotate(int n, oracle_matrix a, quad (*vectors)[oracle_rows], int p, int q)
 {
-    /* So small beside the diagonal that it no longer counts, and theta^2 would overflow. */
-    if (quad_abs(a[p][q]) <= 0x1p-240 * (quad_abs(a[p][p]) + quad_abs(a[q][q]))) {
+    /* So small beside the diagonal that it is less than a unit of its last place. */
+    if (quad_abs(a[p][q]) <= 0x1p-130 * (quad_abs(a[p][p]) + quad_abs(a[q][q]))) {
         a[p][q] = a[q][p] = 0;
-        return;
+        return 0;
     }
     quad theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
     quad t = (theta < 0 ? -1 : 1) / (quad_abs(theta) + quad_sqrt(theta * theta + 1));
@@ -22,37 +23,52 @@ static void rotate(int n, oracle_matrix a, oracle_matrix vectors, int p, int q)
         quad left = a[p][k], right = a[q][k];
         a[p][k] = c * left - s * right;
         a[q][k] = s * left + c * right;
-        left = vectors[k][p], right = vectors[k][q];
+    }
+    for (int k = 0; vectors && k < n; ++k) {
+        quad left = vectors[k][p], right = vectors[k][q];
         vectors[k][p] = c * left - s * right;
         vectors[k][q] = s * left + c * right;
     }
     a[p][q] = a[q][p] = 0;
+    return 1;
+}
+
+/* Sweeps until nothing is left to turn: convergence is quadratic. */
+static void diagonalise(int n, oracle_matrix a, quad (*vectors)[oracle_rows])
+{
+    enum { sweeps = 20 };
+    int turned = 1;
+    for (int sweep = 0; sweep < sweeps && turned; ++sweep) {
+        turned = 0;
+        for (int p = 0; p < n; ++p)
+            for (int q = p + 1; q < n; ++q)
+                turned |= rotate(n, a, vectors, p, q);
+    }
 }
 
 void oracle_eigen(int n, oracle_matrix a, quad *values, oracle_matrix vectors)
 {
-    enum { sweeps = 12 };
     oracle_matrix work;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             work[i][j] = a[i][j];
             vectors[i][j] = i == j;
         }
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-        for (int p = 0; p < n; ++p)
-            for (int q = p + 1; q < n; ++q)
-                rotate(n, work, vectors, p, q);
+    diagonalise(n, work, vectors);
     for (int i = 0; i < n; ++i)
         values[i] = work[i][i];
 }
 
 quad oracle_spectral_norm(int n, oracle_matrix a)
 {
-    quad values[oracle_rows], largest = 0;
-    oracle_matrix vectors;
-    oracle_eigen(n, a, values, vectors);
+    quad largest = 0;
+    oracle_matrix work;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            work[i][j] = a[i][j];
+    diagonalise(n, work, NULL);
     for (int k = 0; k < n; ++k)
-        largest = quad_max(largest, quad_abs(values[k]));
+        largest = quad_max(largest, quad_abs(work[k][k]));
     return largest;
 }
 

@@ -69,15 +69,29 @@ static double reach_of(const oracle_scene *scene, const oracle_point *point, int
     return scene->mutual ? fmax(point->support, scene->support[j]) : point->support;
 }
 
+/* As many pairs again: most targets have a few dozen, of however many sources. */
+static int make_room(oracle_point *point, int room)
+{
+    const int more = room ? 2 * room : 64;
+    oracle_pair *pairs = oracle_memory((size_t)more * sizeof *pairs);
+    for (int k = 0; k < room; ++k)
+        pairs[k] = point->pairs[k];
+    point->pairs = pairs;
+    return more;
+}
+
 /* A listed pair whose exact distance rounds up to H carries W = W' = 0 either way. */
 static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
 {
     const double *x = oracle_target(scene, i);
-    point->pairs = oracle_memory((size_t)scene->source_count * sizeof *point->pairs);
+    int room = 0;
     for (int j = 0; j < scene->source_count; ++j) {
         oracle_pair pair = {0};
-        if (!(point->has_self && j == i) && measure(scene, x, reach_of(scene, point, j), j, &pair))
-            point->pairs[point->pair_count++] = pair;
+        if ((point->has_self && j == i) || !measure(scene, x, reach_of(scene, point, j), j, &pair))
+            continue;
+        if (point->pair_count == room)
+            room = make_room(point, room);
+        point->pairs[point->pair_count++] = pair;
     }
 }
 
@@ -261,10 +275,11 @@ static void sum_classic(const oracle_scene *scene, const oracle_point *point, cl
         basis_of(scene, point, pair, p);
         for (int a = 0; a <= d; ++a)
             for (int b = 0; b <= d; ++b) {
-                sums->a[a][b] += pair->s * p[a] * p[b];
-                sums->a_spread[a][b] += pair->spread * p[a] * p[b];
+                quad pp = p[a] * p[b], slope = pair->slope * pp;
+                sums->a[a][b] += pair->s * pp;
+                sums->a_spread[a][b] += pair->spread * pp;
                 for (int c = 0; c < d; ++c)
-                    sums->b[c][a][b] += pair->slope * pair->x[c] * p[a] * p[b];
+                    sums->b[c][a][b] += slope * pair->x[c];
             }
     }
 }

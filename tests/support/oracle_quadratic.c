@@ -43,8 +43,12 @@ static quad integral(sphg_kernel kernel, int power)
 
 quad oracle_mu4(sphg_kernel kernel, int dimension)
 {
+    static quad known[SPHG_SPIKY + 1][2];
     const quad angle = dimension == 3 ? 4 * oracle_pi() / 15 : oracle_pi() / 4;
-    return oracle_sigma(kernel, dimension) * angle * integral(kernel, dimension + 3);
+    quad *value = &known[kernel][dimension - 2];
+    if (*value == 0)
+        *value = oracle_sigma(kernel, dimension) * angle * integral(kernel, dimension + 3);
+    return *value;
 }
 
 /* ---- The basis ------------------------------------------------------------------------------- */
