@@ -470,6 +470,14 @@ struct sphgi_passes {
                        void *out);
     void (*store_lanes)(int32_t targets, const struct sphgi_columns *columns, const int32_t *items,
                         const void *in, bool accumulate);
+    /* Sums of several source sets: rows of `stride` numbers an item, which hold something where the
+     * item has a mark. Lanes whose numbers are all 0 are not put away, so that nothing depends on
+     * whether anybody looked. */
+    void (*put_away)(int32_t targets, int32_t count, const void *lanes, const int32_t *items,
+                     void *rows, int32_t stride, uint8_t *marks);
+    /* Adds them to the lanes of their items. */
+    void (*add_put_away)(int32_t targets, int32_t count, const void *rows, int32_t stride,
+                         const int32_t *items, const uint8_t *marks, void *lanes);
 };
 
 extern const struct sphgi_passes sphgi_passes_f32_base, sphgi_passes_f64_base;

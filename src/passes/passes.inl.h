@@ -132,4 +132,6 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .pack_lanes = pack_lanes,
     .load_lanes = load_lanes,
     .store_lanes = store_lanes,
+    .put_away = put_away,
+    .add_put_away = add_put_away,
 };

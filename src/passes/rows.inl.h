@@ -330,3 +330,41 @@ static void store_lanes(int32_t targets, const struct sphgi_columns *columns, co
             *to = accumulate ? *to + number : number;
         }
 }
+
+/* ---- Sums of several source sets ------------------------------------------------------------- */
+
+SPHGI_TEMPLATE bool is_lane_zero(const real *lane, int32_t count)
+{
+    bool zero = true;
+    for (int32_t c = 0; c < count; ++c)
+        zero &= lane[c * SPHGI_WIDTH] == R(0);
+    return zero;
+}
+
+static void put_away(int32_t targets, int32_t count, const void *lanes, const int32_t *items,
+                     void *rows, int32_t stride, uint8_t *marks)
+{
+    const real *lane = lanes;
+    for (int32_t l = 0; l < targets; ++l, ++lane) {
+        if (is_lane_zero(lane, count))
+            continue;
+        real *row = (real *)rows + (ptrdiff_t)items[l] * stride;
+        const bool more = marks[items[l]];
+        for (int32_t c = 0; c < count; ++c)
+            row[c] = more ? row[c] + lane[c * SPHGI_WIDTH] : lane[c * SPHGI_WIDTH];
+        marks[items[l]] = 1;
+    }
+}
+
+static void add_put_away(int32_t targets, int32_t count, const void *rows, int32_t stride,
+                         const int32_t *items, const uint8_t *marks, void *lanes)
+{
+    for (int32_t l = 0; l < targets; ++l) {
+        if (!marks[items[l]])
+            continue;
+        const real *row = (const real *)rows + (ptrdiff_t)items[l] * stride;
+        real *lane = (real *)lanes + l;
+        for (int32_t c = 0; c < count; ++c)
+            lane[c * SPHGI_WIDTH] += row[c];
+    }
+}

@@ -9,35 +9,65 @@
 #include "table.h"
 #include <string.h>
 
-/* ---- Sums that wait for other source sets ------------------------------------------------- */
+/* ---- Sums of several source sets ------------------------------------------------------------ */
 
-static void each_part(struct sphgi_worker *w, bool load)
+/* Those that this sweep makes: [first, first + count). */
+struct range {
+    int32_t first, count;
+};
+
+static struct range sums_made(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    const int32_t first = sweep->steps & SPHGI_SUM_MOMENTS ? 0 : plan->moment_sums;
+    const int32_t end = sweep->steps & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums;
+    return (struct range){first, end - first};
+}
+
+static char *rows_put_away(const struct sphgi_sweep *sweep, int32_t first)
+{
+    return sweep->put_away.sums + (size_t)first * sphgi_size_of_type(sweep->plan->type);
+}
+
+static void put_sums_away(struct sphgi_worker *w)
 {
     const struct sphgi_sweep *sweep = w->sweep;
-    const struct sphgi_plan *plan = sweep->plan;
-    const size_t size = sphgi_size_of_type(plan->type);
-    for (int32_t s = 0; s < plan->sums; s += SPHGI_COLUMNS_MOST) {
-        const int32_t count = sphgi_min32(SPHGI_COLUMNS_MOST, plan->sums - s);
-        const struct sphgi_columns columns =
-            sphgi_dense_columns(sweep->set_sums + (size_t)s * size, count, plan->sums, plan->type);
-        char *lanes = sphgi_lane(w, w->reduced, s);
-        if (load)
-            w->passes->load_lanes(w->batch.width, &columns, sphgi_targets(w), lanes);
-        else
-            w->passes->store_lanes(w->batch.targets, &columns, sphgi_targets(w), lanes,
-                                   sweep->set_number > 0);
-    }
+    const struct range sums = sums_made(sweep);
+    w->passes->put_away(w->batch.targets, sums.count, sphgi_lane(w, w->reduced, sums.first),
+                        sphgi_targets(w), rows_put_away(sweep, sums.first), sweep->plan->sums,
+                        sweep->put_away.marks);
 }
+
+static void add_sums_put_away(struct sphgi_worker *w)
+{
+    const struct sphgi_sweep *sweep = w->sweep;
+    const struct range sums = sums_made(sweep);
+    const int32_t *targets = sphgi_targets(w);
+    w->passes->add_put_away(w->batch.targets, sums.count, rows_put_away(sweep, sums.first),
+                            sweep->plan->sums, targets, sweep->put_away.marks,
+                            sphgi_lane(w, w->reduced, sums.first));
+    for (int32_t l = 0; l < w->batch.targets; ++l)
+        sweep->put_away.marks[targets[l]] = 0;
+}
+
+/* ---- Results ----------------------------------------------------------------------------------
+ */
 
 static void finish(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const unsigned steps = w->sweep->steps;
     const bool done = w->coefficients_first; /* corrections, before the fields */
+    if (w->sweep->put_away.marks)
+        add_sums_put_away(w);
     if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
         sphgi_finish_corrections(w);
     else if (!done && plan->corrects)
         sphgi_load_corrections(w);
+    if (w->sweep->coefficients &&
+        (steps & SPHGI_SUM_MOMENTS)) /* for a sweep that needs them first */
+        w->passes->store_lanes(w->batch.targets, w->sweep->coefficients, sphgi_targets(w),
+                               w->coefficients, false);
     if (steps & SPHGI_SUM_FIELDS)
         sphgi_finish_fields(w);
 }
@@ -81,26 +111,6 @@ void sphgi_bundle_finish(struct sphgi_worker *w)
     else if (w->sweep->steps & SPHGI_FINISH)
         finish(w);
     else
-        each_part(w, false);
+        put_sums_away(w);
     w->bundle.count = w->bundle.summed = 0;
-}
-
-void sphgi_bundle_finish_from_sums(struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    sphgi_put_to_work(w, 0);
-    sphgi_find_lane_radii(w);
-    w->own.loaded = false;
-    sphgi_load_targets(w);
-    each_part(w, true);
-    if ((w->sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes)
-        sphgi_finish_corrections(w);
-    else if (plan->corrects)
-        sphgi_load_corrections(w);
-    if (w->sweep->coefficients && (w->sweep->steps & SPHGI_SUM_MOMENTS))
-        w->passes->store_lanes(w->batch.targets, w->sweep->coefficients, sphgi_targets(w),
-                               w->coefficients, false);
-    if (w->sweep->steps & SPHGI_SUM_FIELDS)
-        sphgi_finish_fields(w);
-    w->bundle.count = 0;
 }

@@ -9,7 +9,13 @@
 enum sphgi_step {
     SPHGI_SUM_MOMENTS = 1,
     SPHGI_SUM_FIELDS = 2,
-    SPHGI_FINISH = 4 /* write results at once; otherwise add the sums to those of other sets */
+    SPHGI_FINISH = 4 /* write results, else put the sums away for the sweep that does */
+};
+
+/* Sums of several source sets: those of the sets before, of targets that have pairs there. */
+struct sphgi_put_away {
+    char *sums;     /* plan->sums numbers a target, where it has a mark */
+    uint8_t *marks; /* a byte a target; all 0 between calls. NULL: there is only one set */
 };
 
 /* Where pairs go that are wanted one by one (sphg_pair_gradients). */
@@ -35,7 +41,7 @@ struct sphgi_sweep {
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
     struct sphgi_kept_weights kept;           /* s_ij that this sweep reads and writes */
-    char *set_sums;                           /* sums, plan->sums numbers a target */
+    struct sphgi_put_away put_away;
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
     char *memory;

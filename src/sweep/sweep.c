@@ -77,6 +77,7 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
 {
     struct sphgi_sweep *sweep = &task->sweep;
     sphg_context *context = sweep->context;
+    sweep->set = &sweep->plan->sets[sweep->set_number];
     const sphg_neighbors *n = sweep->set->neighbors;
     const int32_t items = selection->end - selection->begin;
     const bool searched = n->kind != SPHGI_HOST_LISTS, some = searched && selection->subset;
@@ -106,61 +107,90 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     return SPHG_OK;
 }
 
-static sphg_result finish_all(struct sphgi_task *task, const struct sphgi_selection *selection,
-                              struct sphgi_tally *tally)
+/* The set whose sweep writes the results: that of the targets themselves, which most pairs are of.
+ */
+static int32_t last_set(const struct sphgi_plan *plan)
 {
-    if (!open_workers(&task->sweep))
-        return SPHG_ERROR_MEMORY;
-    const int32_t items = selection->end - selection->begin;
-    sphgi_parallel_for(task->sweep.context, sphgi_finish_task, task, items, LEAST_TARGETS);
-    close_workers(&task->sweep, tally);
-    return SPHG_OK;
+    return plan->own_set < 0 ? 0 : plan->own_set;
 }
 
-/* One step over all sets: at once for a single one, by way of memory for several. */
 static sphg_result sweep_sets(struct sphgi_task *task, struct sphgi_selection *selection,
                               unsigned steps, struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
     const struct sphgi_plan *plan = sweep->plan;
-    const bool single = plan->set_count == 1;
+    const int32_t last = last_set(plan);
     sphg_result result = SPHG_OK;
-    sweep->steps = steps | (single ? SPHGI_FINISH : 0u);
+    sweep->steps = steps;
     for (int32_t s = 0; s < plan->set_count && !result; ++s) {
-        sweep->set = &plan->sets[s];
         sweep->set_number = s;
-        result = sweep_set(task, selection, tally);
+        if (s != last)
+            result = sweep_set(task, selection, tally);
     }
-    return result || single ? result : finish_all(task, selection, tally);
+    sweep->set_number = last;
+    sweep->steps = steps | SPHGI_FINISH;
+    return result ? result : sweep_set(task, selection, tally);
+}
+
+/* Classic gradients and diffusion of several sets: all moments first. */
+static sphg_result sweep_twice(struct sphgi_task *task, struct sphgi_selection *selection,
+                               struct sphgi_tally *tally)
+{
+    struct sphgi_sweep *sweep = &task->sweep;
+    sphg_context *context = sweep->context;
+    const struct sphgi_plan *plan = sweep->plan;
+    const int32_t width = sphgi_plan_width(plan);
+    if (!sphgi_reserve(&context->allocator, &context->coefficients,
+                       (size_t)plan->target_count * (size_t)width, sphgi_size_of_type(plan->type)))
+        return SPHG_ERROR_MEMORY;
+    const struct sphgi_columns table =
+        sphgi_dense_columns(context->coefficients.data, width, width, plan->type);
+    sweep->coefficients = &table;
+    sphg_result result = sweep_sets(task, selection, SPHGI_SUM_MOMENTS, tally);
+    if (!result)
+        result = sweep_sets(task, selection, SPHGI_SUM_FIELDS, tally);
+    sweep->coefficients = NULL;
+    return result;
+}
+
+static bool open_put_away(struct sphgi_sweep *sweep)
+{
+    sphg_context *context = sweep->context;
+    const struct sphgi_plan *plan = sweep->plan;
+    const size_t targets = (size_t)plan->target_count, before = context->marks.size;
+    if (plan->set_count == 1)
+        return true;
+    if (!sphgi_reserve(&context->allocator, &context->sums, targets * (size_t)plan->sums,
+                       sphgi_size_of_type(plan->type)) ||
+        !sphgi_reserve(&context->allocator, &context->marks, targets + 1, 1))
+        return false;
+    if (context->marks.size != before)
+        memset(context->marks.data, 0, context->marks.size);
+    sweep->put_away = (struct sphgi_put_away){context->sums.data, context->marks.data};
+    return true;
+}
+
+/* Targets that were refused on the way still have a mark. */
+static void close_put_away(const struct sphgi_sweep *sweep, bool failed)
+{
+    if (failed && sweep->put_away.marks)
+        memset(sweep->put_away.marks, 0, (size_t)sweep->plan->target_count);
 }
 
 static sphg_result sweep_all(struct sphgi_task *task, struct sphgi_selection *selection,
                              struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
-    sphg_context *context = sweep->context;
     const struct sphgi_plan *plan = sweep->plan;
-    const size_t targets = (size_t)plan->target_count, size = sphgi_size_of_type(plan->type);
     const unsigned moments = plan->computes ? SPHGI_SUM_MOMENTS : 0u;
     const unsigned fields = plan->field_count || sweep->pairs ? SPHGI_SUM_FIELDS : 0u;
-    if (plan->set_count == 1)
-        return sweep_sets(task, selection, moments | fields, tally);
-    if (!sphgi_reserve(&context->allocator, &context->sums, targets * (size_t)plan->sums, size))
+    const bool twice =
+        plan->set_count > 1 && (plan->classic || plan->diffuses) && moments && fields;
+    if (!open_put_away(sweep))
         return SPHG_ERROR_MEMORY;
-    sweep->set_sums = context->sums.data;
-    if (!(plan->classic || plan->diffuses) || !moments || !fields)
-        return sweep_sets(task, selection, moments | fields, tally);
-    /* Classic gradients and diffusion of several sets: all moments first. */
-    const int32_t width = sphgi_plan_width(plan);
-    if (!sphgi_reserve(&context->allocator, &context->coefficients, targets * (size_t)width, size))
-        return SPHG_ERROR_MEMORY;
-    const struct sphgi_columns table =
-        sphgi_dense_columns(context->coefficients.data, width, width, plan->type);
-    sweep->coefficients = &table;
-    sphg_result result = sweep_sets(task, selection, moments, tally);
-    if (!result)
-        result = sweep_sets(task, selection, fields, tally);
-    sweep->coefficients = NULL;
+    const sphg_result result = twice ? sweep_twice(task, selection, tally)
+                                     : sweep_sets(task, selection, moments | fields, tally);
+    close_put_away(sweep, result || tally->bad_target >= 0);
     return result;
 }
 

@@ -172,6 +172,12 @@ static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_w
            selection->active_count >= (int64_t)WORTH * selection->group_count;
 }
 
+/* Targets without pairs in this source set bring nothing to what is put away. */
+static bool must_finish(const struct sphgi_worker *w)
+{
+    return w->sweep->pairs || (w->sweep->steps & SPHGI_FINISH);
+}
+
 /* Lists that stand one after the other. */
 static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, int32_t group)
 {
@@ -193,6 +199,8 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
         sweep_apart(task, w, group);
         return;
     }
+    if (!sphgi_kept_steps(n, group) && !must_finish(w))
+        return;
     const uint32_t *ids = sphgi_kept_ids(n, group);
     const uint16_t *lengths = n->found.lengths.data;
     const uint32_t active = active_of(task, group);
@@ -228,6 +236,14 @@ static void stream_target(struct sphgi_worker *w, struct sphgi_finder *finder, i
     sphgi_finish_lanes(w);
 }
 
+static bool are_empty(const int32_t *lengths)
+{
+    int32_t some = 0;
+    for (int32_t k = 0; k < SPHGI_GROUP; ++k)
+        some |= lengths[k];
+    return !some;
+}
+
 /* Nothing is kept: lists stay until the next group is looked for, then they would have to be
  * copied. */
 static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
@@ -241,6 +257,8 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     if (!active)
         return;
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
+    if (collected && !must_finish(w) && are_empty(lengths))
+        return;
     const bool all = active == (1u << SPHGI_GROUP) - 1 && w->bundle.count == w->bundle.summed;
     for (uint32_t left = active; left; left &= left - 1) {
         const int32_t k = __builtin_ctz(left), place = first + k, target = target_at(n, place);
@@ -321,26 +339,12 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
         const int64_t count = sphgi_host_row(&n->lists, target, number, &ids);
         if (!sphgi_is_host_row(ids, count))
             note_bad_length(w.tally, target);
+        else if (!count && !must_finish(&w))
+            continue;
         else if (n->lists.row) /* the host may use its array again */
             sphgi_add_copied(&w, target, target, numbers_of(ids), (int32_t)count, (int32_t)count);
         else
             sphgi_add_list(&w, target, target, numbers_of(ids), (int32_t)count, 1);
     }
     sphgi_run_rest(&w);
-}
-
-/* ---- Finishing the sums of several sets ----------------------------------------------------- */
-
-void sphgi_finish_task(void *data, int32_t begin, int32_t end, int32_t number)
-{
-    const struct sphgi_task *task = data;
-    struct sphgi_worker w;
-    open(&w, task, number);
-    for (int32_t k = begin; k < end; ++k) {
-        const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
-        if (target >= 0)
-            w.bundle.target[w.bundle.count++] = target;
-        if (w.bundle.count == SPHGI_WIDTH || (k + 1 == end && w.bundle.count))
-            sphgi_bundle_finish_from_sums(&w);
-    }
 }

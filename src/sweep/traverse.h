@@ -13,7 +13,5 @@ struct sphgi_task {
 /* sphg_task functions; data: struct sphgi_task. */
 void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t worker); /* groups */
 void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t worker);  /* selected items */
-void sphgi_finish_task(void *data, int32_t begin, int32_t end,
-                       int32_t worker); /* ... whose sums of all sets are there */
 
 #endif
