@@ -125,6 +125,13 @@ static void search(const struct drop *drop)
     need(drop, sphg_neighbors_search(drop->context, drop->neighbors, &drop->scheme, &here));
 }
 
+int64_t drop_pairs(const struct drop *drop)
+{
+    sphg_neighbors_info info = {0};
+    need(drop, sphg_neighbors_get_info(drop->context, drop->neighbors, &info));
+    return info.pairs;
+}
+
 /* Own particles have moved, ghosts stand where they were seen last: their owners ask about them. */
 static bool anybody_would_rebuild(const struct drop *drop)
 {

@@ -56,6 +56,10 @@ void drop_make(struct drop *drop, MPI_Comm ranks, const struct drop_case *given)
 void drop_run(struct drop *drop);
 void drop_free(struct drop *drop);
 
+/* Pairs of the own particles that were found when ghosts were last chosen, those within the skin
+ * included. */
+int64_t drop_pairs(const struct drop *drop);
+
 /* Where its middle is by now, and the mass of a particle. */
 void drop_middle(const struct drop *drop, double middle[3]);
 double drop_mass(const struct drop *drop);

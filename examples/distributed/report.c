@@ -14,6 +14,12 @@ static double most(const struct drop *drop, double value)
     return value;
 }
 
+static double sum(const struct drop *drop, double value)
+{
+    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, drop->domain.ranks);
+    return value;
+}
+
 static struct least_most range(const struct drop *drop, double value)
 {
     return (struct least_most){-most(drop, -value), most(drop, value)};
@@ -99,14 +105,13 @@ struct report report_of(const struct drop *drop)
     const double steps = drop->given.steps, degree = 180 / acos(-1);
     const int count = drop_count(drop->given.layers);
     double(*first)[3] = first_places(drop->given.layers, count);
-    double square = 0, spin = 0, moved = (double)drop->domain.moved;
+    double square = 0, spin = 0;
     const struct sums sums = sums_of(drop, first);
     for (int k = 0; k < count; ++k) {
         const double *x = first[k], around = x[0] * x[0] + x[1] * x[1];
         square += around + x[2] * x[2];
         spin += drop_spin * around;
     }
-    MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_SUM, drop->domain.ranks);
     struct report report = {.rank_count = drop->domain.rank_count,
                             .steps = drop->given.steps,
                             .settled = drop->settled,
@@ -117,7 +122,8 @@ struct report report_of(const struct drop *drop)
                             .ghosts = range(drop, drop->domain.ghosts),
                             .bytes = most(drop, (double)drop->transfer.bytes) / steps,
                             .messages = most(drop, (double)drop->transfer.messages) / steps,
-                            .moved = moved,
+                            .moved = sum(drop, (double)drop->domain.moved),
+                            .pairs = sum(drop, (double)drop_pairs(drop)),
                             .angle = degree * atan2(sums.across, sums.along),
                             .exact_angle = degree * remainder(drop_spin * drop->time, 2 * acos(-1)),
                             .radius = sqrt(sums.square / square),

@@ -19,6 +19,7 @@ struct report {
     struct least_most own, ghosts;     /* particles a rank */
     double bytes, messages;            /* to ghosts, a rank and step: the most */
     double moved;                      /* particles that changed owners */
+    double pairs;                      /* found when ghosts were last chosen, skin included */
     double angle, exact_angle;         /* [degree] turned about z */
     double radius;                     /* root mean square, beside that of the beginning */
     double momentum, spin;             /* change of momentum, of angular momentum; relative */

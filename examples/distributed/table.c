@@ -36,6 +36,7 @@ void table_print(const struct report *many, const struct report *one, double spa
     row("messages to ghosts, a rank and step", "%.1f", many->messages, one->messages);
     row("steps from one choice of ghosts to the next", "%.1f", (double)many->steps / many->settled,
         (double)one->steps / one->settled);
+    row("pairs of all ranks, within H + skin", "%.0f", many->pairs, one->pairs);
     row("particles that changed ranks", "%.0f", many->moved, one->moved);
     row("angle turned [degrees]", "%.3f", many->angle, one->angle);
     row("radius of gyration, 1 at the beginning", "%.5f", many->radius, one->radius);
@@ -66,9 +67,12 @@ static bool judge(const struct report *report)
     return within("angular momentum", report->spin, 1e-5) && good;
 }
 
+/* Ghosts within the skin count at once, by the pairs that would be missing; forces feel them only
+ * when they have come nearer, which in a drop that turns like a rigid body they never do. */
 bool table_judge(const struct report *many, const struct report *one, double spacing)
 {
-    const bool same = within("a particle beside the other run, in spacings,",
-                             report_difference(many, one) / spacing, 1e-2);
+    bool same = within("a particle beside the other run, in spacings,",
+                       report_difference(many, one) / spacing, 1e-2);
+    same &= within("the number of pairs within H + skin", many->pairs / one->pairs - 1, 1e-4);
     return judge(many) && judge(one) && same;
 }
