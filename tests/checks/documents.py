@@ -70,13 +70,25 @@ def help_of(script, *arguments):
     return subprocess.run([os.path.join(root, script), *arguments, "--help"], capture_output=True, text=True).stdout
 
 
-helps = {script: help_of(script) for script in ("bench/run", "examples/run", "tests/run", "docs/run")}
+SCRIPTS = ("bench/run", "bench/compare", "bench/peers/run", "examples/run", "tests/run", "docs/run")
+helps = {script: help_of(script) for script in SCRIPTS}
 presets = {preset["name"] for preset in json.loads(read("CMakePresets.json"))["configurePresets"]}
 cmake_text = "\n".join(read(path) for path in ("CMakeLists.txt", "src/CMakeLists.txt", "src/bindings/CMakeLists.txt",
                                                "tests/CMakeLists.txt", "src/package/CMakeLists.txt")
                        if os.path.exists(os.path.join(root, path)))
-bench_sources = "\n".join(read(os.path.relpath(path, root)) for path in
-                          glob.glob(os.path.join(root, "bench", "*.[ch]")) + glob.glob(os.path.join(root, "bench/*/*.c")))
+
+
+def sources_in(*patterns):
+    paths = [path for pattern in patterns for path in glob.glob(os.path.join(root, pattern))]
+    return "\n".join(read(os.path.relpath(path, root)) for path in sorted(paths))
+
+
+# Options of a command of the bench are known to the program, which need not be built here: to its sources.
+bench_options = {os.path.basename(os.path.dirname(folder)): sources_in("bench/*.[ch]", "bench/particles/*.c",
+                                                                       os.path.relpath(folder, root) + "/*.[ch]")
+                 for folder in glob.glob(os.path.join(root, "bench/*/"))}
+word_sources = {"examples/run": sources_in("examples/scenes/solver/*.c", "examples/distributed/*.c"),
+                "tests/run": sources_in("tests/platforms/*.sh")}
 targets = {"sphgrad::sphgrad", "sphgrad::cpp", "sphgrad::fortran"}
 
 
@@ -87,40 +99,53 @@ def check_options(page, text):
             complain(page, f"there is no option {name}")
 
 
+def is_named(word, text):
+    return re.search(rf"(^|[\s,\[(]){re.escape(word)}(?![\w-])", text, re.M)
+
+
+def is_read(word, sources):
+    return re.search(rf"""["'(\s]{re.escape(word.removeprefix("--"))}["')\s]""", sources)
+
+
 def check_script(page, script, words):
-    """A script of ours: its help must know the command, the scene, the example or the option."""
-    known = helps[script]
+    """A script of ours: its help must know the command, the scene, the example or the option, or else the sources
+    that read the words behind it."""
+    known, sources = helps[script], ""
     if not known:
         return complain(page, f"{script} --help says nothing")
+    if script == "bench/run":
+        command = words[0] if words and words[0] in bench_options else "table1"
+        sources = bench_options[command]
+    elif script in word_sources:
+        sources = word_sources[script]
     for number, word in enumerate(words):
         if word in ("--help", "-h"):
             continue
         word = word.strip("`'\",.;:)")
-        if re.fullmatch(r"[A-Z_\[\]./a-z]*[A-Z.\[][A-Z_\[\]./a-z]*", word) or re.fullmatch(r"[\d.e+-]+", word):
+        if re.search(r"[A-Z./\[\]|]", word) or re.fullmatch(r"[\d.e+-]+", word):
             continue  # a placeholder, a file or a number
-        option = re.fullmatch(r"--([a-z0-9-]+)(=.*)?", word)
-        if option:
-            in_program = script == "bench/run" and f'"{option.group(1)}"' in bench_sources
-            if not re.search(rf"(^|[\s,\[]){re.escape('--' + option.group(1))}\b", known) and not in_program:
-                complain(page, f"{script} has no {word}")
-        elif number == 0 and word and not re.search(rf"(^|\s){re.escape(word)}(\s|$)", known, re.M):
-            complain(page, f"{script} has no command {word}")
+        word = re.sub(r"^(--[a-z0-9-]+)=.*$", r"\1", word)
+        if number == 0 and not word.startswith("-"):
+            if not is_named(word, known):
+                complain(page, f"{script} has no command {word}")
+        elif word and not is_named(word, known) and not is_read(word, sources):
+            complain(page, f"{script} has no {word} behind {words[0]}")
 
 
 def check_command(page, line):
-    line = line.split("  #")[0].strip()
-    words = line.split()
-    if not words:
-        return
-    counts["commands"] += 1
-    if words[0] == "sudo":
-        words = words[1:]
-    first = words[0]
-    if first in helps:
-        check_script(page, first, words[1:])
-    elif re.match(r"\.?/?[a-z_]+/", first) and not first.startswith("build/") and "*" not in first:
-        if not os.path.exists(os.path.join(root, first)):
-            complain(page, f"there is no {first}")
+    """A line of commands, perhaps with a remark behind two spaces."""
+    line = re.split(r"  +", line.strip())[0]
+    for command in re.split(r"&&|;", line):
+        words = re.sub(r"^(\s*(sudo|nice|time|[A-Z_]+=\S*))+ ", "", command).split()
+        if not words:
+            continue
+        counts["commands"] += 1
+        first = words[0]
+        if first in helps:
+            check_script(page, first, words[1:])
+        elif re.match(r"\.?/?[a-z_]+/", first) and not first.startswith("build/") and "*" not in first:
+            if not os.path.exists(os.path.join(root, first)):
+                complain(page, f"there is no {first}")
     for preset in re.findall(r"--preset[ =](\w[\w-]*)", line):
         if preset not in presets:
             complain(page, f"there is no preset {preset}")
@@ -134,7 +159,10 @@ def check_command(page, line):
 
 # ---- Pages --------------------------------------------------------------------------------------
 
-COMMANDS = re.compile(r"^(sudo |)(bench/run|examples/run|tests/run|docs/run|cmake|ctest|cc|c\+\+|build/|SPHG_\w+=)")
+COMMANDS = re.compile(r"^((sudo|nice|time) |[A-Z_]+=\S* )*(tests/checks/|build/"
+                      r"|((bench|examples|tests|docs)/[a-z_/]+|cmake|ctest|cc|c\+\+|gfortran|pip|python3)( |$))")
+
+
 
 
 def anchors(text):
@@ -174,18 +202,19 @@ def check_page(page):
                     complain(page, f"there is no target {target}")
         elif language not in ("cpp", "python", "fortran", "text", "bibtex"):  # these have tests of their own
             complain(page, f"a block of an unknown language: '{language}'")
-    for words in re.findall(r"`((?:bench|examples|tests|docs)/run(?: [^`]*)?)`", text):
-        check_command(page, words)
+    for words in re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.S)):
+        if COMMANDS.match(words):
+            check_command(page, words)
     for path in re.findall(r"`((?:examples|tests|bench|docs|src|include)/[\w/.-]*[\w/])`", text):
         if "NAME" not in path and not os.path.exists(os.path.join(root, path)):
             complain(page, f"there is no {path}")
 
 
-pages = ["README.md", "CONTRIBUTING.md", "tests/README.md"] + sorted(
-    os.path.relpath(path, root) for path in glob.glob(os.path.join(root, "docs", "*.md")))
+pages = sorted(os.path.relpath(path, root) for folder in ("", "docs", "tests", "bench", "bench/peers")
+               for path in glob.glob(os.path.join(root, folder, "*.md")) if not path.endswith("CHANGELOG.md"))
 for page in pages:
     check_page(page)
-for kind, least in {"c": 15, "commands": 60, "links": 60, "options": 10}.items():
+for kind, least in {"c": 15, "commands": 120, "links": 100, "options": 10}.items():
     if counts[kind] < least:
         complain("documents.py", f"only {counts[kind]} {kind} were found")
 print(counts)
