@@ -59,14 +59,17 @@ probe_python3() { python3 -c '' 2>/dev/null; }
 probe_doxygen() { command -v doxygen >/dev/null; }
 probe_eigen() { pkg-config --exists eigen3 2>/dev/null; }
 probe_fortran() { printf 'end\n' | gfortran -x f95 - -o /dev/null 2>/dev/null; }
-# Of the Python package and its wheel, in the Python of the path or the system's.
-probe_numpy() {
-    local python
+# python_with MODULE...: prints the first Python that has them, that of the path or the system's.
+python_with() {
+    local python modules=$*
     for python in python3 /usr/bin/python3; do
-        "$python" -c 'import numpy, scipy, setuptools, wheel, pip' 2>/dev/null && return 0
+        "$python" -c "import ${modules// /, }" 2>/dev/null && echo "$python" && return 0
     done
     return 1
 }
+# Of the Python package and its wheel; of the package alone.
+probe_numpy() { python_with numpy scipy setuptools wheel pip >/dev/null; }
+probe_python_arrays() { python_with numpy >/dev/null; }
 
 package_of() {
     case $1 in
@@ -102,6 +105,7 @@ package_of() {
         fortran) echo gfortran ;;
         doxygen) echo doxygen ;;
         eigen) echo libeigen3-dev ;;
+        python_arrays) echo python3-numpy ;;
         numpy) printf '%s\n' python3-numpy python3-scipy python3-pip python3-setuptools python3-wheel ;;
     esac
 }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""A trigonometric field on a shaken square of particles, cut off at its border: the error of its gradient
-by plain SPH and by three corrections, printed, and drawn if Matplotlib is there.
+"""Errors of a gradient by plain SPH and by three corrections.
+The field is trigonometric, on a shaken square of particles that is cut off at its border. Errors are printed, and drawn
+if Matplotlib is there.
 
     python3 fields.py [PICTURE]     (fields_python.png)"""
 import sys
@@ -70,7 +71,7 @@ def main():
         draw(x, values, found, picture)
         print(f"drawn: {picture}")
     except ImportError:
-        print("not drawn: this Python has no Matplotlib")
+        print("not drawn: this Python has no Matplotlib (Debian, Ubuntu: python3-matplotlib)")
 
 
 if __name__ == "__main__":

@@ -25,10 +25,12 @@ helps() {
 
 # The scripts in a tree where nothing can be built.
 tree=$work/tree
-mkdir -p "$tree/tools" "$tree/bench" "$tree/examples/scenes" "$tree/examples/cpp" "$tree/tests"
+mkdir -p "$tree/tools" "$tree/bench" "$tree/examples/scenes" "$tree/tests"
 cp "$sources/bench/run" "$sources/bench/main.c" "$tree/bench"
 cp "$sources/examples/run" "$sources/examples/CMakeLists.txt" "$sources"/examples/*.c "$tree/examples"
-cp "$sources"/examples/cpp/*.cpp "$tree/examples/cpp"
+for language in cpp fortran python; do
+    cp -R "$sources/examples/$language" "$tree/examples"
+done
 cp "$sources/examples/scenes/CMakeLists.txt" "$sources"/examples/scenes/*.c "$tree/examples/scenes"
 cp "$sources/tests/run" "$sources/tests/more.sh" "$tree/tests"
 cp -R "$sources/tests/platforms" "$sources/tests/packages" "$tree/tests"
@@ -70,10 +72,13 @@ for program in "$examples"/scenes/*; do
 done
 [ "$scenes" -gt 6 ] || complain "$scenes scenes"
 # Examples: every source, with its first sentence.
-for source in "$sources"/examples/*.c "$sources"/examples/cpp/*.cpp; do
+for source in "$sources"/examples/*.c "$sources"/examples/*/*.cpp "$sources"/examples/*/*.f90 "$sources"/examples/*/*.py; do
     example=${source#"$sources"/examples/}
     grep -qE "^  ${example%.*} +[A-Z].{20}" "$work/script" || complain "examples/run --help has no line on $example"
-    [ -x "$examples/${example%.*}" ] || complain "$example was not built"
+    case $example in
+        *.f90 | *.py) ;; # where their tools are
+        *) [ -x "$examples/${example%.*}" ] || complain "$example was not built" ;;
+    esac
 done
 for option in $("$examples/scenes/cube" --help | grep -oE -e '--[a-z]+' | grep -vE 'help|usage|version' | sort -u); do
     grep -q -e "$option" "$work/script" || complain "examples/run --help does not know $option"
@@ -84,6 +89,9 @@ touch "$tree/may_build"
 mkdir -p "$tree/build/examples"
 ln -s "$examples" "$tree/build/examples/examples"
 "$tree/examples/run" gradient | grep -q '^dvx/dy = -[01]\.' || complain 'examples/run gradient does not run'
+"$tree/examples/run" rest_configuration | grep -q . || complain 'examples/run rest_configuration does not run'
+[ ! -x "$examples/fortran/gradient" ] || "$tree/examples/run" fortran/gradient | grep -q '^dvx/dy = *-1\.' ||
+    complain 'examples/run fortran/gradient does not run'
 "$tree/examples/run" small | grep -c '^== ' | grep -qE '^[0-9]{2}$' || complain 'examples/run small does not run'
 "$tree/examples/run" vorticity --method sph --alone | grep -q '"scene": "vorticity"' || complain 'no scene runs'
 rm "$tree/may_build"
