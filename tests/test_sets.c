@@ -277,7 +277,7 @@ static void lists_of_the_host_may_lack_a_field(const test_case *test)
     setup_require_close(&found[0], &found[1], "an absent field");
 }
 
-/* Sums of several sets are finished in a sweep of its own, which a mask concerns as well. */
+/* Sums of the other set are put away for the sweep that finishes, which a mask concerns as well. */
 static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *test)
 {
     const two_sets sets = split_block(test);
@@ -368,6 +368,39 @@ static void compare_probe(const probe *made, sphg_form form)
         else
             TEST_WITHIN(oracle_ratio_full, ratio, "probe");
     }
+}
+
+/* Refused after the wall's sums were put away: the next call must not find them. */
+static void a_refused_list_leaves_no_sums_behind(const test_case *test)
+{
+    const two_sets sets = split_block(test);
+    const comparison *on = &sets.whole;
+    const setup_array before = table_of(&sets, 0);
+    const int32_t **nowhere = test_memory((size_t)sets.fluid * sizeof *nowhere);
+    int32_t *lengths = test_memory((size_t)sets.fluid * sizeof *lengths);
+    for (int i = 0; i < sets.fluid; ++i)
+        lengths[i] = -1;
+    const sphg_lists lists = {.rows = nowhere, .lengths = lengths};
+    const sphg_geometry geometry = geometry_between(&sets, 0, 0);
+    sphg_neighbors *wrong = NULL;
+    SETUP_OK(on->context, sphg_neighbors_create(on->context, &wrong));
+    SETUP_OK(on->context,
+             sphg_neighbors_use_lists(on->context, wrong, &on->scheme, &geometry, &lists));
+    setup_array table = setup_output(before.type, sets.fluid, before.width);
+    sphg_sources sources[2];
+    sources_of(&sets, 0, sources);
+    sources[0].neighbors = wrong;
+    const sphg_request request = {
+        .sources = sources, .set_count = 2, .correction = setup_view(&table)};
+    assert_int_equal(sphg_evaluate(on->context, &on->scheme, &request), SPHG_ERROR_INDEX);
+    const setup_array after = table_of(&sets, 0);
+    assert_true(setup_same_bits(&before, &after));
+    sources_of(&sets, 0, sources);
+    const sphg_request alone = {
+        .sources = sources, .set_count = 1, .correction = setup_view(&table)};
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &alone));
+    assert_false(setup_same_bits(&before, &table)); /* the wall counts */
+    sphg_neighbors_destroy(wrong);
 }
 
 static void targets_unlike_sources_match_the_oracle(const test_case *test)
@@ -596,6 +629,8 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(masked_targets_of_two_sets_have_the_bits_of_all, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
+    TEST_ENTRY(a_refused_list_leaves_no_sums_behind, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
     TEST_ENTRY(targets_unlike_sources_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(fields_of_one_call_equal_calls_of_one_field, TEST_ALL_PRECISIONS,
