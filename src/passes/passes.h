@@ -204,6 +204,8 @@ struct sphgi_cutting {
     double inverse[3];      /* 1 / cell width; 0: an axis that is not used */
     int32_t shift[3];       /* a block is 2^shift cells long */
     int32_t local_shift[3]; /* where the axis stands in the number of a cell in its block */
+    int32_t octaves;        /* of radii, the largest of which is top; 0: all are the same */
+    double top;
 };
 
 /* Periodic axes, as distances have them: in the type of the positions. */
@@ -218,7 +220,13 @@ enum { SPHGI_RUNS_MOST = 128 };
 struct sphgi_runs {
     int32_t count, candidates, own;
     int32_t begin[SPHGI_RUNS_MOST], length[SPHGI_RUNS_MOST];
-    double reach[SPHGI_RUNS_MOST]; /* of targets with radii: how far these may be, at most */
+};
+
+/* Candidates of targets with radii of their own, packed into the scratch of the search. */
+struct sphgi_packed {
+    int32_t most; /* of the runs they come from */
+    int32_t count;
+    int32_t self; /* of these, the first target, if it is a source; others follow. Else -1 */
 };
 
 /* A search among sources. */
@@ -253,6 +261,9 @@ struct sphgi_passes {
     /* Block, and cell in it, of each row; false: one is too far away, and all are undefined. */
     bool (*cut)(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                 int32_t (*block)[4], uint8_t *local);
+    /* The same for rows with radii: block and octave, and cell and eighth of it. */
+    bool (*cut_octaves)(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
+                        int32_t (*block)[4], uint8_t *local);
     /* x y z from load_rows' columns; the first item that is not finite, or -1. */
     int64_t (*first_not_finite)(const struct sphgi_columns *columns, int64_t begin, int64_t end);
     /* Rows [begin, begin + count) of positions with the volumes, times factor, written into the 4th
@@ -269,9 +280,17 @@ struct sphgi_passes {
     void (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs, const void *targets,
                  int32_t count, int32_t self, uint32_t *const *lists, int32_t *lengths);
 
-    /* The same for targets, and sources, with radii of their own, the 4th numbers of rows. Runs
-     * stand in any order; self may be in any of them. */
-    void (*find_by_radii)(const struct sphgi_find *find, const struct sphgi_runs *runs,
+    /* The least and the largest of each of the four numbers of rows. */
+    void (*bounds)(const void *rows, int32_t count, double *low, double *high);
+
+    /* The same for targets, and sources, with radii of their own, the 4th numbers of rows: first
+     * the candidates of as many targets as there may be are packed. Runs stand in any order; self
+     * may be in any of them. Then the lists of some of these are found, of which `self` is the
+     * first one's number among the packed, or -1. */
+    void (*pack_by_radii)(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                          const void *targets, int32_t count, int32_t self,
+                          struct sphgi_packed *packed);
+    void (*find_by_radii)(const struct sphgi_find *find, const struct sphgi_packed *packed,
                           const void *targets, int32_t count, int32_t self, uint32_t *const *lists,
                           int32_t *lengths);
 

@@ -27,6 +27,7 @@
 #undef OUT_NAME
 #endif
 #include "cells.inl.h"
+#include "octaves.inl.h"
 #include "search.inl.h"
 #include "search_by_radii.inl.h"
 #include "near.inl.h"
@@ -57,6 +58,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .read_positions = read_positions,
     .take_into_box = take_into_box,
     .cut = cut,
+    .cut_octaves = cut_octaves,
     .first_not_finite = first_not_finite,
 #if REAL_IS_F64
     .put_volumes = {put_volumes_f32, put_volumes_f64},
@@ -70,6 +72,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .gather_offsets = gather_offsets,
     .keep_factors = keep_factors,
     .find = find,
+    .bounds = bounds,
+    .pack_by_radii = pack_by_radii,
     .find_by_radii = find_by_radii,
     .keep_near = keep_near,
     .weave = weave,

@@ -36,8 +36,8 @@ SPHGI_TEMPLATE struct three coordinates_of(const real *rows)
 
 /* Each of these moves what belongs to the set bits of LANES to the front, and writes a whole
  * vector. A packing is made of the bits: pack_numbers moves numbers, number_ids makes the ids of
- * LANES rows, of which `first` is the first one's. pack_tested moves TESTED ids, and returns where
- * the next ones go. */
+ * LANES rows, of which `first` is the first one's; pack_ids_of_lanes moves LANES ids. pack_tested
+ * moves TESTED ids, and returns where the next ones go. */
 enum { TESTED = 2 * SPHGI_PAD }; /* candidates that are tested at a time */
 
 #if defined(__AVX512F__)
@@ -60,6 +60,15 @@ SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing lanes)
     const __m512i numbers = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const __m512i ids = _mm512_add_epi32(_mm512_set1_epi32((int)first), SPHGI_ID_STEP * numbers);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, ids));
+}
+SPHGI_TEMPLATE void pack_ids_of_lanes(uint32_t *to, const uint32_t *ids, packing lanes)
+{
+#if REAL_IS_F64
+    const __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)ids);
+    _mm256_storeu_si256((__m256i *)(void *)to, _mm256_maskz_compress_epi32((__mmask8)lanes, eight));
+#else
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(lanes, _mm512_loadu_si512(ids)));
+#endif
 }
 SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
                                      const uint32_t *ids, unsigned bits)
@@ -93,6 +102,15 @@ SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing moved)
     to[1] = vgetq_lane_u32(packed, 2);
 #else
     vst1q_u32(to, packed);
+#endif
+}
+SPHGI_TEMPLATE void pack_ids_of_lanes(uint32_t *to, const uint32_t *ids, packing moved)
+{
+#if REAL_IS_F64
+    const uint64x2_t wide = vmovl_u32(vld1_u32(ids));
+    vst1_u32(to, vmovn_u64((uint64x2_t)vqtbl1q_u8((uint8x16_t)wide, moved)));
+#else
+    vst1q_u32(to, (uint32x4_t)vqtbl1q_u8((uint8x16_t)vld1q_u32(ids), moved));
 #endif
 }
 SPHGI_TEMPLATE uint32_t *pack_tested(const struct sphgi_find *find, uint32_t *to,
@@ -132,6 +150,11 @@ SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing order)
     _mm256_storeu_si256((__m256i *)(void *)to, _mm256_add_epi32(_mm256_set1_epi32((int)first),
                                                                 _mm256_add_epi32(order, order)));
 }
+SPHGI_TEMPLATE void pack_ids_of_lanes(uint32_t *to, const uint32_t *ids, packing order)
+{
+    const __m256i eight = _mm256_loadu_si256((const __m256i *)(const void *)ids);
+    _mm256_storeu_si256((__m256i *)(void *)to, _mm256_permutevar8x32_epi32(eight, order));
+}
 SPHGI_TEMPLATE uint32_t *pack_ids(const struct sphgi_find *find, uint32_t *to, const uint32_t *ids,
                                   unsigned bits)
 {
@@ -155,6 +178,14 @@ SPHGI_TEMPLATE void number_ids(uint32_t *to, uint32_t first, packing order)
 {
     for (int k = 0; k < LANES; ++k)
         to[k] = first + SPHGI_ID_STEP * (uint32_t)(order >> (8 * k) & 255);
+}
+SPHGI_TEMPLATE void pack_ids_of_lanes(uint32_t *to, const uint32_t *ids, packing order)
+{
+    uint32_t moved[LANES];
+    for (int k = 0; k < LANES; ++k)
+        moved[k] = ids[order >> (8 * k) & (unsigned)(LANES - 1)];
+    for (int k = 0; k < LANES; ++k)
+        to[k] = moved[k];
 }
 SPHGI_TEMPLATE uint32_t *pack_ids(const struct sphgi_find *find, uint32_t *to, const uint32_t *ids,
                                   unsigned bits)
@@ -209,6 +240,7 @@ typedef lane_int quad_bits
 struct box {
     vec low[3], high[3], middle[3], half[3];
     vec square_reach; /* rounded up */
+    real radius;      /* the largest of the targets, where they have their own */
 };
 
 /* Margins: rounding of the predicate, of distances to the box and of the box itself is relative, a
@@ -247,14 +279,15 @@ SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real
         box.middle[a] = splat(middle[a]);
         box.half[a] = splat(half[a]);
     }
+    box.radius = high[3];
     const double reach = find->reach * (1 + 0x1p-16) + 2 * find->slack;
     box.square_reach = splat(R(reach * reach));
     return box;
 }
 
 /* Which of LANES sources lie within reach of the box, and perhaps a few beyond it. */
-SPHGI_TEMPLATE mask near_box(const struct box *box, const struct three *coordinates,
-                             const struct wraps *w, bool periodic)
+SPHGI_TEMPLATE mask within_reach(const struct box *box, const struct three *coordinates,
+                                 vec square_reach, const struct wraps *w, bool periodic)
 {
     const vec at[3] = {coordinates->x, coordinates->y, coordinates->z};
     vec square = {0};
@@ -267,7 +300,13 @@ SPHGI_TEMPLATE mask near_box(const struct box *box, const struct three *coordina
             d = at[a] - vmin(vmax(at[a], box->low[a]), box->high[a]);
         square = plus(square, d, d);
     }
-    return at_most(square, box->square_reach); /* both may be infinite */
+    return at_most(square, square_reach); /* both may be infinite */
+}
+
+SPHGI_TEMPLATE mask near_box(const struct box *box, const struct three *coordinates,
+                             const struct wraps *w, bool periodic)
+{
+    return within_reach(box, coordinates, box->square_reach, w, periodic);
 }
 
 /* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */

@@ -1,73 +1,190 @@
 /* SPDX-License-Identifier: MIT */
-/* Search among particles that have radii of their own: r < H_i, or r < max(H_i, H_j). As in
- * search.inl.h candidates are packed once for a few targets, each of which then tests them. */
+/* Search among particles that have radii of their own: r < H_i, or r < max(H_i, H_j). Cells are up
+ * to twice as wide as the radii in them, so candidates are packed twice: once for all targets of a
+ * cell, and from these for a few that stand close together, each of which then tests what is left
+ * as in search.inl.h. */
 
-/* Packs the sources [begin, end) behind the n candidates there are, and the squares of their radii;
- * returns their new number. */
-SPHGI_TEMPLATE int32_t collect_with_radii(const struct sphgi_find *find, const struct candidates *c,
-                                          const struct box *box, int32_t begin, int32_t end,
-                                          int32_t n, const struct wraps *w, bool periodic)
+static void bounds(const void *rows, int32_t count, double *low, double *high)
+{
+    const real *row = rows;
+    quad least = *(const quad *)row, largest = least;
+    for (int32_t k = 1; k < count; ++k) {
+        row += SPHGI_ROW;
+        lower_quad(&least, (const quad *)row);
+        raise_quad(&largest, (const quad *)row);
+    }
+    for (int a = 0; a < SPHGI_ROW; ++a) {
+        low[a] = (double)least[a];
+        high[a] = (double)largest[a];
+    }
+}
+
+/* Those of a cell keep, where radii of others count, how far these reach in place of its square. */
+SPHGI_TEMPLATE struct candidates carve_wide(const struct sphgi_find *find,
+                                            const struct sphgi_packed *packed, bool mutual)
+{
+    return carve(find->scratch, packed->most, mutual);
+}
+
+/* The square of a reach, with the margins that boxes need. */
+SPHGI_TEMPLATE vec square_with_margin(const struct sphgi_find *find, vec reach)
+{
+    const vec wide = plus(splat(R(2 * find->slack)), reach, splat(R(1 + 0x1p-16)));
+    return wide * wide;
+}
+
+/* Around some targets, and how far the largest of them reaches. */
+struct surroundings {
+    struct box box;
+    vec reach;
+};
+
+SPHGI_TEMPLATE struct surroundings surroundings_of(const struct sphgi_find *find,
+                                                   const real *targets, int32_t count)
+{
+    struct surroundings s = {.box = bounding_box(find, targets, count)};
+    s.reach = splat(s.box.radius) * splat(R(find->stretch));
+    s.box.square_reach = square_with_margin(find, s.reach);
+    return s;
+}
+
+/* Which of LANES sources may be neighbours. reach: theirs, if that counts */
+SPHGI_TEMPLATE mask near_surroundings(const struct sphgi_find *find, const struct surroundings *s,
+                                      const struct three *at, vec reach, const struct wraps *w,
+                                      bool periodic, bool mutual)
+{
+    if (!mutual)
+        return near_box(&s->box, at, w, periodic);
+    return within_reach(&s->box, at, square_with_margin(find, vmax(s->reach, reach)), w, periodic);
+}
+
+/* Behind the last candidate: as many as are tested at a time, that are none. */
+SPHGI_TEMPLATE void pad_candidates(const struct candidates *c, int32_t n)
+{
+    const vec none = splat((real)__builtin_nan("")); /* in x alone would do, but for valgrind */
+    for (int l = 0; l < TESTED; l += LANES) {
+        store(c->x + n + l, none);
+        store(c->y + n + l, none);
+        store(c->z + n + l, none);
+        if (c->squares)
+            store(c->squares + n + l, splat(R(0)));
+    }
+}
+
+/* ---- The targets of a cell ------------------------------------------------------------------- */
+
+/* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
+SPHGI_TEMPLATE int32_t pack_run(const struct sphgi_find *find, const struct candidates *c,
+                                const struct surroundings *s, int32_t begin, int32_t end, int32_t n,
+                                const struct wraps *w, bool periodic, bool mutual)
 {
     const real *rows = (const real *)find->rows + SPHGI_ROW * (ptrdiff_t)begin;
-    const vec stretch = splat(R(find->stretch));
     mask near = {0};
     int32_t k = begin;
     for (; k < end; k += LANES, rows += SPHGI_ROW * LANES) {
-        const real *row[LANES];
-        for (int l = 0; l < LANES; ++l)
-            row[l] = rows + SPHGI_ROW * l;
-        const struct four v = transpose(row);
-        const struct three at = {v.x, v.y, v.z};
-        near = near_box(box, &at, w, periodic);
+        struct three at;
+        vec reach = s->reach;
+        if (mutual) {
+            const real *row[LANES];
+            for (int l = 0; l < LANES; ++l)
+                row[l] = rows + SPHGI_ROW * l;
+            const struct four v = transpose(row);
+            at = (struct three){v.x, v.y, v.z};
+            reach = v.w * splat(R(find->stretch));
+        } else {
+            at = coordinates_of(rows);
+        }
+        near = near_surroundings(find, s, &at, reach, w, periodic, mutual);
         const packing moved = packing_of(find, near);
         pack_numbers(c->x + n, at.x, moved);
         pack_numbers(c->y + n, at.y, moved);
         pack_numbers(c->z + n, at.z, moved);
-        pack_numbers(c->squares + n, square_of_radius(v.w, stretch), moved);
+        if (mutual)
+            pack_numbers(c->squares + n, reach, moved);
         number_ids(c->ids + n, SPHGI_ID_STEP * (uint32_t)k, moved);
         n += lanes_in(near);
     }
     return n - lanes_in(near & ~first_lanes(LANES - (k - end))); /* read beyond the end */
 }
 
-SPHGI_TEMPLATE int32_t collect_part(const struct sphgi_find *find, const struct candidates *c,
-                                    const struct box *box, int32_t begin, int32_t end, int32_t n,
-                                    const struct wraps *w, bool periodic, bool mutual)
+SPHGI_TEMPLATE void pack_as(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                            const real *targets, int32_t count, int32_t self,
+                            struct sphgi_packed *packed, bool periodic, bool mutual)
 {
-    return mutual ? collect_with_radii(find, c, box, begin, end, n, w, periodic)
-                  : collect_run(find, c, box, begin, end, n, w, periodic);
-}
-
-SPHGI_TEMPLATE struct candidates collect_runs(const struct sphgi_find *find,
-                                              const struct sphgi_runs *runs, struct box *box,
-                                              int32_t self, const struct wraps *w, bool periodic,
-                                              bool mutual)
-{
-    struct candidates c = carve(find->scratch, runs->candidates, true);
+    const struct wraps w = wraps_of(find->period);
+    const struct surroundings s = surroundings_of(find, targets, count);
+    *packed = (struct sphgi_packed){.most = runs->candidates, .self = -1};
+    const struct candidates c = carve_wide(find, packed, mutual);
     int32_t n = 0;
-    c.self = -1;
     for (int32_t run = 0; run < runs->count; ++run) {
         int32_t begin = runs->begin[run];
         const int32_t end = begin + runs->length[run];
-        const double reach = runs->reach[run] * (1 + 0x1p-16) + 2 * find->slack;
-        box->square_reach = splat(R(reach * reach));
-        /* in two parts where the targets are among them, to see where they stand */
-        const bool parted = self >= begin && self < end;
-        for (int32_t part = parted ? 0 : 1; part < 2; ++part) {
-            const int32_t last = part ? end : self;
-            n = collect_part(find, &c, box, begin, last, n, w, periodic, mutual);
-            c.self = parted && !part ? n : c.self;
-            begin = last;
+        if (self >= begin && self < end) { /* in two parts, to see where the targets stand */
+            n = pack_run(find, &c, &s, begin, self, n, &w, periodic, mutual);
+            packed->self = n;
+            begin = self;
         }
+        n = pack_run(find, &c, &s, begin, end, n, &w, periodic, mutual);
     }
+    packed->count = n;
+    pad_candidates(&c, n);
+}
+
+static void pack_by_radii(const struct sphgi_find *find, const struct sphgi_runs *runs,
+                          const void *targets, int32_t count, int32_t self,
+                          struct sphgi_packed *packed)
+{
+    if (find->mutual && find->periodic)
+        pack_as(find, runs, targets, count, self, packed, true, true);
+    else if (find->mutual)
+        pack_as(find, runs, targets, count, self, packed, false, true);
+    else if (find->periodic)
+        pack_as(find, runs, targets, count, self, packed, true, false);
+    else
+        pack_as(find, runs, targets, count, self, packed, false, false);
+}
+
+/* ---- A few of them --------------------------------------------------------------------------- */
+
+/* Packs the candidates [begin, end) of the cell behind the n that there are of these targets. */
+SPHGI_TEMPLATE int32_t pack_some(const struct sphgi_find *find, const struct candidates *wide,
+                                 const struct candidates *c, const struct surroundings *s,
+                                 int32_t begin, int32_t end, int32_t n, const struct wraps *w,
+                                 bool periodic, bool mutual)
+{
+    mask near = {0};
+    int32_t k = begin;
+    for (; k < end; k += LANES) {
+        const struct three at = {load(wide->x + k), load(wide->y + k), load(wide->z + k)};
+        const vec reach = mutual ? load(wide->squares + k) : s->reach;
+        near = near_surroundings(find, s, &at, reach, w, periodic, mutual);
+        const packing moved = packing_of(find, near);
+        pack_numbers(c->x + n, at.x, moved);
+        pack_numbers(c->y + n, at.y, moved);
+        pack_numbers(c->z + n, at.z, moved);
+        if (mutual)
+            pack_numbers(c->squares + n, reach * reach, moved);
+        pack_ids_of_lanes(c->ids + n, wide->ids + k, moved);
+        n += lanes_in(near);
+    }
+    return n - lanes_in(near & ~first_lanes(LANES - (k - end))); /* read beyond the end */
+}
+
+SPHGI_TEMPLATE struct candidates pick(const struct sphgi_find *find,
+                                      const struct sphgi_packed *packed, const real *targets,
+                                      int32_t count, int32_t self, const struct wraps *w,
+                                      bool periodic, bool mutual)
+{
+    const struct candidates wide = carve_wide(find, packed, mutual);
+    const struct surroundings s = surroundings_of(find, targets, count);
+    struct candidates c = carve(wide.bits, packed->count, mutual);
+    int32_t n = 0;
+    c.self = -1;
+    if (self >= 0)
+        n = c.self = pack_some(find, &wide, &c, &s, 0, self, n, w, periodic, mutual);
+    n = pack_some(find, &wide, &c, &s, self >= 0 ? self : 0, packed->count, n, w, periodic, mutual);
     c.count = (int32_t)sphgi_round_up((size_t)n, TESTED);
-    const vec none = splat((real)__builtin_nan(""));
-    for (int l = 0; l < TESTED; l += LANES) {
-        store(c.x + n + l, none);
-        store(c.y + n + l, none);
-        store(c.z + n + l, none);
-        store(c.squares + n + l, splat(R(0)));
-    }
+    pad_candidates(&c, n);
     return c;
 }
 
@@ -86,29 +203,28 @@ SPHGI_TEMPLATE int32_t without(const struct sphgi_find *find, uint32_t *list, in
     return k;
 }
 
-SPHGI_TEMPLATE void find_radii_as(const struct sphgi_find *find, const struct sphgi_runs *runs,
+SPHGI_TEMPLATE void find_radii_as(const struct sphgi_find *find, const struct sphgi_packed *packed,
                                   const real *targets, int32_t count, int32_t self,
                                   uint32_t *const *lists, int32_t *lengths, bool periodic,
                                   bool mutual)
 {
     const struct wraps w = wraps_of(find->period);
-    struct box box = bounding_box(find, targets, count);
-    const struct candidates c = collect_runs(find, runs, &box, self, &w, periodic, mutual);
+    const struct candidates c = pick(find, packed, targets, count, self, &w, periodic, mutual);
     find_among(find, &c, targets, count, &w, lists, lengths, periodic, true, mutual);
     for (int32_t t = 0; find->selves && t < count; ++t)
         lengths[t] = without(find, lists[t], lengths[t], SPHGI_ID_STEP * (uint32_t)find->selves[t]);
 }
 
-static void find_by_radii(const struct sphgi_find *find, const struct sphgi_runs *runs,
+static void find_by_radii(const struct sphgi_find *find, const struct sphgi_packed *packed,
                           const void *targets, int32_t count, int32_t self, uint32_t *const *lists,
                           int32_t *lengths)
 {
     if (find->mutual && find->periodic)
-        find_radii_as(find, runs, targets, count, self, lists, lengths, true, true);
+        find_radii_as(find, packed, targets, count, self, lists, lengths, true, true);
     else if (find->mutual)
-        find_radii_as(find, runs, targets, count, self, lists, lengths, false, true);
+        find_radii_as(find, packed, targets, count, self, lists, lengths, false, true);
     else if (find->periodic)
-        find_radii_as(find, runs, targets, count, self, lists, lengths, true, false);
+        find_radii_as(find, packed, targets, count, self, lists, lengths, true, false);
     else
-        find_radii_as(find, runs, targets, count, self, lists, lengths, false, false);
+        find_radii_as(find, packed, targets, count, self, lists, lengths, false, false);
 }

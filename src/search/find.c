@@ -23,8 +23,9 @@ static size_t candidate_bytes(const sphg_neighbors *neighbors)
 {
     const size_t size = sphgi_size_of_type(neighbors->position_type);
     const size_t candidates = (size_t)room_of(neighbors) + SPHGI_FIND_SLACK + 2 * SPHGI_ALIGNMENT;
-    const size_t numbers = neighbors->graded ? 4 : 3;
-    return sphgi_round_up(candidates * (numbers * size + sizeof(uint32_t) + 1), SPHGI_ALIGNMENT);
+    const size_t numbers = neighbors->graded ? 4 : 3, sets = neighbors->graded ? 2 : 1;
+    return sphgi_round_up(sets * candidates * (numbers * size + sizeof(uint32_t) + 1),
+                          SPHGI_ALIGNMENT);
 }
 
 static size_t nearby_bytes(const sphg_neighbors *neighbors)
@@ -146,8 +147,9 @@ static void open_walk(const struct sphgi_finder *f, struct sphgi_walk *walk, int
                       int32_t count)
 {
     const sphg_neighbors *n = f->neighbors;
-    sphgi_walk_open(walk, &n->sources, n->position_type, sphgi_target_row(n, target), count,
-                    n->stretch, sphgi_lists_are_mutual(n));
+    double low[SPHGI_ROW], high[SPHGI_ROW];
+    f->passes->bounds(sphgi_target_row(n, target), count, low, high);
+    sphgi_walk_open(walk, &n->sources, low, high, n->stretch, sphgi_lists_are_mutual(n));
 }
 
 /* Where targets are some of the sources, a cell's stand in another order there. */
@@ -176,26 +178,66 @@ static bool look_nearby(struct sphgi_finder *f)
                        look_around(f, f->start[f->cell], f->start[f->cell + 1]);
 }
 
-static void find_in_octaves(struct sphgi_finder *f)
+/* Packs the candidates of the targets [first, last); false: they are too many. */
+static bool pack(struct sphgi_finder *f, int32_t first, int32_t last)
 {
     const sphg_neighbors *n = f->neighbors;
     struct sphgi_walk walk;
     struct sphgi_runs runs;
-    uint32_t *lists[SPHGI_FIND_MOST];
-    int32_t selves[SPHGI_FIND_MOST], lengths[SPHGI_FIND_MOST];
-    const int32_t left = f->start[f->cell + 1] - f->next;
-    const int32_t count = left > TOGETHER + TOGETHER / 2 ? TOGETHER : left;
     const bool looked = look_nearby(f);
-    open_walk(f, &walk, f->next, count);
+    open_walk(f, &walk, first, last - first);
     const bool more =
         looked ? sphgi_walk_nearby(&walk, f->nearby, &runs) : sphgi_walk_on(&walk, &runs);
+    if (more || runs.candidates > f->room)
+        return false;
+    f->passes->pack_by_radii(&f->find, &runs, sphgi_target_row(n, first), last - first,
+                             n->same ? first : -1, &f->packed);
+    f->packed_for[0] = first;
+    f->packed_for[1] = last;
+    return true;
+}
+
+/* Where the targets that are searched for together with the next one begin and end. Counted from
+ * the cell's first, so that lists do not depend on where a walk began. */
+static void few_around(const struct sphgi_finder *f, int32_t *first, int32_t *last)
+{
+    const int32_t begin = f->start[f->cell], end = f->start[f->cell + 1];
+    const int32_t parts = sphgi_max32(1, (end - begin + TOGETHER / 2 - 1) / TOGETHER);
+    const int32_t part = sphgi_min32((f->next - begin) / TOGETHER, parts - 1);
+    *first = begin + part * TOGETHER;
+    *last = part + 1 < parts ? *first + TOGETHER : end;
+}
+
+/* Those of the cell share candidates, or if these are too many, a few of them. */
+static bool have_packed(struct sphgi_finder *f, int32_t first, int32_t last)
+{
+    const int32_t begin = f->start[f->cell], end = f->start[f->cell + 1];
+    if (f->next >= f->packed_for[0] && f->next < f->packed_for[1])
+        return true;
+    if (f->apart_up_to != end) {
+        if (pack(f, begin, end))
+            return true;
+        f->apart_up_to = end;
+    }
+    return pack(f, first, last);
+}
+
+static void find_in_octaves(struct sphgi_finder *f)
+{
+    const sphg_neighbors *n = f->neighbors;
+    uint32_t *lists[SPHGI_FIND_MOST];
+    int32_t selves[SPHGI_FIND_MOST], lengths[SPHGI_FIND_MOST], first, last;
+    few_around(f, &first, &last);
+    const int32_t count = last - f->next;
+    const bool packed = have_packed(f, first, last);
     for (int32_t k = 0; k < count; ++k)
         selves[k] = n->part_of ? row_of_source(n, f->next + k) : -1;
     f->find.selves = n->part_of && !n->same ? selves : NULL;
-    open_slots(f, count, runs.candidates, lists);
-    if (!more && runs.candidates <= f->room) {
-        f->passes->find_by_radii(&f->find, &runs, sphgi_target_row(n, f->next), count,
-                                 n->same ? f->next : -1, lists, lengths);
+    open_slots(f, count, packed ? f->packed.count : 0, lists);
+    if (packed) {
+        const int32_t self = f->packed.self < 0 ? -1 : f->packed.self + f->next - f->packed_for[0];
+        f->passes->find_by_radii(&f->find, &f->packed, sphgi_target_row(n, f->next), count, self,
+                                 lists, lengths);
         close_slots(f, count, lengths);
     }
     f->next += count;
@@ -211,6 +253,7 @@ static void find_target_in_octaves(struct sphgi_finder *f, int32_t target, sphgi
     struct sphgi_runs runs, slice = {.count = 1};
     uint32_t *ids = wide_slot(f);
     f->find.selves = NULL;
+    f->packed_for[0] = f->packed_for[1] = 0;
     open_walk(f, &walk, target, 1);
     for (bool more = true; more;) {
         more = sphgi_walk_on(&walk, &runs);
@@ -220,9 +263,10 @@ static void find_target_in_octaves(struct sphgi_finder *f, int32_t target, sphgi
                 slice.candidates = sphgi_min32(runs.length[run] - at, f->room);
                 slice.begin[0] = runs.begin[run] + at;
                 slice.length[0] = slice.candidates;
-                slice.reach[0] = runs.reach[run];
-                f->passes->find_by_radii(&f->find, &slice, sphgi_target_row(n, target), 1, self,
-                                         &ids, &found);
+                f->passes->pack_by_radii(&f->find, &slice, sphgi_target_row(n, target), 1, self,
+                                         &f->packed);
+                f->passes->find_by_radii(&f->find, &f->packed, sphgi_target_row(n, target), 1,
+                                         f->packed.self, &ids, &found);
                 take(data, ids, found);
             }
     }

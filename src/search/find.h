@@ -26,6 +26,9 @@ struct sphgi_finder {
     struct sphgi_nearby
         *nearby; /* of octaves: blocks near the targets looked[0] .. looked[1] - 1 */
     int32_t looked[2];
+    struct sphgi_packed packed; /* of octaves: candidates of the targets packed_for[0] .. [1] - 1 */
+    int32_t packed_for[2];
+    int32_t apart_up_to; /* targets before this one have too many candidates to share them */
 
     /* Lists of targets from `first` up to `next`. That of target t stands in slot t modulo
      * SPHGI_LISTS_MOST, so that those of a group follow one another and nobody moves them. */

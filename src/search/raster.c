@@ -135,7 +135,7 @@ struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach,
 
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_raster *raster)
 {
-    struct sphgi_cutting cutting = {.inverse = {0}};
+    struct sphgi_cutting cutting = {.octaves = raster->octaves, .top = raster->top};
     int32_t local = 0;
     for (int32_t a = 0; a < 3; ++a) {
         cutting.inverse[a] = raster->axis[a].inverse;

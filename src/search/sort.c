@@ -87,7 +87,8 @@ static void collect_cut(const struct sort *sort, struct chunk *chunk, int32_t be
     for (int32_t k = 0; k < count; ++k) {
         const uint32_t r = ((uint32_t)block[k][1] & 1) | ((uint32_t)block[k][2] & 1) << 1;
         if (number[r] < 0 || memcmp(block[k], seen[r], sizeof *seen) != 0) {
-            const int64_t at[3] = {block[k][0], block[k][1], block[k][2]};
+            int64_t at[3] = {block[k][0], block[k][1], block[k][2]};
+            sphgi_raise_octave(block[k][3], at);
             number[r] = block_in_chunk(chunk, sphgi_key_of(at));
             memcpy(seen[r], block[k], sizeof *seen);
         }
@@ -149,6 +150,9 @@ static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct sort *sort = data;
     const size_t row_size = SPHGI_ROW * sphgi_size_of_type(sort->type);
+    bool (*const cut)(const struct sphgi_cutting *, const void *, int32_t, int32_t(*)[4],
+                      uint8_t *) =
+        sort->raster->octaves ? sort->passes->cut_octaves : sort->passes->cut;
     int32_t block[BATCH][4];
     (void)worker;
     for (int32_t c = begin; c < end; ++c) {
@@ -157,11 +161,10 @@ static void collect_task(void *data, int32_t begin, int32_t end, int32_t worker)
         for (int32_t i = chunk->begin; i < chunk->end; i += BATCH) {
             const int32_t count = sphgi_min32(BATCH, chunk->end - i);
             const char *rows = (const char *)sort->rows + (size_t)i * row_size;
-            if (sort->raster->octaves)
-                collect_octaves(sort, chunk, i, count);
-            else if (!sort->raster->periodic &&
-                     sort->passes->cut(&sort->cutting, rows, count, block, sort->cell + i))
+            if (!sort->raster->periodic && cut(&sort->cutting, rows, count, block, sort->cell + i))
                 collect_cut(sort, chunk, i, count, block);
+            else if (sort->raster->octaves)
+                collect_octaves(sort, chunk, i, count);
             else
                 collect_any(sort, chunk, i, count);
         }

@@ -32,6 +32,21 @@ void sphgi_tree_use(struct sphgi_tree *tree, int32_t blocks, void *memory)
     }
 }
 
+static void open_octave(struct sphgi_tree *tree, int32_t octave, int32_t first)
+{
+    tree->first[octave] = first;
+    for (int32_t a = 0; a < 3; ++a) {
+        tree->octave[octave].low[a] = INT32_MAX;
+        tree->octave[octave].high[a] = INT32_MIN;
+    }
+}
+
+static void widen(struct sphgi_blocks *blocks, int32_t axis, int32_t at)
+{
+    blocks->low[axis] = sphgi_min32(blocks->low[axis], at);
+    blocks->high[axis] = sphgi_max32(blocks->high[axis], at);
+}
+
 static void fill_leaves(struct sphgi_tree *tree, const struct sphgi_block *blocks, int32_t count,
                         int32_t octaves)
 {
@@ -43,13 +58,17 @@ static void fill_leaves(struct sphgi_tree *tree, const struct sphgi_block *block
             sphgi_key_open(blocks[b].key, at);
             const int32_t own = octaves > 1 ? sphgi_lower_octave(at) : 0;
             while (octave < own)
-                tree->first[++octave] = b;
+                open_octave(tree, ++octave, b);
         }
-        for (int32_t a = 0; a < 3; ++a)
+        for (int32_t a = 0; a < 3; ++a) {
             leaf->at[a][b % SPHGI_TREE_WIDTH] = b < count ? sphgi_narrowed(at[a]) : INT32_MIN;
+            if (b < count)
+                widen(&tree->octave[octave], a, sphgi_narrowed(at[a]));
+        }
     }
-    while (octave < octaves)
-        tree->first[++octave] = count;
+    while (octave + 1 < octaves)
+        open_octave(tree, ++octave, count);
+    tree->first[octaves] = count;
 }
 
 /* What group number g of a height spans along an axis; places without an item span nothing. */

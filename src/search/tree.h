@@ -20,6 +20,11 @@ struct sphgi_node {
     int32_t low[3][SPHGI_TREE_WIDTH], high[3][SPHGI_TREE_WIDTH];
 };
 
+/* What the blocks of an octave span, or where blocks are looked for. */
+struct sphgi_blocks {
+    int32_t low[3], high[3];
+};
+
 /* Item number k of a height has the items 8 k .. 8 k + 7 of the height below; those of height 0 are
  * the blocks, in the order of storage. */
 struct sphgi_tree {
@@ -28,6 +33,7 @@ struct sphgi_tree {
     struct sphgi_leaf *leaves;
     struct sphgi_node *nodes[SPHGI_TREE_HEIGHT]; /* [0]: unused */
     int32_t first[SPHGI_OCTAVES_MOST + 1];       /* block of each octave */
+    struct sphgi_blocks octave[SPHGI_OCTAVES_MOST];
 };
 
 size_t sphgi_tree_size(int32_t blocks);

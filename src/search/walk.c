@@ -5,10 +5,6 @@
 
 /* ---- Blocks in a box ------------------------------------------------------------------------ */
 
-struct box {
-    int32_t low[3], high[3];
-};
-
 typedef int32_t four __attribute__((vector_size(16), aligned(4), may_alias));
 typedef int16_t four_short __attribute__((vector_size(8)));
 
@@ -22,7 +18,8 @@ static unsigned bits_left(four outside)
 }
 
 /* The items at low[axis] and high[axis], of which each axis has SPHGI_TREE_WIDTH. */
-static unsigned items_inside(const int32_t *low, const int32_t *high, const struct box *box)
+static unsigned items_inside(const int32_t *low, const int32_t *high,
+                             const struct sphgi_blocks *box)
 {
     unsigned inside = 0;
     for (int32_t first = 0; first < SPHGI_TREE_WIDTH; first += 4) {
@@ -38,7 +35,7 @@ static unsigned items_inside(const int32_t *low, const int32_t *high, const stru
 }
 
 static unsigned group_inside(const struct sphgi_tree *tree, int32_t height, int32_t group,
-                             const struct box *box)
+                             const struct sphgi_blocks *box)
 {
     if (!height)
         return items_inside(tree->leaves[group].at[0], tree->leaves[group].at[0], box);
@@ -46,34 +43,40 @@ static unsigned group_inside(const struct sphgi_tree *tree, int32_t height, int3
     return items_inside(node->low[0], node->high[0], box);
 }
 
-/* The first block in [from, end) that lies in the box, or end. */
-static int32_t next_block(const struct sphgi_tree *tree, const struct box *box, int32_t from,
-                          int32_t end)
+/* The first leaf that has blocks of [from, end) in the box; a bit for each of them, 0: none is
+ * left.
+ */
+static unsigned next_blocks(const struct sphgi_tree *tree, const struct sphgi_blocks *box,
+                            int32_t from, int32_t end, int32_t *leaf)
 {
     int32_t height = 0, at = from;
     while (height <= tree->height && (int64_t)at << 3 * height < end) {
         const int32_t group = at / SPHGI_TREE_WIDTH, ahead = at % SPHGI_TREE_WIDTH;
-        const unsigned inside = group_inside(tree, height, group, box) >> ahead;
+        const unsigned inside = group_inside(tree, height, group, box) >> ahead << ahead;
         if (!inside) {
             at = group + 1;
             ++height;
-            continue;
+        } else if (height) {
+            at = (group * SPHGI_TREE_WIDTH + __builtin_ctz(inside)) * SPHGI_TREE_WIDTH;
+            --height;
+        } else {
+            const int32_t left = end - group * SPHGI_TREE_WIDTH;
+            *leaf = group;
+            return left < SPHGI_TREE_WIDTH ? inside & ((1u << left) - 1) : inside;
         }
-        at += __builtin_ctz(inside);
-        if (!height)
-            return sphgi_min32(at, end);
-        at *= SPHGI_TREE_WIDTH;
-        --height;
     }
-    return end;
+    return 0;
+}
+
+static bool meet(const struct sphgi_blocks *a, const struct sphgi_blocks *b)
+{
+    bool apart = false;
+    for (int32_t k = 0; k < 3; ++k)
+        apart |= a->low[k] > b->high[k] || b->low[k] > a->high[k];
+    return !apart;
 }
 
 /* ---- The walk ------------------------------------------------------------------------------- */
-
-static double number_at(const void *row, int32_t number, sphg_type type)
-{
-    return type == SPHG_F64 ? ((const double *)row)[number] : (double)((const float *)row)[number];
-}
 
 /* Distances are off by a few units of the type, between images by the slack. */
 static double with_margin(double reach, double slack)
@@ -109,49 +112,39 @@ static struct sphgi_span cells_between(const struct sphgi_axis *axis, int32_t oc
     return span;
 }
 
-/* To the octave's first part. Radii there are at most 2^-octave of the largest; what was too small
- * for the last one stands in it, too. */
-static void enter_octave(struct sphgi_walk *walk, int32_t octave)
+/* How far the targets look, or are seen from, among sources of an octave. Radii there are at most
+ * 2^-octave of the largest; what was too small for the last one stands in it, too. */
+static double reach_in(const struct sphgi_walk *walk, int32_t octave)
 {
     const struct sphgi_raster *raster = &walk->sources->raster;
-    walk->octave = octave;
-    walk->part = 0;
-    if (octave >= raster->octaves)
-        return;
     const double theirs = walk->stretch * raster->top / (double)((int64_t)1 << octave);
-    walk->octave_reach = theirs > walk->reach ? theirs : walk->reach;
-    const double reach = with_margin(walk->octave_reach, raster->slack);
-    for (int32_t a = 0; a < 3; ++a)
-        if (a < raster->dimension)
-            walk->span[a] = cells_between(&raster->axis[a], octave, walk->low[a] - reach,
-                                          walk->high[a] + reach);
-        else
-            walk->span[a] = (struct sphgi_span){.count = 1};
-    walk->block = walk->sources->tree.first[octave];
+    return with_margin(theirs > walk->reach ? theirs : walk->reach, raster->slack);
 }
 
-void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, sphg_type type,
-                     const void *targets, int32_t count, double stretch, bool mutual)
+static void look_along(struct sphgi_walk *walk, int32_t axis, double reach)
 {
-    const size_t size = SPHGI_ROW * sphgi_size_of_type(type);
+    const struct sphgi_raster *raster = &walk->sources->raster;
+    if (axis < raster->dimension)
+        walk->span[axis] = cells_between(&raster->axis[axis], walk->octave, walk->low[axis] - reach,
+                                         walk->high[axis] + reach);
+    else
+        walk->span[axis] = (struct sphgi_span){.count = 1};
+}
+
+void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, const double *low,
+                     const double *high, double stretch, bool mutual)
+{
     walk->sources = sources;
-    walk->reach = 0;
+    memcpy(walk->low, low, sizeof walk->low);
+    memcpy(walk->high, high, sizeof walk->high);
+    walk->reach = high[3] * stretch;
     walk->stretch = mutual ? stretch : 0;
-    for (int32_t k = 0; k < count; ++k) {
-        const char *row = (const char *)targets + (size_t)k * size;
-        for (int32_t a = 0; a < 3; ++a) {
-            const double x = number_at(row, a, type);
-            walk->low[a] = k && walk->low[a] < x ? walk->low[a] : x;
-            walk->high[a] = k && walk->high[a] > x ? walk->high[a] : x;
-        }
-        const double reach = number_at(row, 3, type) * stretch;
-        walk->reach = reach > walk->reach ? reach : walk->reach;
-    }
-    walk->octave = -1;
+    walk->octave = walk->part = -1;
+    walk->inside = 0;
 }
 
 /* Parts are numbered in binary: which span of each axis. False: the axes have no such part. */
-static bool box_of_part(const struct sphgi_walk *walk, struct box *box)
+static bool box_of_part(const struct sphgi_walk *walk, struct sphgi_blocks *box)
 {
     for (int32_t a = 0; a < 3; ++a) {
         const int32_t k = walk->part >> a & 1, shift = walk->sources->raster.axis[a].shift;
@@ -164,17 +157,16 @@ static bool box_of_part(const struct sphgi_walk *walk, struct box *box)
     return true;
 }
 
-static void add_run(struct sphgi_runs *runs, int32_t begin, int32_t end, double reach)
+static void add_run(struct sphgi_runs *runs, int32_t begin, int32_t end)
 {
     const int32_t n = runs->count;
     runs->candidates += end - begin;
-    if (n && runs->begin[n - 1] + runs->length[n - 1] == begin && runs->reach[n - 1] == reach) {
+    if (n && runs->begin[n - 1] + runs->length[n - 1] == begin) {
         runs->length[n - 1] += end - begin;
         return;
     }
     runs->begin[n] = begin;
     runs->length[n] = end - begin;
-    runs->reach[n] = reach;
     ++runs->count;
 }
 
@@ -192,32 +184,68 @@ static void add_block(const struct sphgi_walk *walk, int32_t block, int64_t x, i
     const int32_t begin = sphgi_first_of_cell(grid, block, first);
     const int32_t end = sphgi_first_of_cell(grid, block, last + 1);
     if (end > begin)
-        add_run(runs, begin, end, walk->octave_reach);
+        add_run(runs, begin, end);
 }
 
-/* To the next block within reach, -1: there is none. The walk stays there. */
-static int32_t next_of_walk(struct sphgi_walk *walk)
+/* To the first part of the next octave that has blocks; false: there is none. */
+static bool enter_next_octave(struct sphgi_walk *walk)
 {
     const struct sphgi_tree *tree = &walk->sources->tree;
-    if (walk->octave < 0)
-        enter_octave(walk, 0);
-    for (; walk->octave < walk->sources->raster.octaves; enter_octave(walk, walk->octave + 1)) {
-        const int32_t begin = tree->first[walk->octave], end = tree->first[walk->octave + 1];
-        struct box box;
-        for (; walk->part < 8; ++walk->part, walk->block = begin) {
-            if (begin < end && box_of_part(walk, &box))
-                walk->block = next_block(tree, &box, walk->block, end);
-            else
-                walk->block = end;
-            if (walk->block < end)
-                return walk->block;
-        }
-    }
-    return -1;
+    const int32_t octaves = walk->sources->raster.octaves;
+    do
+        ++walk->octave;
+    while (walk->octave < octaves && tree->first[walk->octave] == tree->first[walk->octave + 1]);
+    if (walk->octave >= octaves)
+        return false;
+    const double reach = reach_in(walk, walk->octave);
+    for (int32_t a = 0; a < 3; ++a)
+        look_along(walk, a, reach);
+    walk->part = 0;
+    walk->from = tree->first[walk->octave];
+    return true;
 }
 
+/* The next blocks of the walk's part that stand in one leaf; false: there are none. */
+static bool next_of_part(struct sphgi_walk *walk)
+{
+    const struct sphgi_tree *tree = &walk->sources->tree;
+    struct sphgi_blocks box;
+    if (!box_of_part(walk, &box) || !meet(&box, &tree->octave[walk->octave]))
+        return false;
+    walk->inside = next_blocks(tree, &box, walk->from, tree->first[walk->octave + 1], &walk->leaf);
+    walk->from = (walk->leaf + 1) * SPHGI_TREE_WIDTH;
+    return walk->inside;
+}
+
+/* The next block within reach, -1: there is none. */
+static int32_t next_of_walk(struct sphgi_walk *walk)
+{
+    enum { PARTS = 8 };
+    while (!walk->inside) {
+        if (walk->part < 0 || walk->part == PARTS) {
+            if (!enter_next_octave(walk))
+                return -1;
+        } else if (!next_of_part(walk)) {
+            ++walk->part;
+            walk->from = walk->sources->tree.first[walk->octave];
+        }
+    }
+    const int32_t block = walk->leaf * SPHGI_TREE_WIDTH + __builtin_ctz(walk->inside);
+    walk->inside &= walk->inside - 1;
+    return block;
+}
+
+/* Leaves know all places but those far out. */
 static void place_of(const struct sphgi_walk *walk, int32_t block, int64_t *at)
 {
+    const struct sphgi_leaf *leaf = &walk->sources->tree.leaves[block / SPHGI_TREE_WIDTH];
+    bool far = false;
+    for (int32_t a = 0; a < 3; ++a) {
+        at[a] = leaf->at[a][block % SPHGI_TREE_WIDTH];
+        far |= at[a] == sphgi_narrowed(INT64_MIN) || at[a] == sphgi_narrowed(INT64_MAX);
+    }
+    if (!far)
+        return;
     sphgi_key_open(walk->sources->blocks[block].key, at);
     if (walk->sources->raster.octaves > 1)
         sphgi_lower_octave(at);
@@ -238,15 +266,16 @@ static bool is_in_part(const struct sphgi_walk *walk, const int64_t *at)
 bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs)
 {
     runs->count = runs->candidates = 0;
-    for (int32_t block; (block = next_of_walk(walk)) >= 0; ++walk->block) {
+    while (runs->count < SPHGI_RUNS_MOST) {
+        const int32_t block = next_of_walk(walk);
         int64_t at[3];
-        if (runs->count == SPHGI_RUNS_MOST)
-            return true;
+        if (block < 0)
+            return false;
         place_of(walk, block, at);
         if (is_in_part(walk, at))
             add_block(walk, block, at[0], walk->part & 1, runs);
     }
-    return false;
+    return true;
 }
 
 /* ---- Many targets --------------------------------------------------------------------------- */
@@ -262,25 +291,18 @@ static bool is_found_again(const struct sphgi_walk *walk, int64_t x)
 bool sphgi_look_nearby(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
 {
     nearby->count = 0;
-    for (int32_t block; (block = next_of_walk(walk)) >= 0; ++walk->block) {
-        struct sphgi_near *near = &nearby->near[nearby->count];
+    for (int32_t block; (block = next_of_walk(walk)) >= 0;) {
+        int64_t at[3];
+        place_of(walk, block, at);
+        if (!is_in_part(walk, at) || is_found_again(walk, at[0]))
+            continue;
         if (nearby->count == SPHGI_NEAR_MOST) {
             nearby->count = -1;
             return false;
         }
-        *near = (struct sphgi_near){.block = block, .octave = walk->octave};
-        place_of(walk, block, near->at);
-        nearby->count += is_in_part(walk, near->at) && !is_found_again(walk, near->at[0]);
+        nearby->near[nearby->count++] = (struct sphgi_near){block, walk->octave, at[0]};
     }
     return true;
-}
-
-static bool is_in_span(const struct sphgi_span *span, int64_t cell)
-{
-    bool inside = false;
-    for (int32_t k = 0; k < span->count; ++k)
-        inside |= cell >= span->low[k] && cell <= span->high[k];
-    return inside;
 }
 
 bool sphgi_walk_nearby(struct sphgi_walk *walk, const struct sphgi_nearby *nearby,
@@ -290,14 +312,14 @@ bool sphgi_walk_nearby(struct sphgi_walk *walk, const struct sphgi_nearby *nearb
     walk->octave = -1;
     for (int32_t n = 0; n < nearby->count; ++n) {
         const struct sphgi_near *near = &nearby->near[n];
-        if (near->octave != walk->octave)
-            enter_octave(walk, near->octave);
-        if (!is_in_span(&walk->span[1], near->at[1]) || !is_in_span(&walk->span[2], near->at[2]))
-            continue;
+        if (near->octave != walk->octave) {
+            walk->octave = near->octave;
+            look_along(walk, 0, reach_in(walk, near->octave));
+        }
         if (runs->count + 2 > SPHGI_RUNS_MOST)
             return true;
         for (int32_t k = 0; k < walk->span[0].count; ++k)
-            add_block(walk, near->block, near->at[0], k, runs);
+            add_block(walk, near->block, near->x, k, runs);
     }
     return false;
 }

@@ -16,21 +16,24 @@ struct sphgi_walk {
     const struct sphgi_grid *sources;
     double low[3], high[3]; /* of the targets */
     double reach, stretch;  /* of the targets; of the radii of others where these count, else 0 */
-    int32_t octave, part, block;
-    double octave_reach;
+    int32_t octave, part;
+    int32_t from, leaf; /* block, from which on; leaf of the tree where the walk is ... */
+    unsigned inside;    /* ... and its blocks within reach that are yet to come */
     struct sphgi_span span[3];
 };
 
-void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, sphg_type type,
-                     const void *targets, int32_t count, double stretch, bool mutual);
+/* low, high: of the four numbers of the targets' rows, the radius being the last */
+void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, const double *low,
+                     const double *high, double stretch, bool mutual);
 /* The next runs, as many as there is room for. False: there are no more. */
 bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs);
 
-/* Blocks within reach of many targets: a few of these after the other look there alone. */
+/* Blocks within reach of many targets, in the order of the walk: some of these after the other look
+ * there alone. */
 enum { SPHGI_NEAR_MOST = 256 };
 struct sphgi_near {
     int32_t block, octave;
-    int64_t at[3];
+    int64_t x;
 };
 struct sphgi_nearby {
     int32_t count; /* -1: there are more */
