@@ -1,7 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 #include "settings.h"
 #include "library.h"
+#include "report/machine.h"
 #include <math.h>
+
+struct settings settings_default(int32_t particles, int32_t repetitions, const char *output)
+{
+    return (struct settings){.particles = particles,
+                             .threads = machine_threads(),
+                             .repetitions = repetitions,
+                             .support = 2,
+                             .jitter = 0.2,
+                             .output = output};
+}
 
 void settings_read(const struct settings *settings, const struct command_option *options,
                    const char *about, int argc, char **argv)

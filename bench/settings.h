@@ -67,6 +67,9 @@ struct settings {
          NULL,        NULL},                                                                       \
         ISA_OPTION(s), RUN_OPTIONS(s)
 
+/* What they are where nothing is said; output: a folder, or NULL. */
+struct settings settings_default(int32_t particles, int32_t repetitions, const char *output);
+
 /* Reads them, and refuses an instruction set that does not run here. */
 void settings_read(const struct settings *settings, const struct command_option *options,
                    const char *about, int argc, char **argv);

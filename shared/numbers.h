@@ -10,9 +10,8 @@ struct numbers {
     int32_t count, width;
 };
 
-/* All zero. Ends the program where memory runs out. */
+/* All zero, and held as below. Ends the program where memory runs out. */
 struct numbers numbers_create(sphg_type type, int32_t count, int32_t width);
-void numbers_destroy(struct numbers *numbers);
 
 double numbers_get(const struct numbers *numbers, int32_t item, int32_t component);
 void numbers_set(const struct numbers *numbers, int32_t item, int32_t component, double value);
@@ -25,7 +24,16 @@ static inline double numbers_larger(double a, double b)
 }
 
 /* Zeros; ends the program where memory runs out. free() releases the first, the end of the program
- * the second. */
+ * the second, release_held() the third. */
 void *allocate_or_exit(size_t count, size_t size);
 void *allocate_to_the_end(size_t count, size_t size);
+void *allocate_held(size_t count, size_t size);
+void *allocate_lines(size_t count, size_t size); /* the third on a cache line of its own */
+
+/* What a thread holds (memory, and objects with the function that releases them) is released back
+ * to a mark, the last first; or at the end of the program. */
+struct held;
+void hold(void *object, void (*release)(void *object));
+struct held *held_so_far(void);
+void release_held(struct held *mark);
 #endif

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "field_study.h"
 #include "lattice.h"
-#include "library.h"
 #include <math.h>
-#include <stdlib.h>
 
 static const int32_t boundary_layers = 2;
 
@@ -50,75 +48,56 @@ void study_field_at(enum study_field field, int32_t dimension, double wave, cons
 /* Waves are ten support radii long. */
 static void exact_at(const struct study *study, int32_t particle, double v[3], double j[9])
 {
+    const struct scene *scene = &study->scene;
     double x[3] = {0, 0, 0};
-    for (int32_t axis = 0; axis < study->setting.dimension; ++axis)
-        x[axis] = numbers_get(&study->positions, particle, axis);
-    study_field_at(study->field, study->setting.dimension, 10 * study->support_radius, x, v, j);
+    for (int32_t axis = 0; axis < scene->scheme.dimension; ++axis)
+        x[axis] = numbers_get(&scene->positions, particle, axis);
+    study_field_at(study->field, scene->scheme.dimension, 10 * scene->scheme.support_radius, x, v,
+                   j);
 }
 
 void study_fill(struct study *study, enum study_field field)
 {
     double v[3], j[9];
     study->field = field;
-    for (int32_t i = 0; i < study->count; ++i) {
+    for (int32_t i = 0; i < study->scene.count; ++i) {
         exact_at(study, i, v, j);
-        for (int32_t axis = 0; axis < study->setting.dimension; ++axis)
-            numbers_set(&study->velocities, i, axis, v[axis]);
+        for (int32_t axis = 0; axis < study->scene.scheme.dimension; ++axis)
+            numbers_set(&study->scene.field, i, axis, v[axis]);
     }
 }
 
 /* ---- Particles ------------------------------------------------------------------------------- */
 
-static sphg_scheme scheme_of(const struct study *study, const struct study_way *way)
-{
-    return (sphg_scheme){.dimension = study->setting.dimension,
-                         .method = way->method,
-                         .kernel = study->setting.kernel,
-                         .support_radius = study->support_radius,
-                         .order = way->order};
-}
-
-static const struct study_way kgc = {.method = SPHG_KGC}, second = {.order = 2};
-
-void study_search(const struct study *study)
-{
-    const sphg_scheme scheme = scheme_of(study, &kgc);
-    const sphg_geometry geometry =
-        library_geometry(&study->positions, field_type(study->setting.precision));
-    library_search(study->context, study->neighbors, &scheme, &geometry);
-}
-
-static struct study open_study(const struct study_setting *setting, struct numbers *positions,
-                               struct numbers *volumes, double support_radius)
+/* Volumes that are not given come from the positions. */
+static struct study open_study(const struct study_setting *setting, struct numbers positions,
+                               struct numbers volumes, double support_radius, struct held *mark)
 {
     const sphg_type type = field_type(setting->precision);
-    const int32_t d = setting->dimension, n = positions->count;
-    struct study study = {.setting = *setting,
-                          .count = n,
-                          .support_radius = support_radius,
-                          .positions = *positions,
-                          .volumes = *volumes,
-                          .velocities = numbers_create(type, n, d),
-                          .jacobians = numbers_create(type, n, d * d),
-                          .curls = numbers_create(type, n, 1),
-                          .lent = numbers_create(type, n, 1 + d * d * (d + 1) / 2),
-                          .groups = allocate_or_exit((size_t)n, 1),
-                          .borrows = allocate_or_exit((size_t)n, 1),
-                          .context = library_open(setting->threads)};
-    study.neighbors = library_neighbors(study.context);
+    const int32_t d = setting->dimension, n = positions.count;
+    const sphg_scheme scheme = {
+        .dimension = d, .kernel = setting->kernel, .support_radius = support_radius};
+    const bool given = volumes.data != NULL;
+    if (!given)
+        volumes = numbers_create(type, 1, 1);
+    struct study study = {
+        .setting = *setting,
+        .scene = scene_open(library_open(setting->threads), &scheme, positions, volumes),
+        .curls = numbers_create(type, n, 1),
+        .lent = numbers_create(type, n, 1 + d * d * (d + 1) / 2),
+        .groups = allocate_held((size_t)n, 1),
+        .borrows = allocate_held((size_t)n, 1),
+        .mark = mark};
     study_search(&study);
-    if (!volumes->data) {
-        const sphg_scheme scheme = scheme_of(&study, &kgc);
-        study.volumes = numbers_create(type, n, 1);
-        library_volumes(study.context, &scheme, study.neighbors, &study.volumes);
-    }
+    if (!given)
+        study.scene.volumes = scene_volumes(&study.scene);
     return study;
 }
 
-static bool is_on_boundary(const struct study *study, int32_t particle)
+static bool is_on_boundary(const struct study_setting *setting, int32_t particle)
 {
-    const int32_t side = study->setting.side;
-    for (int32_t axis = 0, rest = particle; axis < study->setting.dimension; ++axis, rest /= side)
+    const int32_t side = setting->side;
+    for (int32_t axis = 0, rest = particle; axis < setting->dimension; ++axis, rest /= side)
         if (rest % side < boundary_layers || rest % side >= side - boundary_layers)
             return true;
     return false;
@@ -126,34 +105,35 @@ static bool is_on_boundary(const struct study *study, int32_t particle)
 
 struct study study_open(const struct study_setting *setting)
 {
+    struct held *mark = held_so_far();
     const double spacing = 2.0 / setting->side;
     const struct lattice lattice = {.dimension = setting->dimension,
                                     .side = setting->side,
                                     .origin = -1 + 0.5 * spacing,
                                     .spacing = spacing,
                                     .jitter = setting->jitter};
-    struct numbers none = {0},
-                   positions = numbers_create(position_type(setting->precision),
+    struct numbers positions = numbers_create(position_type(setting->precision),
                                               lattice_count(&lattice), setting->dimension);
     lattice_fill(&lattice, &positions);
-    struct study study = open_study(setting, &positions, &none, setting->support * spacing);
-    for (int32_t i = 0; i < study.count; ++i)
-        study.groups[i] = is_on_boundary(&study, i) ? STUDY_BOUNDARY : STUDY_INSIDE;
+    struct study study =
+        open_study(setting, positions, (struct numbers){0}, setting->support * spacing, mark);
+    for (int32_t i = 0; i < positions.count; ++i)
+        study.groups[i] = is_on_boundary(setting, i) ? STUDY_BOUNDARY : STUDY_INSIDE;
     return study;
 }
 
-struct study study_of_particles(const struct study_setting *setting, struct numbers *positions,
-                                struct numbers *volumes)
+struct study study_of_particles(const struct study_setting *setting, struct numbers positions,
+                                struct numbers volumes)
 {
-    struct study study = open_study(setting, positions, volumes, setting->support);
-    const sphg_scheme scheme = scheme_of(&study, &second);
-    const sphg_sources sources = {.neighbors = study.neighbors,
-                                  .volume = numbers_view(&study.volumes)};
+    struct study study = open_study(setting, positions, volumes, setting->support, held_so_far());
+    struct scene scene = study.scene;
+    const sphg_sources sources = scene_sources(&scene);
     const sphg_request ranks = {
         .sources = &sources, .set_count = 1, .rank = sphg_view_u8(study.groups, 1)};
     const int32_t d = setting->dimension, full = d * (d + 3) / 2;
-    library_check(study.context, sphg_evaluate(study.context, &scheme, &ranks));
-    for (int32_t i = 0; i < study.count; ++i)
+    scene.scheme.order = 2;
+    scene_evaluate(&scene, &ranks);
+    for (int32_t i = 0; i < scene.count; ++i)
         study.groups[i] = study.groups[i] == full ? STUDY_CURVATURE
                           : study.groups[i] >= d  ? STUDY_SLOPES
                                                   : STUDY_NEITHER;
@@ -162,44 +142,42 @@ struct study study_of_particles(const struct study_setting *setting, struct numb
 
 void study_close(struct study *study)
 {
-    struct numbers *const all[] = {&study->positions, &study->volumes, &study->velocities,
-                                   &study->jacobians, &study->curls,   &study->lent};
-    sphg_neighbors_destroy(study->neighbors);
-    sphg_context_destroy(study->context);
-    for (size_t k = 0; k < sizeof all / sizeof all[0]; ++k)
-        numbers_destroy(all[k]);
-    free(study->groups);
-    free(study->borrows);
+    release_held(study->mark);
 }
 
 /* ---- Derivatives ----------------------------------------------------------------------------- */
 
+void study_search(const struct study *study)
+{
+    scene_run(&study->scene, WORK_SEARCH);
+}
+
 void study_derive(const struct study *study, const struct study_way *way)
 {
-    const sphg_scheme scheme = scheme_of(study, way);
-    const sphg_view at_sources = numbers_view(&study->velocities),
-                    lent = numbers_view(&study->lent);
-    const sphg_subset borrowers = sphg_masked(study->borrows, study->count);
-    const sphg_sources sources = {.neighbors = study->neighbors,
-                                  .volume = numbers_view(&study->volumes)};
-    const bool curls = study->setting.dimension == 2;
+    struct scene scene = study->scene;
+    const sphg_view at_sources = numbers_view(&scene.field), lent = numbers_view(&study->lent);
+    const sphg_subset borrowers = sphg_masked(study->borrows, scene.count);
+    const sphg_sources sources = scene_sources(&scene);
     sphg_field wanted = {.shape = SPHG_VECTOR,
                          .at_sources = &at_sources,
-                         .gradient = numbers_view(&study->jacobians),
-                         .curl = curls ? numbers_view(&study->curls) : sphg_absent(),
+                         .gradient = numbers_view(&scene.jacobians),
+                         .curl = study->setting.dimension == 2 ? numbers_view(&study->curls)
+                                                               : sphg_absent(),
                          .curvature = way->lent ? lent : sphg_absent()};
     sphg_request request = {.sources = &sources,
                             .set_count = 1,
                             .fields = &wanted,
                             .field_count = 1,
                             .borrows = way->lent ? sphg_view_u8(study->borrows, 1) : sphg_absent()};
-    library_check(study->context, sphg_evaluate(study->context, &scheme, &request));
+    scene.scheme.method = way->method;
+    scene.scheme.order = way->order;
+    scene_evaluate(&scene, &request);
     if (!way->lent)
         return;
     wanted.curvature = request.borrows = sphg_absent();
     wanted.lenders = &lent;
     request.subset = &borrowers;
-    library_check(study->context, sphg_evaluate(study->context, &scheme, &request));
+    scene_evaluate(&scene, &request);
 }
 
 static double gradient_error(const struct numbers *jacobians, int32_t i, const double expected[9])
@@ -216,10 +194,10 @@ struct study_errors study_compare(const struct study *study, double *gradient_er
                                   double *curl_errors)
 {
     struct study_errors errors = {.curl_max = 0};
-    for (int32_t i = 0; i < study->count; ++i) {
+    for (int32_t i = 0; i < study->scene.count; ++i) {
         double v[3], expected[9];
         exact_at(study, i, v, expected);
-        const double error = gradient_error(&study->jacobians, i, expected);
+        const double error = gradient_error(&study->scene.jacobians, i, expected);
         const double curl =
             study->setting.dimension == 2
                 ? fabs(numbers_get(&study->curls, i, 0) - (expected[2] - expected[1]))

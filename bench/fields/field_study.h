@@ -6,8 +6,7 @@
 #ifndef SPHGRAD_BENCH_FIELD_STUDY_H
 #define SPHGRAD_BENCH_FIELD_STUDY_H
 #include "particles/names.h"
-#include "numbers.h"
-#include <stdbool.h>
+#include "scene.h"
 
 enum study_field {
     FIELD_ROTATION,      /* v = (-y, x), in 3D (-y, x, 2z) */
@@ -47,15 +46,12 @@ enum { STUDY_NEITHER, STUDY_SLOPES, STUDY_CURVATURE, STUDY_GROUPS };
 
 struct study {
     struct study_setting setting;
-    int32_t count;
-    double support_radius;
     enum study_field field;
-    struct numbers positions, volumes, velocities;
-    struct numbers jacobians, curls; /* curls: in 2D */
+    struct scene scene;
+    struct numbers curls; /* in 2D */
     struct numbers lent;
     uint8_t *groups, *borrows;
-    sphg_context *context;
-    sphg_neighbors *neighbors;
+    struct held *mark; /* of what is held for it alone */
 };
 
 struct study_errors {
@@ -65,10 +61,10 @@ struct study_errors {
 };
 
 struct study study_open(const struct study_setting *setting);
-/* Takes both; volumes may be empty. */
-struct study study_of_particles(const struct study_setting *setting, struct numbers *positions,
-                                struct numbers *volumes);
-void study_close(struct study *study);
+/* volumes may be empty. */
+struct study study_of_particles(const struct study_setting *setting, struct numbers positions,
+                                struct numbers volumes);
+void study_close(struct study *study); /* the last one that was opened */
 
 /* The steps of a measurement, difference form. gradient_errors, curl_errors: one number per
  * particle, or NULL. */

@@ -40,14 +40,14 @@ static void write_particles(const char *folder, const char *name, const struct s
         columns[4 + k].key =
             table_text("%s_error_%s", k < WAYS ? "gradient" : "curl", ways[k % WAYS].name);
     struct table *table = table_create("", columns);
-    for (int32_t i = 0; i < study->count; ++i) {
+    for (int32_t i = 0; i < study->scene.count; ++i) {
         struct cell cells[4 + 2 * WAYS];
         for (int axis = 0; axis < 2; ++axis) {
-            cells[axis] = cell_number(numbers_get(&study->positions, i, axis));
-            cells[2 + axis] = cell_number(numbers_get(&study->velocities, i, axis));
+            cells[axis] = cell_number(numbers_get(&study->scene.positions, i, axis));
+            cells[2 + axis] = cell_number(numbers_get(&study->scene.field, i, axis));
         }
         for (int k = 0; k < 2 * WAYS; ++k)
-            cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->count + i]);
+            cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->scene.count + i]);
         table_add(table, cells, 4 + 2 * WAYS);
     }
     table_write_csv(table, folder, name);
@@ -57,7 +57,7 @@ static void write_particles(const char *folder, const char *name, const struct s
 static void measure_field(const char *folder, struct study *study, enum study_field field,
                           struct lattice_results *results, int size)
 {
-    const size_t count = (size_t)study->count;
+    const size_t count = (size_t)study->scene.count;
     double *errors = allocate_or_exit(2 * WAYS * count, sizeof *errors);
     study_fill(study, field);
     for (int k = 0; k < WAYS; ++k) {
@@ -185,7 +185,7 @@ static struct table *table_of_waves(struct study *study, struct study_errors *la
                                             {"neither: mean", "neither_mean", "%.3e", NULL},
                                             {"max", "neither_max", "%.3e", NULL},
                                             {0}};
-    const double k = 2 * 3.14159265358979323846 / (10 * study->support_radius);
+    const double k = 2 * 3.14159265358979323846 / (10 * study->scene.scheme.support_radius);
     struct table *table = table_create("", columns);
     study_fill(study, FIELD_WAVES);
     for (int way = 0; way < WAYS; ++way) {
@@ -207,22 +207,20 @@ static void measure_input(const char *folder, const struct particle_source *sour
 {
     struct particles particles = particles_create(source);
     setting.dimension = particles.dimension;
-    struct study study = study_of_particles(&setting, &particles.positions, &particles.volumes);
+    struct study study = study_of_particles(&setting, particles.positions, particles.volumes);
     struct study_errors e;
     const struct table *table = table_of_waves(&study, &e);
-    const double percent = 100.0 / study.count;
+    const double percent = 100.0 / study.scene.count;
     printf(
         "particles  %d of %s, %dD, H = %g, volume %s\n"
         "resolved   slopes and curvature by %.2f %%, slopes alone by %.2f %%, neither by %.2f %%\n"
         "errors     |J_i - J|_F / k of v_a = sin(k x_a) cos(k x_b), 10 H a wave\n",
-        (int)study.count, source->input, (int)setting.dimension, setting.support,
+        (int)study.scene.count, source->input, (int)setting.dimension, setting.support,
         particles.volume_origin, percent * e.counts[STUDY_CURVATURE],
         percent * e.counts[STUDY_SLOPES], percent * e.counts[STUDY_NEITHER]);
     table_print(table);
     table_write_csv(table, folder, "fields_input.csv");
     printf("\nwritten to %s: fields_input.csv\n", folder);
-    study_close(&study);
-    numbers_destroy(&particles.velocities);
 }
 
 /* ---- Pictures -------------------------------------------------------------------------------- */

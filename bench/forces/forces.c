@@ -1,58 +1,190 @@
 /* SPDX-License-Identifier: MIT */
-/* The command `forces`. */
-#include "forces.h"
+/* The command `forces`: time of the operators that a solver iterates, forces and divergences, with
+ * lists alone and with weights that neighbours keep. */
 #include "commands.h"
-#include "report/machine.h"
+#include "particles/linear_field.h"
+#include "particles/particles.h"
 #include "report/report.h"
-#include "report/text.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static void report_results(const struct forces *forces)
+struct force_case {
+    const char *name;
+    sphg_method method;
+    sphg_form form;
+    sphg_shape shape;
+    bool divergence; /* of a vector; else the gradient, of a tensor its divergence */
+};
+
+static const struct force_case cases[] = {
+    {"stress, adjoint", SPHG_KGC, SPHG_ADJOINT, SPHG_SYM_TENSOR, false},
+    {"stress, adjoint", SPHG_MLS, SPHG_ADJOINT, SPHG_SYM_TENSOR, false},
+    {"stress, adjoint", SPHG_PLAIN, SPHG_ADJOINT, SPHG_SYM_TENSOR, false},
+    {"pressure, adjoint", SPHG_KGC, SPHG_ADJOINT, SPHG_SCALAR, false},
+    {"pressure, adjoint", SPHG_CMLS, SPHG_ADJOINT, SPHG_SCALAR, false},
+    {"pressure, adjoint", SPHG_PLAIN, SPHG_ADJOINT, SPHG_SCALAR, false},
+    {"pressure, symmetric", SPHG_KGC, SPHG_SYMMETRIC, SPHG_SCALAR, false},
+    {"pressure, symmetric", SPHG_PLAIN, SPHG_SYMMETRIC, SPHG_SCALAR, false},
+    {"divergence, adjoint", SPHG_KGC, SPHG_ADJOINT, SPHG_VECTOR, true},
+    {"divergence, difference", SPHG_KGC, SPHG_DIFFERENCE, SPHG_VECTOR, true},
+    {"divergence, difference", SPHG_PLAIN, SPHG_DIFFERENCE, SPHG_VECTOR, true}};
+
+enum {
+    METHODS = SPHG_PLAIN + 1,
+    CASES = sizeof cases / sizeof cases[0],
+    SUPPLIES = 2, /* lists; lists and weights */
+    ITEMS = CASES * SUPPLIES
+};
+
+struct forces {
+    struct scene scenes[METHODS][SUPPLIES];
+    struct numbers tensors, densities;
+    struct numbers results[2]; /* numbers, vectors */
+};
+
+/* ---- One case -------------------------------------------------------------------------------- */
+
+static const struct numbers *results_of(const struct forces *forces, const struct force_case *one)
+{
+    return &forces->results[!one->divergence];
+}
+
+static double run(void *data, int32_t item)
+{
+    const struct forces *forces = data;
+    const struct force_case *one = &cases[item / SUPPLIES];
+    const struct scene *scene = &forces->scenes[one->method][item % SUPPLIES];
+    const sphg_view given = numbers_view(
+        one->shape == SPHG_VECTOR ? &scene->field : &forces->tensors); /* pressure: a component */
+    const sphg_view result = numbers_view(results_of(forces, one));
+    sphg_field field = {.shape = one->shape, .form = one->form, .at_sources = &given};
+    if (one->shape == SPHG_SCALAR)
+        field.gradient = result;
+    else
+        field.divergence = result;
+    sphg_sources sources = scene_sources(scene);
+    sources.density = numbers_view(&forces->densities);
+    sources.correction = scene_corrections(scene);
+    sources.same_volumes = 1;
+    const sphg_request request = {
+        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+    scene_evaluate(scene, &request);
+    return 1;
+}
+
+/* div (-y, x, 2z) = 2 */
+static double divergence_error(const struct numbers *results)
+{
+    double most = 0;
+    for (int32_t i = 0; i < results->count; ++i)
+        most = numbers_larger(most, fabs(numbers_get(results, i, 0) / 2 - 1));
+    return most;
+}
+
+/* |sum f| / sum |f|, component by component, the largest. */
+static double momentum_error(const struct numbers *results)
+{
+    double most = 0;
+    for (int32_t c = 0; c < results->width; ++c) {
+        double sum = 0, size = 0;
+        for (int32_t i = 0; i < results->count; ++i) {
+            const double f = numbers_get(results, i, c);
+            sum += f;
+            size += fabs(f);
+        }
+        most = numbers_larger(most, fabs(sum) / size);
+    }
+    return most;
+}
+
+/* Conservation makes sums of forces 0; differences are exact on a linear field. */
+static double error_of(struct forces *forces, int32_t item)
+{
+    const struct force_case *one = &cases[item / SUPPLIES];
+    run(forces, item);
+    return one->form == SPHG_DIFFERENCE ? divergence_error(results_of(forces, one))
+                                        : momentum_error(results_of(forces, one));
+}
+
+/* ---- The whole ------------------------------------------------------------------------------- */
+
+static void fill_fields(struct forces *forces, const struct numbers *positions, sphg_type type)
+{
+    forces->tensors = numbers_create(type, positions->count, 6);
+    forces->densities = numbers_create(type, positions->count, 1);
+    for (int32_t i = 0; i < positions->count; ++i) {
+        for (int32_t c = 0; c < 6; ++c)
+            numbers_set(&forces->tensors, i, c,
+                        1 + cos((3 + c) * numbers_get(positions, i, c % 3)));
+        numbers_set(&forces->densities, i, 0, 1000);
+    }
+}
+
+static struct forces open_scenes(const struct settings *settings)
+{
+    struct scene scene = scene_of_lattice(library_open(settings->threads), settings, 3);
+    const sphg_type type = scene.field.type;
+    struct forces forces = {
+        .results = {numbers_create(type, scene.count, 1), numbers_create(type, scene.count, 3)}};
+    sphg_neighbors *const weighted = library_neighbors(scene.context), *const kept =
+                                                                           scene.neighbors;
+    scene_run(&scene, WORK_SEARCH);
+    scene.neighbors = weighted;
+    scene.geometry.keep_weights = 1;
+    scene_run(&scene, WORK_SEARCH);
+    fill_fields(&forces, &scene.positions, type);
+    for (int method = 0; method < METHODS; ++method) {
+        scene.neighbors = kept;
+        scene.scheme.method = (sphg_method)method;
+        scene.corrections = numbers_create(type, scene.count, sphg_correction_width(&scene.scheme));
+        if (method != SPHG_PLAIN)
+            scene_run(&scene, WORK_MATRICES);
+        forces.scenes[method][0] = forces.scenes[method][1] = scene;
+        forces.scenes[method][1].neighbors = weighted;
+    }
+    return forces;
+}
+
+int command_forces(int argc, char **argv)
 {
     static const struct column columns[] = {
         {"operator", "operator", NULL, NULL}, {"method", "method", NULL, NULL},
         {"kept lists", "lists", NULL, NULL},  {"kept weights", "lists and weights", NULL, NULL},
         {"error", "error", "%.1e", NULL},     {0}};
-    const struct settings *settings = &forces->settings;
-    struct table *table = table_create("forces", columns);
-    for (int k = 0; k < FORCE_CASES; ++k)
-        TABLE_ROW(table, cell_text(force_cases[k].name),
-                  cell_text(method_names[force_cases[k].method]),
-                  cell_time(&forces->times[k][0], 1), cell_time(&forces->times[k][1], 1),
-                  cell_number(forces->error[k]));
-
-    text_print_lattice(settings, forces->count, forces->pairs);
-    printf("; cubic spline, %s\n", precision_names[settings->precision]);
-    text_print_machine(settings->threads);
-    printf("times      ms, median (min-max) of %d rounds; corrections are there\n"
-           "error      adjoint and symmetric: |sum f| / sum |f|, which conservation makes 0; "
-           "difference: largest\n           relative error of div (-y, x, 2z)\n",
-           settings->repetitions);
-    text_print_if_busy(&forces->times[0][0], settings->threads);
-    table_print(table);
-
-    struct report *report = report_create(settings->threads);
-    report_lattice(report, settings, forces->count, forces->pairs);
-    report_table(report, table);
-    report_write(report, settings->json);
-}
-
-int command_forces(int argc, char **argv)
-{
-    struct forces forces = {.settings = {.particles = 1000000,
-                                         .threads = machine_threads(),
-                                         .repetitions = 9,
-                                         .support = 2,
-                                         .jitter = 0.2}};
+    struct settings settings = settings_default(1000000, 9, NULL);
+    struct samples *times = allocate_to_the_end(ITEMS, sizeof *times);
     const struct command_option options[] = {
-        PRECISION_OPTION(forces.settings, "f32"), LATTICE_OPTIONS(forces.settings), {0}};
-    settings_read(&forces.settings, options,
+        PRECISION_OPTION(settings, "f32"), LATTICE_OPTIONS(settings), {0}};
+    settings_read(&settings, options,
                   "Times the operators that a solver iterates: forces in the adjoint and the "
                   "symmetric form and divergences, with lists alone and with weights that "
                   "neighbours keep. Takes some ten seconds.",
                   argc, argv);
-    forces_measure(&forces);
-    report_results(&forces);
+    struct forces forces = open_scenes(&settings);
+    double errors[CASES] = {0};
+    for (int32_t item = 0; item < ITEMS; ++item)
+        errors[item / SUPPLIES] = numbers_larger(errors[item / SUPPLIES], error_of(&forces, item));
+    /* Weights are written by the first sweep, and belong to the scheme of the last. */
+    rounds_measure(
+        &(struct rounds){"forces", settings.repetitions, ITEMS, run, .prepare = run, &forces},
+        times);
+
+    struct table *table = table_create("forces", columns);
+    for (int k = 0; k < CASES; ++k)
+        TABLE_ROW(table, cell_text(cases[k].name), cell_text(method_names[cases[k].method]),
+                  cell_time(&times[k * SUPPLIES], 1), cell_time(&times[k * SUPPLIES + 1], 1),
+                  cell_number(errors[k]));
+    struct report *report = report_create(&settings);
+    report_lattice(report, forces.results[0].count, scene_pairs(&forces.scenes[0][0]));
+    printf("; cubic spline, %s\n", precision_names[settings.precision]);
+    report_machine(report);
+    printf("times      ms, median (min-max) of %d rounds; corrections are there\n"
+           "error      adjoint and symmetric: |sum f| / sum |f|, which conservation makes 0; "
+           "difference: largest\n           relative error of div (-y, x, 2z)\n",
+           settings.repetitions);
+    report_if_busy(report, &times[0]);
+    report_table(report, table);
+    report_write(report);
     return EXIT_SUCCESS;
 }

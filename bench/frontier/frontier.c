@@ -145,7 +145,7 @@ static struct table *table_of_steps(const struct frontier *frontier)
 
 /* ---- The whole ------------------------------------------------------------------------------- */
 
-static void print_results(const struct frontier *frontier)
+static void print_results(const struct frontier *frontier, const struct report *report)
 {
     const struct settings *settings = &frontier->settings;
     char count[TEXT_SIZE];
@@ -153,13 +153,13 @@ static void print_results(const struct frontier *frontier)
            "%.1f pairs a particle\n",
            text_grouped(frontier->count, count), settings->jitter, settings->support,
            frontier->pairs);
-    text_print_machine(settings->threads);
+    report_machine(report);
     printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
            "through %d ways;\n           host's lists: taken over, not searched for\n",
            settings->repetitions, frontier->point_count);
     printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
            "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");
-    text_print_if_busy(&frontier->points[0].time, settings->threads);
+    report_if_busy(report, &frontier->points[0].time);
     print_fastest(frontier);
     print_frontier(
         frontier, FRONTIER_TRIGONOMETRIC, SIDE_SEARCH,
@@ -173,33 +173,24 @@ static void print_results(const struct frontier *frontier)
 
 static void write_results(const struct frontier *frontier, struct report *report)
 {
-    static const char *const parts[] = {"frontier/frontier.gp", NULL};
     const struct settings *settings = &frontier->settings;
     struct table *all = create_table();
     for (int k = 0; k < frontier->point_count; ++k)
         add_point(all, frontier, &frontier->points[k]);
     table_write_csv(all, settings->output, "frontier.csv");
     table_write_csv(table_of_steps(frontier), settings->output, "frontier_steps.csv");
-    const bool drawn =
-        plot_draw(settings->output, "frontier.gp",
-                  table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s\"\n",
-                             frontier->count, settings->support, settings->threads,
-                             settings->threads > 1 ? "s" : "", machine_cpu()),
-                  parts);
-    printf("\nwritten to %s: frontier.csv, frontier_steps.csv, frontier.gp%s\n", settings->output,
-           drawn ? ", frontier.png" : "");
-    report_lattice(report, settings, frontier->count, frontier->pairs);
-    report_table(report, all);
+    plot_written(settings->output, "frontier/frontier", "frontier.csv, frontier_steps.csv",
+                 table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s\"\n",
+                            frontier->count, settings->support, settings->threads,
+                            settings->threads > 1 ? "s" : "", machine_cpu()));
+    report_lattice_numbers(report, frontier->count, frontier->pairs);
+    report_times(report, all);
 }
 
 int command_frontier(int argc, char **argv)
 {
-    struct frontier frontier = {.settings = {.particles = 27000,
-                                             .threads = machine_threads(),
-                                             .repetitions = 7,
-                                             .support = 2,
-                                             .jitter = 0.2,
-                                             .output = "frontier"}};
+    struct frontier frontier = {.settings = settings_default(27000, 7, "frontier")};
+    const struct settings *settings = &frontier.settings;
     bool order_alone = false;
     const struct command_option options[] = {
         OUTPUT_OPTION(frontier.settings, "CSV, script and picture", "frontier"),
@@ -207,21 +198,21 @@ int command_frontier(int argc, char **argv)
          NULL},
         LATTICE_OPTIONS(frontier.settings),
         {0}};
-    settings_read(&frontier.settings, options,
+    settings_read(settings, options,
                   "Times every way to a velocity gradient (method, kernel, precision, path, "
                   "option) from positions to result, and measures its error on a block with free "
                   "surfaces: which are worth their time.",
                   argc, argv);
-    struct report *report = report_create(frontier.settings.threads);
+    struct report *report = report_create(settings);
     if (order_alone) {
-        text_print_machine(frontier.settings.threads);
+        report_machine(report);
     } else {
         create_points(&frontier);
         frontier_measure(&frontier);
-        print_results(&frontier);
+        print_results(&frontier, report);
         write_results(&frontier, report);
     }
-    report_table(report, frontier_order(&frontier.settings));
-    report_write(report, frontier.settings.json);
+    frontier_order(settings, report);
+    report_write(report);
     return EXIT_SUCCESS;
 }

@@ -2,9 +2,7 @@
 /* Run time against error of every way to a velocity gradient: what is measured and reported. */
 #ifndef SPHGRAD_BENCH_FRONTIER_H
 #define SPHGRAD_BENCH_FRONTIER_H
-#include "report/table.h"
-#include "report/timing.h"
-#include "settings.h"
+#include "report/report.h"
 
 enum frontier_path { PATH_KEPT, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
 enum frontier_field { FRONTIER_TRIGONOMETRIC, FRONTIER_LINEAR, FRONTIER_FIELDS };
@@ -43,7 +41,6 @@ enum frontier_side frontier_side(const struct frontier_point *point);
 /* Leaves the points in the order of their times, the fastest first. */
 void frontier_measure(struct frontier *frontier);
 
-/* Order 2 beside order 1: measures over H and N, prints, writes and draws; the rows for a report.
- */
-const struct table *frontier_order(const struct settings *settings);
+/* Order 2 beside order 1: measures over H and N, prints, writes and draws. */
+void frontier_order(const struct settings *settings, struct report *report);
 #endif

@@ -2,8 +2,6 @@
 /* The measurements of frontier. A round goes once through all ways. */
 #include "frontier.h"
 #include "fields/field_study.h"
-#include "lattice.h"
-#include "library.h"
 #include "particles/particles.h"
 #include "report/progress.h"
 #include <math.h>
@@ -12,171 +10,100 @@
 static const double wave_length = 20 * 1.0 / 128; /* 20 spacings */
 
 /* What all ways of one precision share. */
-struct scene {
-    sphg_context *context;
-    sphg_neighbors *neighbors[PATHS];
-    struct particles particles;
-    struct numbers fields[FRONTIER_FIELDS], corrections, jacobians;
-    double support_radius;
-    int64_t *offsets; /* the host's lists */
-    int32_t *indices;
+struct ground {
+    struct scene scenes[PATHS];
+    struct numbers fields[FRONTIER_FIELDS];
+    struct library_lists lists; /* the host's */
 };
 
-static void evaluate_field(enum frontier_field field, const double x[3], double v[3], double j[9])
+struct bench {
+    struct frontier *frontier;
+    struct ground grounds[FRONTIER_PRECISIONS];
+};
+
+static void exact_at(const struct scene *scene, enum frontier_field field, int32_t i, double v[3],
+                     double j[9])
 {
+    double x[3];
+    for (int axis = 0; axis < 3; ++axis)
+        x[axis] = numbers_get(&scene->positions, i, axis);
     study_field_at(field == FRONTIER_LINEAR ? FIELD_ROTATION : FIELD_WAVES, 3, wave_length, x, v,
                    j);
 }
 
-static void position_of(const struct scene *scene, int32_t i, double x[3])
+static struct ground open_ground(sphg_context *context, struct settings settings,
+                                 enum precision precision)
 {
-    for (int axis = 0; axis < 3; ++axis)
-        x[axis] = numbers_get(&scene->particles.positions, i, axis);
-}
-
-static void fill_field(struct scene *scene, enum frontier_field field)
-{
-    double x[3], v[3], j[9];
-    for (int32_t i = 0; i < scene->particles.count; ++i) {
-        position_of(scene, i, x);
-        evaluate_field(field, x, v, j);
+    settings.precision = precision;
+    struct scene scene = scene_of_lattice(context, &settings, 3);
+    struct ground ground = {
+        .fields = {numbers_create(scene.field.type, scene.count, 3), scene.field}};
+    double v[3], j[9];
+    for (int32_t i = 0; i < scene.count; ++i) {
+        exact_at(&scene, FRONTIER_TRIGONOMETRIC, i, v, j);
         for (int axis = 0; axis < 3; ++axis)
-            numbers_set(&scene->fields[field], i, axis, v[axis]);
+            numbers_set(&ground.fields[FRONTIER_TRIGONOMETRIC], i, axis, v[axis]);
     }
+    const sphg_scheme widest = {.method = SPHG_CMLS, .support_radius = 1};
+    scene.corrections =
+        numbers_create(scene.field.type, scene.count, sphg_correction_width(&widest));
+    for (int path = 0; path < PATHS; ++path)
+        ground.scenes[path] = scene_beside(&scene);
+    ground.scenes[PATH_LIST_FREE].geometry.list_free = 1;
+    scene_run(&ground.scenes[PATH_KEPT], WORK_SEARCH);
+    ground.lists =
+        library_lists(context, &scene.scheme, ground.scenes[PATH_KEPT].neighbors, scene.count);
+    return ground;
 }
 
-static sphg_scheme scheme_of(const struct scene *scene, const struct frontier_point *point)
+/* From positions to Jacobians. */
+static struct scene take(const struct bench *bench, const struct frontier_point *point,
+                         enum frontier_field field)
 {
-    return (sphg_scheme){
-        .method = point->method, .kernel = point->kernel, .support_radius = scene->support_radius};
-}
-
-static void build(const struct scene *scene, const sphg_scheme *scheme, enum frontier_path path)
-{
-    sphg_geometry geometry = library_geometry(&scene->particles.positions, scene->jacobians.type);
-    const sphg_lists lists = {.offsets = scene->offsets, .indices = scene->indices};
-    sphg_neighbors *neighbors = scene->neighbors[path];
-    geometry.list_free = path == PATH_LIST_FREE;
-    if (path != PATH_HOST_LISTS)
-        library_search(scene->context, neighbors, scheme, &geometry);
+    const struct ground *ground = &bench->grounds[point->precision];
+    const sphg_lists lists = {.offsets = ground->lists.offsets, .indices = ground->lists.indices};
+    struct scene scene = ground->scenes[point->path];
+    scene.field = ground->fields[field];
+    scene.scheme.method = point->method;
+    scene.scheme.kernel = point->kernel;
+    if (point->path == PATH_HOST_LISTS)
+        library_check(scene.context,
+                      sphg_neighbors_use_lists(scene.context, scene.neighbors, &scene.scheme,
+                                               &scene.geometry, &lists));
     else
-        library_check(scene->context, sphg_neighbors_use_lists(scene->context, neighbors, scheme,
-                                                               &geometry, &lists));
+        scene_run(&scene, WORK_SEARCH);
+    if (point->by_table)
+        scene_run(&scene, WORK_MATRICES);
+    scene_run(&scene, point->by_table ? WORK_GRADIENT : WORK_FUSED);
+    return scene;
 }
 
-static void run(const struct scene *scene, const struct frontier_point *point,
-                enum frontier_field field)
+static double run(void *data, int32_t item)
 {
-    const sphg_scheme scheme = scheme_of(scene, point);
-    sphg_sources sources = {.neighbors = scene->neighbors[point->path],
-                            .volume = numbers_view(&scene->particles.volumes)};
-    build(scene, &scheme, point->path);
-    if (point->by_table) {
-        struct numbers table = scene->corrections;
-        table.width = sphg_correction_width(&scheme);
-        library_correct(scene->context, &scheme, &sources, numbers_view(&table), NULL);
-        sources.correction = numbers_view(&table);
-    }
-    library_jacobian(scene->context, &scheme, &sources, &scene->fields[field], &scene->jacobians);
+    const struct bench *bench = data;
+    take(bench, &bench->frontier->points[item], FRONTIER_TRIGONOMETRIC);
+    return 1;
 }
 
-static void measure_error(const struct scene *scene, struct frontier_point *point,
+static void measure_error(const struct bench *bench, struct frontier_point *point,
                           enum frontier_field field)
 {
-    double x[3], v[3], expected[9], sum = 0, most = 0, squares = 0;
-    run(scene, point, field);
-    for (int32_t i = 0; i < scene->particles.count; ++i) {
+    const struct scene scene = take(bench, point, field);
+    double v[3], expected[9], sum = 0, most = 0, squares = 0;
+    for (int32_t i = 0; i < scene.count; ++i) {
         double difference = 0;
-        position_of(scene, i, x);
-        evaluate_field(field, x, v, expected);
+        exact_at(&scene, field, i, v, expected);
         for (int32_t k = 0; k < 9; ++k) {
-            const double d = numbers_get(&scene->jacobians, i, k) - expected[k];
+            const double d = numbers_get(&scene.jacobians, i, k) - expected[k];
             difference += d * d;
             squares += expected[k] * expected[k];
         }
         sum += sqrt(difference);
         most = numbers_larger(most, sqrt(difference));
     }
-    const double size = sqrt(squares / scene->particles.count);
-    point->mean[field] = sum / scene->particles.count / size;
+    const double size = sqrt(squares / scene.count);
+    point->mean[field] = sum / scene.count / size;
     point->most[field] = most / size;
-}
-
-static void export_lists(struct scene *scene)
-{
-    const sphg_scheme scheme = {.support_radius = scene->support_radius};
-    build(scene, &scheme, PATH_KEPT);
-    const sphg_sources sources = {.neighbors = scene->neighbors[PATH_KEPT]};
-    scene->offsets = allocate_or_exit((size_t)scene->particles.count + 1, sizeof *scene->offsets);
-    sphg_pairs pairs = {.offsets = scene->offsets};
-    library_check(scene->context, sphg_pair_gradients(scene->context, &scheme, &sources, NULL,
-                                                      sphg_absent(), &pairs));
-    scene->indices = allocate_or_exit((size_t)pairs.count, sizeof *scene->indices);
-    pairs.indices = scene->indices;
-    pairs.capacity = pairs.count;
-    library_check(scene->context, sphg_pair_gradients(scene->context, &scheme, &sources, NULL,
-                                                      sphg_absent(), &pairs));
-}
-
-static struct scene open_scene(const struct settings *settings, sphg_context *context,
-                               enum precision precision)
-{
-    const struct particle_source source = {.side = settings_side(settings->particles, 3),
-                                           .jitter = settings->jitter,
-                                           .precision = precision};
-    const sphg_scheme widest = {.method = SPHG_CMLS, .support_radius = 1};
-    const sphg_type type = field_type(precision);
-    struct scene scene = {.context = context,
-                          .particles = particles_create(&source),
-                          .support_radius = settings->support * lattice_spacing};
-    const int32_t count = scene.particles.count;
-    scene.corrections = numbers_create(type, count, sphg_correction_width(&widest));
-    scene.jacobians = numbers_create(type, count, 9);
-    for (int field = 0; field < FRONTIER_FIELDS; ++field) {
-        scene.fields[field] = numbers_create(type, count, 3);
-        fill_field(&scene, (enum frontier_field)field);
-    }
-    for (int path = 0; path < PATHS; ++path)
-        scene.neighbors[path] = library_neighbors(context);
-    export_lists(&scene);
-    return scene;
-}
-
-static void close_scene(struct scene *scene)
-{
-    for (int path = 0; path < PATHS; ++path)
-        sphg_neighbors_destroy(scene->neighbors[path]);
-    for (int field = 0; field < FRONTIER_FIELDS; ++field)
-        numbers_destroy(&scene->fields[field]);
-    numbers_destroy(&scene->corrections);
-    numbers_destroy(&scene->jacobians);
-    particles_destroy(&scene->particles);
-    free(scene->offsets);
-    free(scene->indices);
-}
-
-static void measure_errors(struct frontier *frontier, const struct scene *scenes)
-{
-    for (int k = 0; k < frontier->point_count; ++k) {
-        struct frontier_point *point = &frontier->points[k];
-        progress_show("errors: %d of %d", k + 1, frontier->point_count);
-        for (int field = 0; field < FRONTIER_FIELDS; ++field)
-            measure_error(&scenes[point->precision], point, (enum frontier_field)field);
-    }
-}
-
-static void measure_times(struct frontier *frontier, const struct scene *scenes)
-{
-    for (int32_t round = 0; round < frontier->settings.repetitions; ++round)
-        for (int k = 0; k < frontier->point_count; ++k) {
-            struct frontier_point *point = &frontier->points[k];
-            if (k % 16 == 0)
-                progress_show("round %d of %d: %d of %d", round + 1, frontier->settings.repetitions,
-                              k, frontier->point_count);
-            const struct moment start = now();
-            run(&scenes[point->precision], point, FRONTIER_TRIGONOMETRIC);
-            samples_add(&point->time, since(start));
-        }
 }
 
 /* ---- The frontiers --------------------------------------------------------------------------- */
@@ -217,19 +144,27 @@ static void find_frontier(struct frontier *frontier, enum frontier_field field,
 
 void frontier_measure(struct frontier *frontier)
 {
-    struct scene scenes[FRONTIER_PRECISIONS];
+    struct held *mark = held_so_far();
+    struct bench bench = {.frontier = frontier};
     sphg_context *context = library_open(frontier->settings.threads);
+    struct samples *times = allocate_held((size_t)frontier->point_count, sizeof *times);
     for (int precision = 0; precision < FRONTIER_PRECISIONS; ++precision)
-        scenes[precision] = open_scene(&frontier->settings, context, (enum precision)precision);
-    frontier->count = scenes[0].particles.count;
-    frontier->pairs = (double)scenes[0].offsets[frontier->count] / frontier->count;
-    measure_errors(frontier, scenes);
-    measure_times(frontier, scenes);
-    progress_clear();
+        bench.grounds[precision] =
+            open_ground(context, frontier->settings, (enum precision)precision);
+    frontier->count = bench.grounds[0].scenes[0].count;
+    frontier->pairs = (double)bench.grounds[0].lists.count / frontier->count;
+    for (int k = 0; k < frontier->point_count; ++k) {
+        progress_show("errors: %d of %d", k + 1, frontier->point_count);
+        for (int field = 0; field < FRONTIER_FIELDS; ++field)
+            measure_error(&bench, &frontier->points[k], (enum frontier_field)field);
+    }
+    rounds_measure(&(struct rounds){"ways", frontier->settings.repetitions, frontier->point_count,
+                                    run, NULL, &bench},
+                   times);
+    for (int k = 0; k < frontier->point_count; ++k)
+        frontier->points[k].time = times[k];
     qsort(frontier->points, (size_t)frontier->point_count, sizeof *frontier->points, compare_times);
     for (int k = 0; k < FRONTIER_FIELDS * SIDES; ++k)
         find_frontier(frontier, (enum frontier_field)(k / SIDES), (enum frontier_side)(k % SIDES));
-    for (int precision = 0; precision < FRONTIER_PRECISIONS; ++precision)
-        close_scene(&scenes[precision]);
-    sphg_context_destroy(context);
+    release_held(mark);
 }

@@ -5,7 +5,6 @@
 #include "frontier.h"
 #include "report/machine.h"
 #include "report/plot.h"
-#include "report/progress.h"
 #include <stdio.h>
 
 enum { WAYS = 4, SUPPORTS = 3, CUBES = 3 * SUPPORTS, POINTS = WAYS * CUBES };
@@ -30,23 +29,12 @@ static struct study open_cube(const struct settings *settings, int k)
     return study;
 }
 
-/* The first round warms up, and leaves the errors. */
-static void measure(const struct settings *settings, const struct study cubes[CUBES],
-                    struct study_errors errors[POINTS], struct samples times[POINTS])
+static double run(void *cubes, int32_t item)
 {
-    for (int32_t round = 0; round <= settings->repetitions; ++round)
-        for (int k = 0; k < POINTS; ++k) {
-            const struct study *cube = &cubes[k / WAYS];
-            progress_show("order 2: round %d of %d", round, settings->repetitions);
-            const struct moment start = now();
-            study_search(cube);
-            study_derive(cube, &ways[k % WAYS]);
-            if (round > 0)
-                samples_add(&times[k], since(start));
-            else
-                errors[k] = study_compare(cube, NULL, NULL);
-        }
-    progress_clear();
+    const struct study *cube = (const struct study *)cubes + item / WAYS;
+    study_search(cube);
+    study_derive(cube, &ways[item % WAYS]);
+    return 1;
 }
 
 static struct table *table_of_points(const struct study cubes[CUBES],
@@ -71,7 +59,7 @@ static struct table *table_of_points(const struct study cubes[CUBES],
         TABLE_ROW(table, cell_text(ways[k % WAYS].name),
                   cell_text(table_text("%g", cube->setting.support)),
                   cell_text(table_text("%d", cube->setting.side)),
-                  cell_time(&times[k], 1e6 / cube->count), cell_time(&times[k], 1),
+                  cell_time(&times[k], 1e6 / cube->scene.count), cell_time(&times[k], 1),
                   cell_number(errors[k].most[STUDY_BOUNDARY]),
                   cell_number(errors[k].mean[STUDY_BOUNDARY]),
                   cell_number(errors[k].most[STUDY_INSIDE]),
@@ -80,28 +68,27 @@ static struct table *table_of_points(const struct study cubes[CUBES],
     return table;
 }
 
-const struct table *frontier_order(const struct settings *settings)
+void frontier_order(const struct settings *settings, struct report *report)
 {
-    static const char *const parts[] = {"frontier/frontier_order.gp", NULL};
     struct study cubes[CUBES];
     struct study_errors errors[POINTS];
     struct samples *times = allocate_to_the_end(POINTS, sizeof *times);
     for (int k = 0; k < CUBES; ++k)
         cubes[k] = open_cube(settings, k);
-    measure(settings, cubes, errors, times);
+    for (int k = 0; k < POINTS; ++k) {
+        run(cubes, k);
+        errors[k] = study_compare(&cubes[k / WAYS], NULL, NULL);
+    }
+    rounds_measure(&(struct rounds){"order 2", settings->repetitions, POINTS, run, NULL, cubes},
+                   times);
     const struct table *table = table_of_points(cubes, errors, times);
     printf("\norder 2 beside order 1: N^3 particles in [-1, 1]^3, v = (cos 2x, cos y - sin 3x, cos "
            "2z), KGC (classic: CMLS), f32;\nerror |J_i - J|_F of the two outermost layers, and "
            "inside\n");
-    table_print(table);
+    report_table(report, table);
     table_write_csv(table, settings->output, "frontier_order.csv");
-    const char *given = table_text(
-        "title = \"order 2 beside order 1: jitter %g, %d thread%s, %s\"\n", settings->jitter,
-        settings->threads, settings->threads > 1 ? "s" : "", machine_cpu());
-    const bool drawn = plot_draw(settings->output, "frontier_order.gp", given, parts);
-    printf("\nwritten to %s: frontier_order.csv, frontier_order.gp%s\n", settings->output,
-           drawn ? ", frontier_order.png" : "");
-    for (int k = 0; k < CUBES; ++k)
-        study_close(&cubes[k]);
-    return table;
+    plot_written(settings->output, "frontier/frontier_order", "frontier_order.csv",
+                 table_text("title = \"order 2 beside order 1: jitter %g, %d thread%s, %s\"\n",
+                            settings->jitter, settings->threads, settings->threads > 1 ? "s" : "",
+                            machine_cpu()));
 }

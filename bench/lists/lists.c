@@ -1,20 +1,183 @@
 /* SPDX-License-Identifier: MIT */
-/* The command `lists`. */
-#include "lists.h"
+/* The command `lists`: time a pair where a host's own arrays meet the library. Sums over lists that
+ * a host brings, and pairs that the library writes out for loops of a host's own. */
 #include "commands.h"
-#include "report/machine.h"
+#include "particles/linear_field.h"
+#include "particles/particles.h"
 #include "report/report.h"
-#include "report/text.h"
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Who says which pairs there are. */
+enum supply {
+    SUPPLY_KEPT,      /* the library's search, its lists kept */
+    SUPPLY_LIST_FREE, /* the same search, pairs found anew by each sweep */
+    SUPPLY_CSR,       /* the host's offsets and indices */
+    SUPPLY_ROWS,      /* the host's pointer and length for each target */
+    SUPPLY_FUNCTION,  /* a function of the host's, called for each target */
+    SUPPLY_COPIED,    /* the host's offsets and indices, copied by the build */
+    SUPPLIES
+};
+static const char *const supply_names[SUPPLIES] = {"kept lists",          "list-free",
+                                                   "host's CSR",          "host's rows",
+                                                   "host's row function", "host's CSR, copied"};
+
+/* What sphg_pair_gradients is asked for. */
+static const struct export
+{
+    const char *name;
+    bool indices, gradients, any_order;
+    int32_t block; /* so many targets in one call; 0: all of them */
+}
+exports[] = {{"lengths alone", false, false, false, 0},
+             {"indices, sorted", true, false, false, 0},
+             {"indices, any order", true, false, true, 0},
+             {"indices and gradients, sorted", true, true, false, 0},
+             {"indices and gradients, any order", true, true, true, 0},
+             {"the same, sorted, 256 targets a call", true, true, false, 256},
+             {"the same, any order, 256 targets a call", true, true, true, 256}};
+
+enum { EXPORTS = sizeof exports / sizeof exports[0], SUMS = SUPPLIES * WORKS };
+
+struct lists {
+    struct scene scenes[SUPPLIES];
+    struct library_lists host; /* the library's, ascending */
+    const int32_t **rows;      /* where each of them begins */
+    int32_t *lengths;
+    sphg_pairs out; /* where exports go */
+    struct numbers gradients;
+};
+
+/* ---- What is timed --------------------------------------------------------------------------- */
+
+static int32_t row_of(int32_t target, int32_t worker, const int32_t **indices, void *user)
+{
+    const struct lists *lists = user;
+    (void)worker;
+    *indices = lists->rows[target];
+    return lists->lengths[target];
+}
+
+static void use_lists(struct lists *lists, enum supply supply)
+{
+    const struct scene *scene = &lists->scenes[supply];
+    sphg_lists host = {.row = row_of, .user = lists};
+    if (supply == SUPPLY_ROWS)
+        host = (sphg_lists){.rows = lists->rows, .lengths = lists->lengths};
+    if (supply == SUPPLY_CSR || supply == SUPPLY_COPIED)
+        host = (sphg_lists){.offsets = lists->host.offsets,
+                            .indices = lists->host.indices,
+                            .copy = supply == SUPPLY_COPIED};
+    library_check(scene->context,
+                  sphg_neighbors_use_lists(scene->context, scene->neighbors, &scene->scheme,
+                                           &scene->geometry, &host));
+}
+
+static int32_t block_of(const struct lists *lists, const struct export *one)
+{
+    return one->block ? one->block : lists->scenes[0].count;
+}
+
+/* All pairs that are asked for, block after block: a block's arrays are written over by the next.
+ */
+static void export_pairs(struct lists *lists, const struct export *one)
+{
+    const struct scene *scene = &lists->scenes[SUPPLY_KEPT];
+    const int32_t count = scene->count, block = block_of(lists, one);
+    sphg_sources sources = scene_sources(scene);
+    sources.correction = scene_corrections(scene);
+    for (int32_t begin = 0; begin < count; begin += block) {
+        const sphg_subset subset = sphg_range(begin, begin + block < count ? begin + block : count);
+        sphg_pairs pairs = {.offsets = lists->out.offsets, .any_order = one->any_order};
+        if (one->indices) {
+            pairs.indices = lists->out.indices;
+            pairs.capacity = lists->out.capacity;
+        }
+        if (one->gradients)
+            pairs.gradient = numbers_view(&lists->gradients);
+        library_check(scene->context, sphg_pair_gradients(scene->context, &scene->scheme, &sources,
+                                                          &subset, sphg_absent(), &pairs));
+    }
+}
+
+static double run(void *data, int32_t item)
+{
+    struct lists *lists = data;
+    const enum supply supply = (enum supply)(item / WORKS);
+    const enum work work = (enum work)(item % WORKS);
+    if (item >= SUMS)
+        export_pairs(lists, &exports[item - SUMS]);
+    else if (work == WORK_SEARCH && supply > SUPPLY_LIST_FREE)
+        use_lists(lists, supply);
+    else
+        scene_run(&lists->scenes[supply], work);
+    return 1;
+}
+
+/* ---- Errors ---------------------------------------------------------------------------------- */
+
+/* J_i = sum_j (v_j - v_i) G_ij over the pairs of the last call, the last `block` targets. */
+static double exported_error(const struct lists *lists, const struct export *one)
+{
+    const struct numbers *field = &lists->scenes[0].field;
+    const int32_t count = field->count, block = block_of(lists, one);
+    const int32_t begin = (count - 1) / block * block;
+    struct numbers jacobian = numbers_create(SPHG_F64, 1, 9);
+    double *sums = jacobian.data, most = 0;
+    for (int32_t i = begin; i < count; ++i) {
+        for (int32_t k = 0; k < 9; ++k)
+            sums[k] = 0;
+        for (int64_t p = lists->out.offsets[i - begin]; p < lists->out.offsets[i - begin + 1]; ++p)
+            for (int32_t k = 0; k < 9; ++k)
+                sums[k] += (numbers_get(field, lists->out.indices[p], k / 3) -
+                            numbers_get(field, i, k / 3)) *
+                           numbers_get(&lists->gradients, (int32_t)p, k % 3);
+        most = numbers_larger(most, linear_field_error(&jacobian, 0));
+    }
+    return most;
+}
+
+/* What an item comes to, which also warms it up. */
+static double error_of(struct lists *lists, int32_t item)
+{
+    run(lists, item);
+    if (item < SUMS)
+        return linear_field_worst(&lists->scenes[0].jacobians, NULL);
+    return exports[item - SUMS].gradients ? exported_error(lists, &exports[item - SUMS]) : 0;
+}
+
+/* ---- The whole ------------------------------------------------------------------------------- */
+
+static struct lists open_scenes(const struct settings *settings)
+{
+    const struct scene scene = scene_of_lattice(library_open(settings->threads), settings, 3);
+    const size_t count = (size_t)scene.count;
+    struct lists lists = {.rows = allocate_held(count, sizeof *lists.rows),
+                          .lengths = allocate_held(count, sizeof *lists.lengths)};
+    for (int supply = 0; supply < SUPPLIES; ++supply)
+        lists.scenes[supply] = scene_beside(&scene);
+    lists.scenes[SUPPLY_LIST_FREE].geometry.list_free = 1;
+    scene_run(&lists.scenes[SUPPLY_KEPT], WORK_SEARCH);
+    lists.host = library_lists(scene.context, &scene.scheme, lists.scenes[SUPPLY_KEPT].neighbors,
+                               scene.count);
+    if (lists.host.count > INT32_MAX)
+        command_line_refuse("--particles: more pairs than fit into an index");
+    for (size_t i = 0; i < count; ++i) {
+        lists.rows[i] = lists.host.indices + lists.host.offsets[i];
+        lists.lengths[i] = (int32_t)(lists.host.offsets[i + 1] - lists.host.offsets[i]);
+    }
+    const size_t pairs = (size_t)lists.host.count;
+    lists.out = (sphg_pairs){.offsets = allocate_held(count + 1, sizeof *lists.out.offsets),
+                             .indices = allocate_held(pairs, sizeof *lists.out.indices),
+                             .capacity = lists.host.count};
+    lists.gradients = numbers_create(scene.field.type, (int32_t)pairs, 3);
+    return lists;
+}
+
 static const char time_format[] = "%.3f (%.3f-%.3f)";
 
-static struct table *table_of_supplies(const struct lists *lists, double ns_a_pair)
+static struct table *table_of_sums(const struct samples *times, const double *errors, int64_t pairs)
 {
-    static const char *const names[SUPPLIES] = {"kept lists",          "list-free",
-                                                "host's CSR",          "host's rows",
-                                                "host's row function", "host's CSR, copied"};
     static const struct column columns[] = {{"sums over", "supply", NULL, NULL},
                                             {"build", "build", time_format, "ns_per_pair"},
                                             {"matrices", "matrices", time_format, "ns_per_pair"},
@@ -24,18 +187,19 @@ static struct table *table_of_supplies(const struct lists *lists, double ns_a_pa
                                             {NULL, "pairs", NULL, NULL},
                                             {0}};
     struct table *table = table_create("lists/sums", columns);
-    for (int supply = 0; supply < SUPPLIES; ++supply) {
-        const struct samples *times = lists->supplied[supply];
-        TABLE_ROW(table, cell_text(names[supply]), cell_time(&times[WORK_BUILD], ns_a_pair),
-                  cell_time(&times[WORK_MATRICES], ns_a_pair),
-                  cell_time(&times[WORK_GRADIENT], ns_a_pair),
-                  cell_time(&times[WORK_FUSED], ns_a_pair),
-                  cell_number(lists->supplied_error[supply]), cell_count(lists->pairs));
-    }
+    const double ns_a_pair = 1e6 / (double)pairs;
+    for (int k = 0; k < SUMS; k += WORKS)
+        TABLE_ROW(table, cell_text(supply_names[k / WORKS]),
+                  cell_time(&times[k + WORK_SEARCH], ns_a_pair),
+                  cell_time(&times[k + WORK_MATRICES], ns_a_pair),
+                  cell_time(&times[k + WORK_GRADIENT], ns_a_pair),
+                  cell_time(&times[k + WORK_FUSED], ns_a_pair), cell_number(errors[k + WORK_FUSED]),
+                  cell_count(pairs));
     return table;
 }
 
-static struct table *table_of_exports(const struct lists *lists, double ns_a_pair)
+static struct table *table_of_exports(const struct samples *times, const double *errors,
+                                      int64_t pairs)
 {
     static const struct column columns[] = {{"pairs written out", "what", NULL, NULL},
                                             {"time", "", time_format, "ns_per_pair"},
@@ -43,51 +207,41 @@ static struct table *table_of_exports(const struct lists *lists, double ns_a_pai
                                             {0}};
     struct table *table = table_create("lists/pairs", columns);
     for (int k = 0; k < EXPORTS; ++k)
-        TABLE_ROW(table, cell_text(lists_exports[k].name),
-                  cell_time(&lists->exported[k], ns_a_pair),
-                  lists_exports[k].gradients ? cell_number(lists->exported_error[k]) : cell_none());
+        TABLE_ROW(table, cell_text(exports[k].name), cell_time(&times[k], 1e6 / (double)pairs),
+                  exports[k].gradients ? cell_number(errors[k]) : cell_none());
     return table;
-}
-
-static void report_results(const struct lists *lists)
-{
-    const struct settings *settings = &lists->settings;
-    const double ns_a_pair = 1e6 / (double)lists->pairs;
-    struct table *supplies = table_of_supplies(lists, ns_a_pair),
-                 *exports = table_of_exports(lists, ns_a_pair);
-    text_print_lattice(settings, lists->count, (double)lists->pairs / lists->count);
-    printf("; KGC, cubic spline, %s\n", precision_names[settings->precision]);
-    text_print_machine(settings->threads);
-    printf("times      ns a pair, median (min-max) of %d rounds through everything; gradient and "
-           "pairs written out:\n           with matrices that are there; error: largest |J_i - "
-           "J|_F / |J|_F of v = (-y, x, 2z)\n",
-           settings->repetitions);
-    text_print_if_busy(&lists->supplied[SUPPLY_KEPT][WORK_FUSED], settings->threads);
-    table_print(supplies);
-    table_print(exports);
-
-    struct report *report = report_create(settings->threads);
-    report_lattice(report, settings, lists->count, (double)lists->pairs / lists->count);
-    report_table(report, supplies);
-    report_table(report, exports);
-    report_write(report, settings->json);
 }
 
 int command_lists(int argc, char **argv)
 {
-    struct lists lists = {.settings = {.particles = 100000,
-                                       .threads = machine_threads(),
-                                       .repetitions = 15,
-                                       .support = 2,
-                                       .jitter = 0.2}};
+    enum { ITEMS = SUMS + EXPORTS };
+    struct settings settings = settings_default(100000, 15, NULL);
+    struct samples *times = allocate_to_the_end(ITEMS, sizeof *times);
+    double errors[ITEMS];
     const struct command_option options[] = {
-        PRECISION_OPTION(lists.settings, "f32"), LATTICE_OPTIONS(lists.settings), {0}};
-    settings_read(&lists.settings, options,
+        PRECISION_OPTION(settings, "f32"), LATTICE_OPTIONS(settings), {0}};
+    settings_read(&settings, options,
                   "Times a pair of sums over the library's lists and over a host's (arrays, "
                   "pointers, a function), and of pairs that are written out: indices, gradients, "
                   "sorted or in any order. Takes some seconds.",
                   argc, argv);
-    lists_measure(&lists);
-    report_results(&lists);
+    struct lists lists = open_scenes(&settings);
+    for (int32_t item = 0; item < ITEMS; ++item)
+        errors[item] = error_of(&lists, item);
+    rounds_measure(&(struct rounds){"lists", settings.repetitions, ITEMS, run, NULL, &lists},
+                   times);
+
+    struct report *report = report_create(&settings);
+    report_lattice(report, lists.scenes[0].count, scene_pairs(&lists.scenes[0]));
+    printf("; KGC, cubic spline, %s\n", precision_names[settings.precision]);
+    report_machine(report);
+    printf("times      ns a pair, median (min-max) of %d rounds through everything; gradient and "
+           "pairs written out:\n           with matrices that are there; error: largest |J_i - "
+           "J|_F / |J|_F of v = (-y, x, 2z)\n",
+           settings.repetitions);
+    report_if_busy(report, &times[WORK_FUSED]);
+    report_table(report, table_of_sums(times, errors, lists.host.count));
+    report_table(report, table_of_exports(times + SUMS, errors + SUMS, lists.host.count));
+    report_write(report);
     return EXIT_SUCCESS;
 }

@@ -40,3 +40,12 @@ double linear_field_worst(const struct numbers *jacobians, const uint8_t *ranks)
             most = numbers_larger(most, linear_field_error(jacobians, i));
     return most < 0 ? (double)NAN : most;
 }
+
+int64_t linear_field_not_finite(const struct numbers *jacobians)
+{
+    int64_t count = 0;
+    for (int32_t i = 0; i < jacobians->count; ++i)
+        for (int32_t k = 0; k < jacobians->width; ++k)
+            count += !isfinite(numbers_get(jacobians, i, k));
+    return count;
+}

@@ -16,4 +16,6 @@ double linear_field_error(const struct numbers *jacobians, int32_t item);
 /* The largest over items, of those of full rank where ranks are given. NaN is not overlooked, and
  * is what comes out where no item counts. */
 double linear_field_worst(const struct numbers *jacobians, const uint8_t *ranks);
+
+int64_t linear_field_not_finite(const struct numbers *jacobians); /* numbers */
 #endif

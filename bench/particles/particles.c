@@ -2,33 +2,29 @@
 #include "particles.h"
 #include "tables/csv.h"
 #include "lattice.h"
-#include "linear_field.h"
 #include "command_line.h"
 #include <math.h>
 #include <stdio.h>
 
 const double lattice_spacing = 1.0 / 128;
 
-static void create_tables(struct particles *particles, enum precision precision, int32_t count)
-{
-    particles->count = count;
-    particles->positions = numbers_create(position_type(precision), count, particles->dimension);
-    particles->velocities = numbers_create(field_type(precision), count, particles->dimension);
-    particles->volumes = numbers_create(field_type(precision), count, 1);
-}
-
 static struct particles create_lattice(const struct particle_source *source)
 {
-    const struct lattice lattice = {.dimension = 3,
+    const struct lattice lattice = {.dimension = source->dimension,
                                     .side = source->side,
                                     .spacing = lattice_spacing,
                                     .jitter = source->jitter,
                                     .shuffled = source->shuffled};
-    struct particles particles = {.dimension = 3, .volume_origin = "spacing^3"};
-    create_tables(&particles, source->precision, lattice_count(&lattice));
+    const int32_t count = lattice_count(&lattice);
+    struct particles particles = {
+        .count = count,
+        .dimension = source->dimension,
+        .volume_origin = "spacing^3",
+        .positions = numbers_create(position_type(source->precision), count, source->dimension),
+        .volumes = numbers_create(field_type(source->precision), count, 1)};
     lattice_fill(&lattice, &particles.positions);
-    for (int32_t i = 0; i < particles.count; ++i)
-        numbers_set(&particles.volumes, i, 0, lattice_spacing * lattice_spacing * lattice_spacing);
+    for (int32_t i = 0; i < count; ++i)
+        numbers_set(&particles.volumes, i, 0, pow(lattice_spacing, source->dimension));
     return particles;
 }
 
@@ -124,23 +120,22 @@ static void describe_columns(struct particles *particles, const struct csv *csv)
     }
 }
 
-static void read_vectors(struct numbers *vectors, const struct csv *csv, enum quantity first,
-                         const int axes[3])
+static struct numbers read_vectors(const struct csv *csv, sphg_type type, int32_t dimension,
+                                   enum quantity first, const int axes[3])
 {
-    for (int32_t i = 0; i < vectors->count; ++i)
-        for (int32_t k = 0; k < vectors->width; ++k)
-            store(vectors, i, k, csv->values[i][(int)first + axes[k]], csv);
+    struct numbers vectors = numbers_create(type, csv->row_count, dimension);
+    for (int32_t i = 0; i < vectors.count; ++i)
+        for (int32_t k = 0; k < dimension; ++k)
+            store(&vectors, i, k, csv->values[i][(int)first + axes[k]], csv);
+    return vectors;
 }
 
-static void read_volumes(struct particles *particles, const struct particle_source *source,
-                         const struct csv *csv)
+static struct numbers read_volumes(const struct particle_source *source, const struct csv *csv)
 {
-    if (csv->columns[QUANTITY_VOLUME] < 0 && csv->columns[QUANTITY_DENSITY] < 0) {
-        numbers_destroy(&particles->volumes);
-        return;
-    }
-    for (int32_t i = 0; i < particles->count; ++i)
-        store(&particles->volumes, i, 0, volume_of(source, csv, i), csv);
+    struct numbers volumes = numbers_create(field_type(source->precision), csv->row_count, 1);
+    for (int32_t i = 0; i < volumes.count; ++i)
+        store(&volumes, i, 0, volume_of(source, csv, i), csv);
+    return volumes;
 }
 
 static struct particles read_particles(const struct particle_source *source)
@@ -152,15 +147,17 @@ static struct particles read_particles(const struct particle_source *source)
     describe_columns(&particles, &csv);
     if (!csv_read(&csv))
         command_line_refuse("%s", csv.message);
-    particles.more = csv.more;
     int axes[3] = {0, 1, 2};
     choose_axes(&particles, &csv, axes);
-    particles.own_velocities = csv.columns[QUANTITY_VX + axes[0]] >= 0;
-    create_tables(&particles, source->precision, csv.row_count);
-    read_vectors(&particles.positions, &csv, QUANTITY_X, axes);
-    if (particles.own_velocities)
-        read_vectors(&particles.velocities, &csv, QUANTITY_VX, axes);
-    read_volumes(&particles, source, &csv);
+    particles.count = csv.row_count;
+    particles.more = csv.more;
+    particles.positions =
+        read_vectors(&csv, position_type(source->precision), particles.dimension, QUANTITY_X, axes);
+    if (csv.columns[QUANTITY_VX + axes[0]] >= 0)
+        particles.velocities = read_vectors(&csv, field_type(source->precision),
+                                            particles.dimension, QUANTITY_VX, axes);
+    if (csv.columns[QUANTITY_VOLUME] >= 0 || csv.columns[QUANTITY_DENSITY] >= 0)
+        particles.volumes = read_volumes(source, &csv);
     csv_destroy(&csv);
     if (source->shuffled) {
         shuffle_rows(&particles.positions);
@@ -172,15 +169,18 @@ static struct particles read_particles(const struct particle_source *source)
 
 struct particles particles_create(const struct particle_source *source)
 {
-    struct particles particles = source->input ? read_particles(source) : create_lattice(source);
-    if (!particles.own_velocities)
-        linear_field_fill(&particles.positions, &particles.velocities);
-    return particles;
+    return source->input ? read_particles(source) : create_lattice(source);
 }
 
-void particles_destroy(struct particles *particles)
+struct scene scene_of_lattice(sphg_context *context, const struct settings *settings,
+                              int32_t dimension)
 {
-    numbers_destroy(&particles->positions);
-    numbers_destroy(&particles->velocities);
-    numbers_destroy(&particles->volumes);
+    const struct particle_source source = {.dimension = dimension,
+                                           .side = settings_side(settings->particles, dimension),
+                                           .jitter = settings->jitter,
+                                           .precision = settings->precision};
+    const sphg_scheme scheme = {.dimension = dimension,
+                                .support_radius = settings->support * lattice_spacing};
+    const struct particles particles = particles_create(&source);
+    return scene_open(context, &scheme, particles.positions, particles.volumes);
 }

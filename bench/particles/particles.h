@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* The particles that table1 runs on: a cubic lattice, or a host's own from a file. */
+/* Particles to measure on: a lattice, or a host's own from a file. */
 #ifndef SPHGRAD_BENCH_PARTICLES_H
 #define SPHGRAD_BENCH_PARTICLES_H
-#include "names.h"
-#include "numbers.h"
+#include "scene.h"
+#include "settings.h"
 #include <stdbool.h>
 
 struct particle_source {
     const char *input; /* text file; NULL: a lattice */
     double mass;       /* of each particle in a file with densities; 0: as the file says */
+    int32_t dimension; /* of the lattice */
     int32_t side;      /* of the lattice, in particles */
     double jitter;     /* share of the spacing */
     bool shuffled;     /* random order in memory */
@@ -16,11 +17,11 @@ struct particle_source {
 };
 
 struct particles {
-    struct numbers positions, velocities;
-    struct numbers volumes; /* count 0: not known yet */
+    struct numbers positions;
+    struct numbers velocities; /* of the file; count 0: it has none */
+    struct numbers volumes;    /* count 0: not known yet */
     int32_t count, dimension;
     bool more;                 /* the file holds later moments, too, which are not read */
-    bool own_velocities;       /* read from the file; else v = (-y, x, 2z), in 2D (-y, x) */
     const char *volume_origin; /* where the volumes are from, in words */
     char columns[160];         /* of the file that were read */
     char flat[64];             /* why it is in 2D; empty in 3D */
@@ -31,5 +32,8 @@ extern const double lattice_spacing;
 
 /* Ends the program with one line where the file is not usable. */
 struct particles particles_create(const struct particle_source *source);
-void particles_destroy(struct particles *particles);
+
+/* The lattice of these settings, with KGC. */
+struct scene scene_of_lattice(sphg_context *context, const struct settings *settings,
+                              int32_t dimension);
 #endif

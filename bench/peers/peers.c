@@ -1,40 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* peers [PARTICLES]: the search of one peer beside the library's, on one thread. */
 #include "lattice.h"
-#include "library.h"
 #include "peer.h"
 #include "report/timing.h"
+#include "scene.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { ROUNDS = 5 };
-
-struct lists {
-    int64_t *offsets, count;
-    int32_t *indices;
-};
-
-static struct lists create_lists(int32_t count, int64_t room)
-{
-    return (struct lists){.offsets = allocate_or_exit((size_t)count + 1, sizeof(int64_t)),
-                          .indices = allocate_or_exit((size_t)room, sizeof(int32_t))};
-}
-
-/* From positions to lists in the host's memory, by the library. */
-static void search_ours(sphg_context *context, sphg_neighbors *neighbors,
-                        const struct numbers *positions, double radius, struct lists *lists,
-                        int64_t room)
-{
-    const sphg_scheme scheme = {.support_radius = radius};
-    const sphg_geometry geometry = library_geometry(positions, SPHG_F64);
-    const sphg_sources sources = {.neighbors = neighbors};
-    sphg_pairs pairs = {.offsets = lists->offsets, .indices = lists->indices, .capacity = room};
-    library_search(context, neighbors, &scheme, &geometry);
-    library_check(context,
-                  sphg_pair_gradients(context, &scheme, &sources, NULL, sphg_absent(), &pairs));
-    lists->count = pairs.count;
-}
 
 static int order_of_indices(const void *left, const void *right)
 {
@@ -43,7 +17,8 @@ static int order_of_indices(const void *left, const void *right)
 }
 
 /* Targets whose lists are not the same, whatever their order. */
-static int32_t different_rows(int32_t count, const struct lists *ours, struct lists *theirs)
+static int32_t different_rows(int32_t count, const struct library_lists *ours,
+                              struct library_lists *theirs)
 {
     int32_t different = 0;
     for (int32_t i = 0; i < count; ++i) {
@@ -58,40 +33,60 @@ static int32_t different_rows(int32_t count, const struct lists *ours, struct li
     return different;
 }
 
-static void compare(sphg_context *context, int32_t particles, bool shuffled)
+struct bench {
+    struct scene scene;
+    struct library_lists ours, theirs;
+    int64_t room;
+};
+
+/* From positions to lists in the host's memory: by the library, and by the peer. */
+static double run(void *data, int32_t item)
 {
-    const struct lattice lattice = {.dimension = 3,
-                                    .side = particles,
-                                    .spacing = 1.0 / 128,
-                                    .jitter = 0.2,
-                                    .shuffled = shuffled};
-    const int32_t count = lattice_count(&lattice);
-    const int64_t room = (int64_t)count * 64;
-    const double radius = 2 * lattice.spacing;
-    struct numbers positions = numbers_create(SPHG_F64, count, 3);
-    struct lists ours = create_lists(count, room), theirs = create_lists(count, room);
-    struct samples our_times = {0}, their_times = {0};
-    sphg_neighbors *neighbors = library_neighbors(context);
-    lattice_fill(&lattice, &positions);
-    for (int round = 0; round < ROUNDS; ++round) {
-        struct moment start = now();
-        search_ours(context, neighbors, &positions, radius, &ours, room);
-        samples_add(&our_times, since(start));
-        start = now();
-        theirs.count = peer_search((const double(*)[3])positions.data, count, radius,
-                                   theirs.offsets, theirs.indices, room);
-        samples_add(&their_times, since(start));
+    struct bench *bench = data;
+    const struct scene *scene = &bench->scene;
+    const sphg_sources sources = {.neighbors = scene->neighbors};
+    sphg_pairs pairs = {
+        .offsets = bench->ours.offsets, .indices = bench->ours.indices, .capacity = bench->room};
+    if (item == 1) {
+        bench->theirs.count = peer_search((const double(*)[3])scene->positions.data, scene->count,
+                                          scene->scheme.support_radius, bench->theirs.offsets,
+                                          bench->theirs.indices, bench->room);
+        return 1;
     }
-    const struct spread a = samples_wall(&our_times), b = samples_wall(&their_times);
-    const int32_t different = different_rows(count, &ours, &theirs);
+    scene_run(scene, WORK_SEARCH);
+    library_check(scene->context, sphg_pair_gradients(scene->context, &scene->scheme, &sources,
+                                                      NULL, sphg_absent(), &pairs));
+    return 1;
+}
+
+static struct library_lists create_lists(int32_t count, int64_t room)
+{
+    return (struct library_lists){.offsets = allocate_held((size_t)count + 1, sizeof(int64_t)),
+                                  .indices = allocate_held((size_t)room, sizeof(int32_t))};
+}
+
+static void compare(sphg_context *context, int32_t side, bool shuffled)
+{
+    const struct lattice lattice = {
+        .dimension = 3, .side = side, .spacing = 1.0 / 128, .jitter = 0.2, .shuffled = shuffled};
+    const sphg_scheme scheme = {.support_radius = 2 * lattice.spacing};
+    const int32_t count = lattice_count(&lattice);
+    struct numbers positions = numbers_create(SPHG_F64, count, 3);
+    struct bench bench = {
+        .scene = scene_open(context, &scheme, positions, numbers_create(SPHG_F64, 1, 1)),
+        .room = (int64_t)count * 64};
+    struct samples times[2] = {{0}};
+    bench.ours = create_lists(count, bench.room);
+    bench.theirs = create_lists(count, bench.room);
+    lattice_fill(&lattice, &positions);
+    rounds_measure(&(struct rounds){peer_name(), ROUNDS, 2, run, NULL, &bench}, times);
+    const struct spread a = samples_wall(&times[0]), b = samples_wall(&times[1]);
+    const int32_t different = different_rows(count, &bench.ours, &bench.theirs);
     printf(
         "%-18s %9d  %-8s  %9.1f (%.1f-%.1f)  sphgrad %s %9.1f (%.1f-%.1f)  %6.2f times as long, ",
         peer_name(), count, shuffled ? "shuffled" : "lattice", b.median, b.min, b.max,
         library_version(), a.median, a.min, a.max, b.median / a.median);
     printf(different ? "%d lists differ\n" : "same pairs\n", different);
-    sphg_neighbors_destroy(neighbors);
-    numbers_destroy(&positions);
-    free(ours.offsets), free(ours.indices), free(theirs.offsets), free(theirs.indices);
 }
 
 int main(int argc, char **argv)
@@ -103,6 +98,5 @@ int main(int argc, char **argv)
     sphg_context *context = library_open(1);
     for (int shuffled = 0; shuffled < 2; ++shuffled)
         compare(context, side, shuffled);
-    sphg_context_destroy(context);
     return EXIT_SUCCESS;
 }

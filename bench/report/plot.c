@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "plot.h"
 #include "gnuplot.h"
+#include "table.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,4 +51,14 @@ bool plot_draw(const char *directory, const char *script, const char *assignment
         copy_part(file, *parts);
     plot_close(file, script);
     return gnuplot_run(directory, script);
+}
+
+void plot_written(const char *directory, const char *path, const char *tables,
+                  const char *assignments)
+{
+    const char *name = strrchr(path, '/') + 1;
+    const char *const parts[] = {table_text("%s.gp", path), NULL};
+    const bool drawn = plot_draw(directory, table_text("%s.gp", name), assignments, parts);
+    printf("\nwritten to %s: %s, %s.gp%s\n", directory, tables, name,
+           drawn ? table_text(", %s.png", name) : "");
 }

@@ -13,4 +13,8 @@ void plot_close(FILE *file, const char *name); /* the same where the disk is ful
  * CSV by the names of its columns. false: one line on stderr says why there is no picture. */
 bool plot_draw(const char *directory, const char *script, const char *assignments,
                const char *const parts[]);
+
+/* The same for bench/PATH.gp, a picture of its own; says what is written, `tables` in front. */
+void plot_written(const char *directory, const char *path, const char *tables,
+                  const char *assignments);
 #endif

@@ -3,6 +3,7 @@
 #include "library.h"
 #include "machine.h"
 #include "numbers.h"
+#include "text.h"
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <stdio.h>
@@ -11,7 +12,8 @@
 
 struct report {
     cJSON *root, *context, *benchmarks;
-    int32_t threads, families;
+    const struct settings *settings;
+    int32_t families;
 };
 
 /* A number of a benchmark. */
@@ -25,10 +27,10 @@ struct counters {
     struct counter list[TABLE_COLUMNS_MOST + 1]; /* and the time in its unit */
 };
 
-struct report *report_create(int32_t threads)
+struct report *report_create(const struct settings *settings)
 {
     struct report *report = allocate_or_exit(1, sizeof *report);
-    report->threads = threads;
+    report->settings = settings;
     report->root = cJSON_CreateObject();
     report->context = cJSON_AddObjectToObject(report->root, "context");
     report->benchmarks = cJSON_AddArrayToObject(report->root, "benchmarks");
@@ -41,7 +43,7 @@ struct report *report_create(int32_t threads)
     report_text(report, "cpu_model", machine_cpu());
     report_text(report, "isa", library_isa());
     report_text(report, "compiler", machine_compiler());
-    report_number(report, "threads", threads);
+    report_number(report, "threads", settings->threads);
     return report;
 }
 
@@ -55,13 +57,43 @@ void report_number(struct report *report, const char *name, double value)
     cJSON_AddNumberToObject(report->context, name, value);
 }
 
-void report_lattice(struct report *report, const struct settings *settings, int32_t count,
-                    double pairs)
+void report_lattice(struct report *report, int32_t count, double pairs)
 {
+    const struct settings *settings = report->settings;
+    char text[TEXT_SIZE];
+    printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, %.2f pairs a particle",
+           text_grouped(count, text), settings->jitter, settings->support, pairs);
+    report_lattice_numbers(report, count, pairs);
+}
+
+void report_lattice_numbers(struct report *report, int32_t count, double pairs)
+{
+    const struct settings *settings = report->settings;
     report_number(report, "particles", count);
     report_number(report, "support_spacings", settings->support);
     report_number(report, "jitter", settings->jitter);
     report_number(report, "pairs_per_particle", pairs);
+}
+
+void report_machine(const struct report *report)
+{
+    const int32_t threads = report->settings->threads;
+    printf("machine    %s, %d processor%s; %d thread%s, %s\n", machine_cpu(), machine_cpus(),
+           machine_cpus() > 1 ? "s" : "", threads, threads > 1 ? "s" : "", library_isa());
+    printf("program    sphgrad %s, %s, %s, %s\n", library_version(), machine_compiler(),
+           machine_build(), machine_date());
+}
+
+void report_if_busy(const struct report *report, const struct samples *samples)
+{
+    const int32_t threads = report->settings->threads;
+    const int32_t processors = machine_cpus() < threads ? machine_cpus() : threads;
+    const double had = samples_cpu(samples).median / (samples_wall(samples).median * processors);
+    if (had < 0.8)
+        printf(
+            "BUSY       others ran: the program had %.0f %% of its processors' time, and the times "
+            "are too long\n",
+            100 * had);
 }
 
 static cJSON *add_entry(struct report *report, const char *name, const char *run_name,
@@ -74,7 +106,7 @@ static cJSON *add_entry(struct report *report, const char *name, const char *run
     cJSON_AddNumberToObject(entry, "per_family_instance_index", 0);
     cJSON_AddStringToObject(entry, "run_name", run_name);
     cJSON_AddStringToObject(entry, "run_type", run_type);
-    cJSON_AddNumberToObject(entry, "threads", report->threads);
+    cJSON_AddNumberToObject(entry, "threads", report->settings->threads);
     return entry;
 }
 
@@ -157,7 +189,7 @@ static void describe_row(const struct table *table, int32_t row, char *name, siz
     }
 }
 
-void report_table(struct report *report, const struct table *table)
+void report_times(struct report *report, const struct table *table)
 {
     const struct column *columns = table_columns(table);
     for (int32_t row = 0; row < table_rows(table); ++row) {
@@ -179,6 +211,12 @@ void report_table(struct report *report, const struct table *table)
     }
 }
 
+void report_table(struct report *report, const struct table *table)
+{
+    table_print(table);
+    report_times(report, table);
+}
+
 static int write_text(const char *text, const char *path)
 {
     FILE *file = fopen(path, "w");
@@ -188,8 +226,9 @@ static int write_text(const char *text, const char *path)
     return fclose(file) == 0 && written;
 }
 
-void report_write(struct report *report, const char *path)
+void report_write(struct report *report)
 {
+    const char *path = report->settings->json;
     char *text = path ? cJSON_Print(report->root) : NULL;
     if (path && (!text || !write_text(text, path))) {
         fprintf(stderr, "sphgrad-bench: cannot write %s: %s\n", path, strerror(errno));

@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "timing.h"
 #include "numbers.h"
+#include "progress.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,4 +96,21 @@ struct spread samples_cpu(const struct samples *samples)
 double samples_median(const struct samples *samples)
 {
     return samples_wall(samples).median;
+}
+
+void rounds_measure(const struct rounds *rounds, struct samples *times)
+{
+    for (int32_t round = 0; round < rounds->count; ++round)
+        for (int32_t item = 0; item < rounds->items; ++item) {
+            progress_show("%s: round %d of %d, %d of %d", rounds->name, round + 1, rounds->count,
+                          item + 1, rounds->items);
+            if (rounds->prepare)
+                rounds->prepare(rounds->data, item);
+            const struct moment start = now();
+            const double often = rounds->run(rounds->data, item);
+            const struct moment all = since(start);
+            if (often > 0)
+                samples_add(&times[item], (struct moment){all.wall / often, all.cpu / often});
+        }
+    progress_clear();
 }

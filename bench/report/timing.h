@@ -26,6 +26,19 @@ struct spread samples_wall(const struct samples *samples); /* NaN if there are n
 struct spread samples_cpu(const struct samples *samples);
 double samples_median(const struct samples *samples); /* wall [ms] */
 
+/* Items that are timed in turn, round by round, so that a slow second of the machine hits all. */
+struct rounds {
+    const char *name; /* on the terminal */
+    int32_t count, items;
+    /* Does the work of an item; returns how often, of which the time of once is taken. */
+    double (*run)(void *data, int32_t item);
+    double (*prepare)(void *data, int32_t item); /* untimed, before each run; or NULL */
+    void *data;
+};
+
+/* Adds a sample to times[item] for each round. Items that run 0 times are left out. */
+void rounds_measure(const struct rounds *rounds, struct samples *times);
+
 /* Sorts the values. */
 double median_of(double *values, int32_t count);
 #endif

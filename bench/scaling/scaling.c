@@ -35,14 +35,13 @@ static struct table *table_of_cases(const struct scaling *scaling)
         const double ns = 1e6 / one->count;
         if (k == 0 || strcmp(one->group, one[-1].group) != 0)
             table_section(table, one->group);
-        TABLE_ROW(
-            table, cell_text(one->group), cell_text(one->label), cell_count(one->count),
-            cell_count(one->threads), cell_count(one->cloud.dimension), cell_number(one->pairs),
-            cell_number(one->bytes), cell_time(&one->time[SCALING_SEARCH], ns),
-            cell_time(&one->time[SCALING_MATRICES], ns),
-            cell_time(&one->time[SCALING_GRADIENT], ns), cell_time(&one->time[SCALING_FUSED], ns),
-            cell_number(100 * one->deficient), cell_number(one->deficient), cell_number(one->error),
-            cell_count(one->not_finite));
+        TABLE_ROW(table, cell_text(one->group), cell_text(one->label), cell_count(one->count),
+                  cell_count(one->threads), cell_count(one->cloud.dimension),
+                  cell_number(one->pairs), cell_number(one->bytes),
+                  cell_time(&one->time[WORK_SEARCH], ns), cell_time(&one->time[WORK_MATRICES], ns),
+                  cell_time(&one->time[WORK_GRADIENT], ns), cell_time(&one->time[WORK_FUSED], ns),
+                  cell_number(100 * one->deficient), cell_number(one->deficient),
+                  cell_number(one->error), cell_count(one->not_finite));
     }
     return table;
 }
@@ -61,75 +60,59 @@ static struct table *table_of_speed_ups(const struct scaling *scaling)
     const struct scaling_case *single = NULL;
     for (int k = 0; k < scaling->case_count; ++k) {
         const struct scaling_case *one = &scaling->cases[k];
-        struct cell cells[SCALING_WORKS + 2] = {cell_text(one->label)};
+        struct cell cells[WORKS + 2] = {cell_text(one->label)};
         if (strcmp(one->group, "threads") != 0)
             continue;
         single = single ? single : one;
-        for (int work = 0; work < SCALING_WORKS; ++work) {
+        for (int work = 0; work < WORKS; ++work) {
             const double speed_up =
                 samples_median(&single->time[work]) / samples_median(&one->time[work]);
             cells[work + 1] =
                 cell_text(table_text("%.2f, %.0f %%", speed_up, 100 * speed_up / one->threads));
         }
-        cells[SCALING_WORKS + 1] = cell_text("");
-        table_add(table, cells, SCALING_WORKS + 2);
+        cells[WORKS + 1] = cell_text("");
+        table_add(table, cells, WORKS + 2);
     }
     return table;
-}
-
-static bool draw(const struct scaling *scaling)
-{
-    static const char *const parts[] = {"scaling/scaling.gp", NULL};
-    const struct settings *settings = &scaling->settings;
-    return plot_draw(settings->output, "scaling.gp",
-                     table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s, but for "
-                                "what a panel changes\"\nthreads = %d\n",
-                                settings->particles, settings->support, settings->threads,
-                                settings->threads > 1 ? "s" : "", machine_cpu(), settings->threads),
-                     parts);
 }
 
 static void report_results(const struct scaling *scaling)
 {
     const struct settings *settings = &scaling->settings;
     const struct table *cases = table_of_cases(scaling);
+    struct report *report = report_create(settings);
     char count[TEXT_SIZE];
     printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, lattice order, but "
            "for what a\n           group changes; KGC, cubic spline, f32\n",
            text_grouped(settings->particles, count), settings->jitter, settings->support);
-    text_print_machine(settings->threads);
+    report_machine(report);
     printf("times      ns a particle, median (min-max) of %d rounds through the cases of a group; "
            "fused:\n           matrices and gradient in one call; bytes: a particle, held by the "
            "neighbours\n",
            settings->repetitions);
     printf("errors     largest |J_i - J|_F / |J|_F of v = (-y, x, 2z), in 2D (-y, x), where rank "
            "is full\n");
-    text_print_if_busy(&scaling->cases[0].time[SCALING_FUSED], settings->threads);
-    table_print(cases);
-    table_print(table_of_speed_ups(scaling));
+    report_if_busy(report, &scaling->cases[0].time[WORK_FUSED]);
+    report_number(report, "particles", settings->particles);
+    report_table(report, cases);
+    report_table(report, table_of_speed_ups(scaling));
     for (int k = 0; k < scaling->case_count; ++k)
         if (scaling->cases[k].not_finite > 0)
             printf("\nNOT FINITE: %lld numbers of %s, %s\n",
                    (long long)scaling->cases[k].not_finite, scaling->cases[k].group,
                    scaling->cases[k].label);
     table_write_csv(cases, settings->output, "scaling.csv");
-    printf("\nwritten to %s: scaling.csv, scaling.gp%s\n", settings->output,
-           draw(scaling) ? ", scaling.png" : "");
-
-    struct report *report = report_create(settings->threads);
-    report_number(report, "particles", settings->particles);
-    report_table(report, cases);
-    report_write(report, settings->json);
+    plot_written(settings->output, "scaling/scaling", "scaling.csv",
+                 table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s, but for "
+                            "what a panel changes\"\nthreads = %d\n",
+                            settings->particles, settings->support, settings->threads,
+                            settings->threads > 1 ? "s" : "", machine_cpu(), settings->threads));
+    report_write(report);
 }
 
 int command_scaling(int argc, char **argv)
 {
-    struct scaling scaling = {.settings = {.particles = 1000000,
-                                           .threads = machine_threads(),
-                                           .repetitions = 5,
-                                           .support = 2,
-                                           .jitter = 0.2,
-                                           .output = "scaling"}};
+    struct scaling scaling = {.settings = settings_default(1000000, 5, "scaling")};
     const struct command_option options[] = {
         OUTPUT_OPTION(scaling.settings, "CSV, script and picture", "scaling"),
         {"full", 0, NULL,

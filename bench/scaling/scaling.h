@@ -4,21 +4,14 @@
 #define SPHGRAD_BENCH_SCALING_H
 #include "report/timing.h"
 #include "scaling_cloud.h"
+#include "scene.h"
 #include "settings.h"
-
-enum scaling_work {
-    SCALING_SEARCH,
-    SCALING_MATRICES,
-    SCALING_GRADIENT,
-    SCALING_FUSED,
-    SCALING_WORKS
-};
 
 struct scaling_case {
     const char *group, *label;
     struct cloud_setting cloud;
     int32_t threads;
-    struct samples time[SCALING_WORKS];
+    struct samples time[WORKS];
     int32_t count;
     double pairs, bytes; /* a particle */
     double deficient;    /* share of particles without full rank */

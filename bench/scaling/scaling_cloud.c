@@ -50,7 +50,7 @@ static void scatter(struct numbers *positions, int32_t side, double support)
     }
 }
 
-struct numbers cloud_positions(const struct cloud_setting *setting)
+static struct cloud create_lattice(const struct cloud_setting *setting)
 {
     const struct lattice lattice = {
         .dimension = setting->dimension,
@@ -58,18 +58,21 @@ struct numbers cloud_positions(const struct cloud_setting *setting)
         .origin = setting->shape == CLOUD_FAR ? 1e5 * setting->support * lattice_spacing : 0,
         .spacing = lattice_spacing,
         .jitter = setting->shape == CLOUD_LATTICE ? 0 : setting->jitter};
-    struct numbers positions =
-        numbers_create(SPHG_F32, lattice_count(&lattice), setting->dimension);
-    lattice_fill(&lattice, &positions);
+    struct cloud cloud = {.positions =
+                              numbers_create(SPHG_F32, lattice_count(&lattice), setting->dimension),
+                          .volumes = numbers_create(SPHG_F32, 1, 1),
+                          .support_radius = setting->support * lattice_spacing};
+    numbers_set(&cloud.volumes, 0, 0, pow(lattice_spacing, setting->dimension));
+    lattice_fill(&lattice, &cloud.positions);
     if (setting->shape == CLOUD_ROTATED)
-        rotate(&positions, 0.5 * (lattice.side - 1) * lattice_spacing);
+        rotate(&cloud.positions, 0.5 * (lattice.side - 1) * lattice_spacing);
     if (setting->shape == CLOUD_SHEETS)
-        part_layers(&positions, lattice.side, setting->support);
+        part_layers(&cloud.positions, lattice.side, setting->support);
     if (setting->shape == CLOUD_SPRAY)
-        scatter(&positions, lattice.side, setting->support);
+        scatter(&cloud.positions, lattice.side, setting->support);
     if (setting->shuffled)
-        shuffle_rows(&positions);
-    return positions;
+        shuffle_rows(&cloud.positions);
+    return cloud;
 }
 
 /* ---- Graded ---------------------------------------------------------------------------------- */
@@ -111,7 +114,7 @@ static double graded_length(const struct cloud_setting *setting)
 }
 
 static void add_layer(const struct cloud_setting *setting, double x, double length, int32_t *next,
-                      struct graded_cloud *cloud)
+                      struct cloud *cloud)
 {
     const double spacing = spacing_at(setting, x, length);
     const int32_t side = side_of_layer(spacing, length);
@@ -128,15 +131,21 @@ static void add_layer(const struct cloud_setting *setting, double x, double leng
     }
 }
 
-struct graded_cloud cloud_graded(const struct cloud_setting *setting)
+static struct cloud create_graded(const struct cloud_setting *setting)
 {
     const double length = graded_length(setting);
     const int32_t count = (int32_t)graded_count(setting, length);
-    struct graded_cloud cloud = {.positions = numbers_create(SPHG_F32, count, 3),
-                                 .radii = numbers_create(SPHG_F32, count, 1),
-                                 .volumes = numbers_create(SPHG_F32, count, 1)};
+    struct cloud cloud = {.positions = numbers_create(SPHG_F32, count, 3),
+                          .radii = numbers_create(SPHG_F32, count, 1),
+                          .volumes = numbers_create(SPHG_F32, count, 1),
+                          .support_radius = setting->support * lattice_spacing * setting->ratio};
     int32_t next = 0;
     for (double x = 0; x < length; x += spacing_at(setting, x, length))
         add_layer(setting, x, length, &next, &cloud);
     return cloud;
+}
+
+struct cloud cloud_create(const struct cloud_setting *setting)
+{
+    return setting->shape == CLOUD_GRADED ? create_graded(setting) : create_lattice(setting);
 }

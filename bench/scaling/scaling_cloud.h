@@ -23,13 +23,12 @@ struct cloud_setting {
     double ratio; /* graded: of the largest spacing to the smallest */
 };
 
-/* Positions in f32, spacing lattice_spacing. */
-struct numbers cloud_positions(const struct cloud_setting *setting);
-
-/* Of a graded cloud, from the smallest spacing at x = 0 on: positions, support radii and volumes.
- */
-struct graded_cloud {
-    struct numbers positions, radii, volumes;
+/* In f32, the smallest spacing lattice_spacing. */
+struct cloud {
+    struct numbers positions;
+    struct numbers volumes; /* one for all, but of graded clouds */
+    struct numbers radii;   /* of graded clouds alone */
+    double support_radius;  /* the largest */
 };
-struct graded_cloud cloud_graded(const struct cloud_setting *setting);
+struct cloud cloud_create(const struct cloud_setting *setting);
 #endif

@@ -1,104 +1,38 @@
 /* SPDX-License-Identifier: MIT */
 /* The measurements of scaling. */
-#include "library.h"
 #include "particles/linear_field.h"
-#include "particles/particles.h"
-#include "report/progress.h"
 #include "scaling.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* What a case runs on. */
-struct scene {
-    struct scaling_case *one;
-    sphg_context *context;
-    sphg_neighbors *neighbors;
-    sphg_scheme scheme;
-    struct numbers positions, radii, field, corrections,
-        jacobians;          /* radii: count 0, one for all */
-    struct numbers volumes; /* count 1: one for all */
-};
-
-static void take_cloud(struct scene *scene)
+static struct scene open_scene(const struct scaling_case *one)
 {
-    const struct cloud_setting *setting = &scene->one->cloud;
-    if (setting->shape == CLOUD_GRADED) {
-        const struct graded_cloud cloud = cloud_graded(setting);
-        scene->positions = cloud.positions;
-        scene->radii = cloud.radii;
-        scene->volumes = cloud.volumes;
-        scene->scheme.support_radius *= setting->ratio;
-        return;
-    }
-    scene->positions = cloud_positions(setting);
-    scene->volumes = numbers_create(SPHG_F32, 1, 1);
-    numbers_set(&scene->volumes, 0, 0, pow(lattice_spacing, setting->dimension));
-}
-
-static sphg_view volumes_of(const struct scene *scene)
-{
-    return scene->volumes.count == 1 ? sphg_same_f32(scene->volumes.data)
-                                     : numbers_view(&scene->volumes);
-}
-
-static struct scene open_scene(struct scaling_case *one)
-{
-    const int32_t d = one->cloud.dimension;
-    struct scene scene = {
-        .one = one,
-        .context = library_open(one->threads),
-        .scheme = {.dimension = d, .support_radius = one->cloud.support * lattice_spacing}};
-    take_cloud(&scene);
-    const int32_t count = one->count = scene.positions.count;
-    scene.field = numbers_create(SPHG_F32, count, d);
-    scene.corrections = numbers_create(SPHG_F32, count, sphg_correction_width(&scene.scheme));
-    scene.jacobians = numbers_create(SPHG_F32, count, d * d);
-    linear_field_fill(&scene.positions, &scene.field);
-    scene.neighbors = library_neighbors(scene.context);
+    const struct cloud cloud = cloud_create(&one->cloud);
+    const sphg_scheme scheme = {.dimension = one->cloud.dimension,
+                                .support_radius = cloud.support_radius};
+    struct scene scene =
+        scene_open(library_open(one->threads), &scheme, cloud.positions, cloud.volumes);
+    if (cloud.radii.count)
+        scene.geometry.source_support = numbers_view(&cloud.radii);
     return scene;
 }
 
-static void close_scene(struct scene *scene)
+static double run(void *scenes, int32_t item)
 {
-    sphg_neighbors_destroy(scene->neighbors);
-    sphg_context_destroy(scene->context);
-    numbers_destroy(&scene->positions);
-    numbers_destroy(&scene->field);
-    numbers_destroy(&scene->volumes);
-    numbers_destroy(&scene->radii);
-    numbers_destroy(&scene->corrections);
-    numbers_destroy(&scene->jacobians);
-}
-
-/* ranks: where they go, of matrices; NULL: nowhere */
-static void run(struct scene *scene, enum scaling_work work, uint8_t *ranks)
-{
-    sphg_geometry geometry = library_geometry(&scene->positions, SPHG_F32);
-    sphg_sources sources = {.neighbors = scene->neighbors, .volume = volumes_of(scene)};
-    const sphg_view corrections = numbers_view(&scene->corrections);
-    if (scene->radii.count)
-        geometry.source_support = numbers_view(&scene->radii);
-    if (work == SCALING_GRADIENT)
-        sources.correction = corrections;
-    if (work == SCALING_SEARCH)
-        library_search(scene->context, scene->neighbors, &scene->scheme, &geometry);
-    else if (work == SCALING_MATRICES)
-        library_correct(scene->context, &scene->scheme, &sources, corrections, ranks);
-    else
-        library_jacobian(scene->context, &scene->scheme, &sources, &scene->field,
-                         &scene->jacobians);
+    scene_run((struct scene *)scenes + item / WORKS, (enum work)(item % WORKS));
+    return 1;
 }
 
 /* Warms up on the way. */
-static void measure_error(struct scene *scene)
+static void measure_error(struct scene *scene, struct scaling_case *one)
 {
-    struct scaling_case *one = scene->one;
-    uint8_t *ranks = allocate_or_exit((size_t)one->count, 1);
+    uint8_t *ranks = allocate_held((size_t)scene->count, 1);
     int32_t deficient = 0;
-    for (int work = 0; work < SCALING_WORKS; ++work)
-        run(scene, (enum scaling_work)work, ranks);
+    for (int work = 0; work < WORKS; ++work)
+        scene_run(scene, (enum work)work);
+    scene_correct(scene, ranks);
     const sphg_neighbors_info info = library_info(scene->context, scene->neighbors);
+    one->count = scene->count;
     one->pairs = (double)info.pairs / one->count;
     one->bytes = (double)info.bytes / one->count;
     for (int32_t i = 0; i < one->count; ++i) {
@@ -107,48 +41,33 @@ static void measure_error(struct scene *scene)
     }
     one->error = deficient < one->count ? linear_field_worst(&scene->jacobians, ranks) : 0;
     one->deficient = (double)deficient / one->count;
-    free(ranks);
 }
 
-/* begin up to the returned index: the cases of one group. */
-static int end_of_group(const struct scaling *scaling, int begin)
+/* The cases of one group: its memory is released before that of the next is taken. */
+static void measure_group(const struct settings *settings, struct scaling_case *cases, int count)
 {
-    int end = begin;
-    while (end < scaling->case_count &&
-           strcmp(scaling->cases[end].group, scaling->cases[begin].group) == 0)
-        ++end;
-    return end;
-}
-
-static void measure_group(struct scaling *scaling, int begin, int end)
-{
-    struct scene *scenes = allocate_or_exit((size_t)(end - begin), sizeof *scenes);
-    for (int k = begin; k < end; ++k) {
-        progress_show("%s: preparing %s", scaling->cases[k].group, scaling->cases[k].label);
-        scenes[k - begin] = open_scene(&scaling->cases[k]);
-        measure_error(&scenes[k - begin]);
+    struct held *mark = held_so_far();
+    struct scene *scenes = allocate_held((size_t)count, sizeof *scenes);
+    struct samples *times = allocate_to_the_end((size_t)count * WORKS, sizeof *times);
+    for (int k = 0; k < count; ++k) {
+        scenes[k] = open_scene(&cases[k]);
+        measure_error(&scenes[k], &cases[k]);
     }
-    for (int32_t round = 0; round < scaling->settings.repetitions; ++round)
-        for (int k = begin; k < end; ++k) {
-            struct scaling_case *one = &scaling->cases[k];
-            progress_show("%s: round %d of %d: %s", one->group, round + 1,
-                          scaling->settings.repetitions, one->label);
-            for (int work = 0; work < SCALING_WORKS; ++work) {
-                const struct moment start = now();
-                run(&scenes[k - begin], (enum scaling_work)work, NULL);
-                samples_add(&one->time[work], since(start));
-            }
-        }
-    for (int k = 0; k < end - begin; ++k)
-        close_scene(&scenes[k]);
-    free(scenes);
+    rounds_measure(
+        &(struct rounds){cases[0].group, settings->repetitions, count * WORKS, run, NULL, scenes},
+        times);
+    for (int k = 0; k < count * WORKS; ++k)
+        cases[k / WORKS].time[k % WORKS] = times[k];
+    release_held(mark);
 }
 
 void scaling_measure(struct scaling *scaling)
 {
     for (int begin = 0, end; begin < scaling->case_count; begin = end) {
-        end = end_of_group(scaling, begin);
-        measure_group(scaling, begin, end);
+        struct scaling_case *first = &scaling->cases[begin];
+        end = begin + 1;
+        while (end < scaling->case_count && strcmp(scaling->cases[end].group, first->group) == 0)
+            ++end;
+        measure_group(&scaling->settings, first, end - begin);
     }
-    progress_clear();
 }

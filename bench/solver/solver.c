@@ -11,10 +11,9 @@ static void find_paths(struct solver *solver)
 {
     int found = 0;
     for (int path = 0; path < LIBRARY_PATHS; ++path) {
-        sphg_context *context = library_open_path(1, path);
-        solver->available[path] = context && (solver->path < 0 || solver->path == path);
+        solver->available[path] =
+            library_open_path(1, path) && (solver->path < 0 || solver->path == path);
         found += solver->available[path];
-        sphg_context_destroy(context);
     }
     if (found == 0)
         command_line_refuse("--isa: %s does not run here", library_path_name(solver->path));
@@ -28,8 +27,8 @@ static void list_groups(struct solver *solver)
         for (int type = 0; type < 2; ++type)
             for (int32_t d = 3; d >= 2; --d)
                 if (counts[size] > 0 && (solver->precision < 0 || solver->precision == type))
-                    solver->groups[solver->group_count++] =
-                        (struct solver_group){types[type], d, counts[size], {{{{0}}, {0}, {0}}}};
+                    solver->groups[solver->group_count++] = (struct solver_group){
+                        .type = types[type], .dimension = d, .count = counts[size]};
 }
 
 /* The worst path's. */
@@ -57,10 +56,10 @@ static void add_case(struct table *table, const struct solver *solver,
     cells[count++] = cell_text(table_text("%d", (int)group->count));
     cells[count++] = cell_text(works[one->work]);
     cells[count++] = cell_text(one->what);
-    cells[count++] = copied ? cell_time(&result->times[0], ns_a_matrix) : cell_none();
+    cells[count++] = copied ? cell_time(&group->times[k][0], ns_a_matrix) : cell_none();
     for (int path = 0; path < LIBRARY_PATHS; ++path)
         if (solver->available[path])
-            cells[count++] = copied ? cell_none() : cell_time(&result->times[path], ns_a_matrix);
+            cells[count++] = copied ? cell_none() : cell_time(&group->times[k][path], ns_a_matrix);
     cells[count++] = one->spectrum == SOLVER_MOMENTS
                          ? cell_number(100 * most(result->decomposed, solver->available))
                          : cell_none();
@@ -101,20 +100,17 @@ static struct table *table_of(const struct solver *solver)
 
 static void report_results(const struct solver *solver)
 {
-    const struct settings *settings = &solver->settings;
-    const struct table *table = table_of(solver);
+    struct report *report = report_create(&solver->settings);
     printf("matrices   3 x 3 and 2 x 2, items packed, so many in a batch; memcpy: their numbers "
            "moved from the input\n           to the results, no arithmetic; fell: share that the "
            "call sent to the decomposition\n");
-    text_print_machine(settings->threads);
+    report_machine(report);
     printf("times      ns a matrix, median (min-max) of %d rounds through the cases and "
            "instruction sets of a group;\n           off by: C M - 1 of the certified, else "
            "what the factors miss of A, the largest entry over that of A\n",
-           settings->repetitions);
-    table_print(table);
-    struct report *report = report_create(settings->threads);
-    report_table(report, table);
-    report_write(report, settings->json);
+           solver->settings.repetitions);
+    report_table(report, table_of(solver));
+    report_write(report);
 }
 
 int command_solver(int argc, char **argv)

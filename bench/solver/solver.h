@@ -28,9 +28,8 @@ enum { SOLVER_CASES = 13 };
 extern const struct solver_case solver_cases[SOLVER_CASES];
 
 struct solver_result {
-    struct samples times[LIBRARY_PATHS]; /* of one call [ms]; a copy: only those of path 0 */
-    double deviation[LIBRARY_PATHS];     /* worst of C M - 1, A - Q L Q^T, A - U S V^T, over |A| */
-    double decomposed[LIBRARY_PATHS];    /* share that the call says it sent there */
+    double deviation[LIBRARY_PATHS];  /* worst of C M - 1, A - Q L Q^T, A - U S V^T, over |A| */
+    double decomposed[LIBRARY_PATHS]; /* share that the call says it sent there */
 };
 
 /* Measured in turn, round by round. */
@@ -38,6 +37,7 @@ struct solver_group {
     sphg_type type;
     int32_t dimension, count;
     struct solver_result results[SOLVER_CASES];
+    struct samples times[SOLVER_CASES][LIBRARY_PATHS]; /* of one call; a copy: only of path 0 */
 };
 
 enum { SOLVER_GROUPS = 8, SOLVER_SMALL = 4096 /* matrices that stay in the second-level cache */ };

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The measurements of solver. */
-#include "report/progress.h"
+#include "report/table.h"
 #include "solver.h"
 #include "team.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Short calls are repeated until a sample takes so long [ms]. */
@@ -31,16 +30,6 @@ static struct scene open_scene(const struct solver *solver, struct solver_group 
     for (int k = 0; k < 3; ++k)
         scene.results[k] = numbers_create(group->type, group->count, 9);
     return scene;
-}
-
-static void close_scene(struct scene *scene)
-{
-    for (int path = 0; path < LIBRARY_PATHS; ++path)
-        sphg_context_destroy(scene->contexts[path]);
-    for (int k = 0; k < SOLVER_CASES; ++k)
-        numbers_destroy(&scene->batches[k]);
-    for (int k = 0; k < 3; ++k)
-        numbers_destroy(&scene->results[k]);
 }
 
 /* Result k of the work, packed as a host would have it. */
@@ -119,17 +108,6 @@ static void run_case(const struct scene *scene, int k, int path)
         library_check(context, sphg_svd(context, group->count, matrices, out[0], out[1], out[2]));
 }
 
-static void time_case(const struct scene *scene, int k, int path)
-{
-    const int32_t calls = scene->calls[k][path];
-    const struct moment start = now();
-    for (int32_t call = 0; call < calls; ++call)
-        run_case(scene, k, path);
-    const struct moment all = since(start);
-    samples_add(&scene->group->results[k].times[path],
-                (struct moment){all.wall / calls, all.cpu / calls});
-}
-
 /* ---- What came out -------------------------------------------------------------------------- */
 
 /* An item as a full matrix. */
@@ -205,58 +183,51 @@ static void check_case(struct scene *scene, int k, int path)
             result->deviation[path] = fmax(result->deviation[path], deviation_of(scene, k, i));
 }
 
-/* How many calls make a sample, from one call in the warm state. */
-static void calibrate(struct scene *scene, int k, int path)
-{
-    const struct moment start = now();
-    run_case(scene, k, path);
-    const double time = now().wall - start.wall;
-    const double calls = ceil(sample_time / fmax(time, 1e-4));
-    scene->calls[k][path] = (int32_t)fmin(calls, 1e5);
-}
+/* ---- The whole ------------------------------------------------------------------------------ */
 
+/* A copy is by no path, and only once. */
 static bool is_measured(const struct scene *scene, int k, int path)
 {
     if (!solver_has(scene->group, k))
         return false;
-    if (solver_cases[k].spectrum == SOLVER_COPIED) /* by no path, and only once */
-        return path == 0;
-    return scene->contexts[path] != NULL;
+    return solver_cases[k].spectrum == SOLVER_COPIED ? path == 0 : scene->contexts[path] != NULL;
 }
 
-static void for_all(struct scene *scene, void (*action)(struct scene *, int, int))
+/* How many calls make a sample, from one call in the warm state. */
+static int32_t calls_of_sample(const struct scene *scene, int k, int path)
 {
-    for (int k = 0; k < SOLVER_CASES; ++k)
-        for (int path = 0; path < LIBRARY_PATHS; ++path)
-            if (is_measured(scene, k, path))
-                action(scene, k, path);
+    const struct moment start = now();
+    run_case(scene, k, path);
+    const double calls = ceil(sample_time / fmax(since(start).wall, 1e-4));
+    return (int32_t)fmin(calls, 1e5);
 }
 
-static void prepare(struct scene *scene, int k, int path)
+static double run(void *data, int32_t item)
 {
-    check_case(scene, k, path);
-    calibrate(scene, k, path);
-}
-
-static void measure(struct scene *scene, int k, int path)
-{
-    time_case(scene, k, path);
+    const struct scene *scene = data;
+    const int k = item / LIBRARY_PATHS, path = item % LIBRARY_PATHS;
+    const int32_t calls = scene->calls[k][path];
+    for (int32_t call = 0; call < calls; ++call)
+        run_case(scene, k, path);
+    return calls;
 }
 
 void solver_measure(struct solver *solver)
 {
-    const int32_t rounds = solver->settings.repetitions;
     for (int g = 0; g < solver->group_count; ++g) {
+        struct held *mark = held_so_far();
         struct solver_group *group = &solver->groups[g];
-        progress_show("group %d of %d: warm-up", g + 1, solver->group_count);
         struct scene scene = open_scene(solver, group);
-        for_all(&scene, prepare);
-        for (int32_t round = 0; round < rounds; ++round) {
-            progress_show("group %d of %d: round %d of %d", g + 1, solver->group_count, round + 1,
-                          rounds);
-            for_all(&scene, measure);
-        }
-        close_scene(&scene);
+        for (int k = 0; k < SOLVER_CASES; ++k)
+            for (int path = 0; path < LIBRARY_PATHS; ++path)
+                if (is_measured(&scene, k, path)) {
+                    check_case(&scene, k, path);
+                    scene.calls[k][path] = calls_of_sample(&scene, k, path);
+                }
+        rounds_measure(&(struct rounds){table_text("group %d of %d", g + 1, solver->group_count),
+                                        solver->settings.repetitions, SOLVER_CASES * LIBRARY_PATHS,
+                                        run, NULL, &scene},
+                       &group->times[0][0]);
+        release_held(mark);
     }
-    progress_clear();
 }

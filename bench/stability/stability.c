@@ -208,7 +208,7 @@ static bool draw(const struct stability *stability)
     return true;
 }
 
-static void print_results(const struct stability *stability)
+static void print_results(const struct stability *stability, const struct report *report)
 {
     const struct settings *settings = &stability->settings;
     char count[TEXT_SIZE];
@@ -219,7 +219,7 @@ static void print_results(const struct stability *stability)
            text_grouped((int64_t)side * side * side, count), settings->jitter, settings->support,
            kernel_names[settings->kernel], settings->repetitions,
            settings->repetitions > 1 ? "s" : "", (int)stability->seed);
-    text_print_machine(settings->threads);
+    report_machine(report);
     printf("ratios     largest error of the gradient of a random field over its bound, beside "
            "brute force in\n           quadruple precision; limits: 10 at full rank, 16 where "
            "the threshold acts; order 2: 1 and 4\n");
@@ -230,7 +230,7 @@ static void print_results(const struct stability *stability)
         print_places(stability);
 }
 
-static void write_results(const struct stability *stability)
+static void write_results(const struct stability *stability, struct report *report)
 {
     const struct settings *settings = &stability->settings;
     const struct table *cases = table_of_cases(stability);
@@ -239,26 +239,19 @@ static void write_results(const struct stability *stability)
     const bool drawn = all && draw(stability);
     printf("\nwritten to %s: stability.csv%s%s\n", settings->output, all ? ", three scripts" : "",
            drawn ? " and their pictures" : "");
-    struct report *report = report_create(settings->threads);
     report_number(report, "particles", settings->particles);
     report_number(report, "support_spacings", settings->support);
     report_number(report, "jitter", settings->jitter);
     report_number(report, "rounds", settings->repetitions);
     report_number(report, "seed", stability->seed);
-    report_table(report, cases);
-    report_write(report, settings->json);
+    report_times(report, cases);
+    report_write(report);
 }
 
 int command_stability(int argc, char **argv)
 {
-    struct stability stability = {.settings = {.particles = 512,
-                                               .threads = machine_threads(),
-                                               .repetitions = 1,
-                                               .support = 2,
-                                               .jitter = 0.2,
-                                               .output = "stability"},
-                                  .last = SWEEPS - 1,
-                                  .compared = -1};
+    struct stability stability = {
+        .settings = settings_default(512, 1, "stability"), .last = SWEEPS - 1, .compared = -1};
     bool one_sweep = false;
     const struct command_option options[] = {
         OUTPUT_OPTION(stability.settings, "CSV, scripts and pictures", "stability"),
@@ -289,7 +282,8 @@ int command_stability(int argc, char **argv)
         stability.compared = stability.quick ? 2 : 32;
     stability_create_cases(&stability);
     stability_measure(&stability);
-    print_results(&stability);
-    write_results(&stability);
+    struct report *report = report_create(&stability.settings);
+    print_results(&stability, report);
+    write_results(&stability, report);
     return stability_check(&stability) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -3,7 +3,6 @@
 #include "lattice.h"
 #include "numbers.h"
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static double draw(struct stability_cloud *cloud, double least, double most)
@@ -13,10 +12,9 @@ static double draw(struct stability_cloud *cloud, double least, double most)
 
 static void make_room(struct stability_cloud *cloud, int32_t more)
 {
-    double(*rows)[3] = allocate_or_exit((size_t)(cloud->count + more), sizeof *rows);
+    double(*rows)[3] = allocate_held((size_t)(cloud->count + more), sizeof *rows);
     if (cloud->count > 0)
         memcpy(rows, cloud->x, (size_t)cloud->count * sizeof *rows);
-    free(cloud->x);
     cloud->x = rows;
 }
 
@@ -113,7 +111,7 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
 static void grade(struct stability_cloud *cloud, int32_t side, double ratio)
 {
     const double factor = pow(ratio, 1 / (side - 1.0));
-    cloud->radius = allocate_or_exit((size_t)cloud->count, sizeof *cloud->radius);
+    cloud->radius = allocate_held((size_t)cloud->count, sizeof *cloud->radius);
     for (int32_t i = 0; i < cloud->count; ++i) {
         double *x = cloud->x[i];
         const double column = i % side, wide = pow(factor, column);
@@ -141,7 +139,7 @@ static void turn(struct stability_cloud *cloud)
 static void fill_volumes(struct stability_cloud *cloud, enum stability_sweep sweep, double at)
 {
     const double ball = 4 * 3.14159265358979323846 / 3 * pow(cloud->support, 3);
-    cloud->volume = allocate_or_exit((size_t)cloud->count, sizeof *cloud->volume);
+    cloud->volume = allocate_held((size_t)cloud->count, sizeof *cloud->volume);
     for (int32_t i = 0; i < cloud->count; ++i) {
         cloud->volume[i] = 1;
         if (sweep == SWEEP_NEIGHBOURS)
@@ -209,12 +207,4 @@ struct stability_cloud stability_cloud_create(const struct stability *stability,
     for (int axis = 0; axis < 3 && sweep == SWEEP_OFFSET; ++axis)
         cloud.shift[axis] = at * cloud.support * direction[axis];
     return cloud;
-}
-
-void stability_cloud_destroy(struct stability_cloud *cloud)
-{
-    free(cloud->x);
-    free(cloud->volume);
-    free(cloud->radius);
-    *cloud = (struct stability_cloud){0};
 }

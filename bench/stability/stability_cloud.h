@@ -15,8 +15,7 @@ struct stability_cloud {
     int64_t random;  /* numbers drawn */
 };
 
-/* round: other random numbers, the same for every method, precision and policy. */
+/* Held. round: other random numbers, the same for every method, precision and policy. */
 struct stability_cloud stability_cloud_create(const struct stability *stability,
                                               enum stability_sweep sweep, double at, int32_t round);
-void stability_cloud_destroy(struct stability_cloud *cloud);
 #endif

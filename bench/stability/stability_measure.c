@@ -24,7 +24,6 @@ static struct trial run_at(const struct bench *bench, double at, int exponent)
         stability_cloud_create(bench->stability, bench->one->sweep, at, bench->round);
     struct trial trial = trial_create(bench->context, bench->one, &cloud, exponent);
     trial_run(&trial, bench->one);
-    stability_cloud_destroy(&cloud);
     return trial;
 }
 
@@ -37,7 +36,6 @@ static void measure_place(const struct bench *bench)
 {
     struct trial trial = run_at(bench, bench->one->at, 0);
     compare(bench, &trial);
-    trial_destroy(&trial);
 }
 
 static void measure_scales(const struct bench *bench)
@@ -50,9 +48,7 @@ static void measure_scales(const struct bench *bench)
         one->other_bits += trial_other_bits(&trial, &base, exponent);
         if (k == 0 || k == one->steps)
             compare(bench, &trial);
-        trial_destroy(&trial);
     }
-    trial_destroy(&base);
 }
 
 /* Halves the step from `near` to `far` again and again and stays with the half that jumps more:
@@ -65,16 +61,12 @@ static void bisect(const struct bench *bench, double near, double far)
         const double middle = (near + far) / 2;
         struct trial between = run_at(bench, middle, 0);
         const bool first = trial_jump(&here, &between) > trial_jump(&between, &there);
-        struct trial *moved = first ? &there : &here;
-        trial_destroy(moved);
-        *moved = between;
+        *(first ? &there : &here) = between;
         *(first ? &far : &near) = middle;
     }
     one->jump_left = fmax(one->jump_left, trial_jump(&here, &there));
     one->correction_jump_left =
         fmax(one->correction_jump_left, trial_correction_jump(&here, &there));
-    trial_destroy(&here);
-    trial_destroy(&there);
 }
 
 static void measure_merging(const struct bench *bench)
@@ -91,10 +83,8 @@ static void measure_merging(const struct bench *bench)
         if (jump > largest)
             largest = jump, largest_at = k;
         one->correction_jump = fmax(one->correction_jump, trial_correction_jump(&trial, &next));
-        trial_destroy(&trial);
         trial = next;
     }
-    trial_destroy(&trial);
     one->jump = fmax(one->jump, largest);
     bisect(bench, one->at + (largest_at - 1) * step, one->at + largest_at * step);
 }
@@ -131,6 +121,7 @@ static void take_cases(void *data, int32_t begin, int32_t end)
     struct stability *stability = work->stability;
     if (begin == end)
         return;
+    struct held *all = held_so_far();
     struct bench bench = {.stability = stability, .context = library_open(1)};
     for (;;) {
         const int index = atomic_fetch_add(&work->next, 1);
@@ -139,10 +130,13 @@ static void take_cases(void *data, int32_t begin, int32_t end)
         bench.one = &stability->cases[index];
         if (begin == 0)
             report(stability, index);
-        for (bench.round = 0; bench.round < stability->settings.repetitions; ++bench.round)
+        for (bench.round = 0; bench.round < stability->settings.repetitions; ++bench.round) {
+            struct held *of_case = held_so_far();
             measure_case(&bench);
+            release_held(of_case);
+        }
     }
-    sphg_context_destroy(bench.context);
+    release_held(all);
 }
 
 void stability_measure(struct stability *stability)

@@ -2,33 +2,10 @@
 #include "stability_reference.h"
 #include "support/oracle_quadratic.h"
 #include <math.h>
-#include <stdlib.h>
-
-/* ---- Memory of one comparison --------------------------------------------------------------- */
-
-struct owned {
-    struct owned *next;
-    void *memory;
-};
-
-static _Thread_local struct owned *all_owned;
 
 void *oracle_memory(size_t bytes)
 {
-    struct owned *entry = allocate_or_exit(1, sizeof *entry);
-    *entry = (struct owned){all_owned, allocate_or_exit(bytes, 1)};
-    all_owned = entry;
-    return entry->memory;
-}
-
-static void release(void)
-{
-    while (all_owned) {
-        struct owned *entry = all_owned;
-        all_owned = entry->next;
-        free(entry->memory);
-        free(entry);
-    }
+    return allocate_held(bytes, 1);
 }
 
 /* ---- The same inputs ------------------------------------------------------------------------- */
@@ -71,7 +48,7 @@ static int32_t find_smallest(const struct trial *trial, const uint8_t *taken)
 static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
 {
     const int32_t count = trial->target_count, most = wanted < count ? wanted : count;
-    uint8_t *taken = allocate_or_exit((size_t)count, 1);
+    uint8_t *taken = allocate_held((size_t)count, 1);
     const int32_t even = trial->corrected ? (most + 1) / 2 : most;
     for (int32_t k = 0; k < even; ++k)
         taken[(int64_t)k * count / even] = 1;
@@ -133,6 +110,7 @@ static void compare_target(const struct trial *trial, const oracle_scene *scene,
 
 void reference_compare(const struct trial *trial, int32_t wanted, struct stability_case *one)
 {
+    struct held *mark = held_so_far();
     const oracle_scene scene = scene_of(trial);
     oracle *reference = oracle_of(&scene);
     const oracle_field field = {.shape = SPHG_VECTOR,
@@ -142,6 +120,5 @@ void reference_compare(const struct trial *trial, int32_t wanted, struct stabili
     for (int32_t i = 0; i < trial->target_count; ++i)
         if (taken[i])
             compare_target(trial, &scene, reference, &field, i, one);
-    free(taken);
-    release();
+    release_held(mark);
 }

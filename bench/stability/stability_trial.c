@@ -4,7 +4,6 @@
 #include "library.h"
 #include "particles/linear_field.h"
 #include <math.h>
-#include <stdlib.h>
 
 static void fill(struct trial *trial, const struct stability_cloud *cloud, int exponent)
 {
@@ -46,7 +45,7 @@ struct trial trial_create(sphg_context *context, const struct stability_case *on
         trial.radii = numbers_create(trial.positions.type, trial.count, 1);
     trial.corrections = numbers_create(type, targets, width);
     trial.lambda_min = numbers_create(type, targets, 1);
-    trial.ranks = allocate_or_exit((size_t)targets, 1);
+    trial.ranks = allocate_held((size_t)targets, 1);
     for (int field = 0; field < TRIAL_FIELDS; ++field) {
         trial.fields[field] = numbers_create(type, trial.count, 3);
         trial.jacobians[field] = numbers_create(type, targets, 9);
@@ -56,30 +55,17 @@ struct trial trial_create(sphg_context *context, const struct stability_case *on
     return trial;
 }
 
-void trial_destroy(struct trial *trial)
-{
-    sphg_neighbors_destroy(trial->neighbors);
-    numbers_destroy(&trial->positions);
-    numbers_destroy(&trial->volumes);
-    numbers_destroy(&trial->radii);
-    numbers_destroy(&trial->corrections);
-    numbers_destroy(&trial->lambda_min);
-    free(trial->ranks);
-    for (int field = 0; field < TRIAL_FIELDS; ++field) {
-        numbers_destroy(&trial->fields[field]);
-        numbers_destroy(&trial->jacobians[field]);
-    }
-}
-
 /* ---- The library's part ------------------------------------------------------------------- */
 
 static void search(struct trial *trial)
 {
-    sphg_geometry geometry = library_geometry(&trial->positions, trial->volumes.type);
+    sphg_geometry geometry = sphg_all(numbers_view(&trial->positions), trial->count);
     geometry.target_count = trial->target_count;
+    geometry.precision = trial->volumes.type;
     if (trial->radii.data)
         geometry.source_support = numbers_view(&trial->radii);
-    library_search(trial->context, trial->neighbors, &trial->scheme, &geometry);
+    library_check(trial->context, sphg_neighbors_search(trial->context, trial->neighbors,
+                                                        &trial->scheme, &geometry));
 }
 
 static void evaluate(struct trial *trial)
@@ -106,15 +92,6 @@ static void evaluate(struct trial *trial)
 }
 
 /* ---- What it came to ---------------------------------------------------------------------- */
-
-static int64_t count_not_finite(const struct numbers *numbers)
-{
-    int64_t count = 0;
-    for (int32_t i = 0; i < numbers->count; ++i)
-        for (int32_t k = 0; k < numbers->width; ++k)
-            count += !isfinite(numbers_get(numbers, i, k));
-    return count;
-}
 
 static double norm_of(const struct numbers *tensors, int32_t i)
 {
@@ -150,9 +127,9 @@ static void tally(const struct trial *trial, struct stability_case *one)
 {
     one->targets += trial->target_count;
     for (int field = 0; field < TRIAL_FIELDS; ++field)
-        one->not_finite += count_not_finite(&trial->jacobians[field]);
-    one->not_finite += count_not_finite(&trial->corrections);
-    one->not_finite += count_not_finite(&trial->lambda_min);
+        one->not_finite += linear_field_not_finite(&trial->jacobians[field]);
+    one->not_finite += linear_field_not_finite(&trial->corrections);
+    one->not_finite += linear_field_not_finite(&trial->lambda_min);
     if (trial->corrected)
         tally_ranks(trial, one);
     tally_results(trial, one);

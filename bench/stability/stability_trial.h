@@ -23,10 +23,9 @@ struct trial {
     sphg_stats stats;
 };
 
-/* Lengths times 2^exponent. */
+/* Lengths times 2^exponent. Held. */
 struct trial trial_create(sphg_context *context, const struct stability_case *one,
                           const struct stability_cloud *cloud, int exponent);
-void trial_destroy(struct trial *trial);
 
 /* Search and evaluation, timed into the case, their results counted there. */
 void trial_run(struct trial *trial, struct stability_case *one);

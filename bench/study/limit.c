@@ -1,49 +1,176 @@
 /* SPDX-License-Identifier: MIT */
-/* The command `limit`. */
-#include "limit.h"
+/* The command `limit`: how near the library comes to the arithmetic limit of this machine. Each
+ * round goes once through the probe, the library and all sets. */
 #include "commands.h"
-#include "library.h"
-#include "report/machine.h"
+#include "limit_pack.h"
+#include "particles/particles.h"
+#include "probe.h"
 #include "report/report.h"
-#include "report/text.h"
+#include "team.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *const stage_names[] = {"sums", "results"}, *const work_names[LIMIT_WORKS] = {
+/* What is timed: the probe's works, the library's, and of each set, work and stage (sums alone, or
+ * finished) every arrangement. */
+enum {
+    LIBRARY = PROBE_WORKS,
+    PACKED = LIBRARY + LIMIT_WORKS,
+    SET_ITEMS = LIMIT_WORKS * 2 * LIMIT_ROOTS,
+    ITEMS_MOST = PACKED + LIMIT_SETS_MOST * SET_ITEMS
+};
+
+static const char *const stage_names[] = {"sums", "results"}, *const work_names[] = {
                                                                   "matrices", "gradient", "fused"};
 
-/* The arrangement that is the fastest by its median. */
-static int fastest_of(const struct limit_times *times, int finished)
+struct limit {
+    struct settings settings;
+    bool probe_only;
+    struct probe *probe;
+    struct scene scene;
+    int set_count;
+    const struct limit_set *sets[LIMIT_SETS_MOST];
+    struct packed *packed[LIMIT_SETS_MOST]; /* of each thread */
+    double deviation[LIMIT_SETS_MOST][LIMIT_WORKS];
+    struct samples times[ITEMS_MOST];
+};
+
+/* ---- Measuring ------------------------------------------------------------------------------- */
+
+/* A work on packed data; a thread's share of items says which of these are its own. */
+struct assignment {
+    const struct limit *limit;
+    int set;
+    enum limit_work work;
+    enum limit_root root;
+    bool finished;
+    int32_t targets; /* of each thread */
+};
+
+static void run_packed_share(void *data, int32_t begin, int32_t end)
 {
-    int best = 0;
-    for (int k = 1; k < LIMIT_ARRANGEMENTS; ++k)
-        if (samples_median(&times->arrangements[finished][k]) <
-            samples_median(&times->arrangements[finished][best]))
-            best = k;
-    return best;
+    const struct assignment *one = data;
+    for (int32_t thread = begin; thread < end; ++thread)
+        one->limit->sets[one->set]->run(&one->limit->packed[one->set][thread].data, one->work,
+                                        one->root, one->finished, one->targets);
 }
 
-static const struct samples *limit_of(const struct limit *limit, int set, int work, int finished)
+/* Through an eighth of the targets, so that a round stays short: which share is returned. */
+static double run_packed(const struct limit *limit, int item)
 {
-    const struct limit_times *times = &limit->times[set][work];
-    return &times->arrangements[finished][fastest_of(times, finished)];
+    enum { SHARE = 8, GRAIN = LIMIT_TARGETS };
+    const int32_t threads = limit->settings.threads;
+    struct assignment one = {.limit = limit,
+                             .set = item / SET_ITEMS,
+                             .work = (enum limit_work)(item / LIMIT_ROOTS / 2 % LIMIT_WORKS),
+                             .finished = item / LIMIT_ROOTS % 2,
+                             .root = (enum limit_root)(item % LIMIT_ROOTS),
+                             .targets = (limit->scene.count / threads / SHARE + GRAIN - 1) / GRAIN *
+                                        GRAIN};
+    team_run(threads, run_packed_share, &one, threads, 1);
+    return (double)one.targets * threads / limit->scene.count;
+}
+
+static double run(void *data, int32_t item)
+{
+    const struct limit *limit = data;
+    if (item >= PACKED)
+        return run_packed(limit, item - PACKED);
+    if (item >= LIBRARY)
+        scene_run(&limit->scene, (enum work)(WORK_MATRICES + item - LIBRARY));
+    else
+        probe_run(limit->probe, (enum probe_work)item, limit->settings.threads);
+    return 1;
+}
+
+static int32_t items_of(const struct limit *limit)
+{
+    return limit->probe_only ? LIBRARY : PACKED + limit->set_count * SET_ITEMS;
+}
+
+/* Every arrangement must come to the same results as plain arithmetic in double. */
+static void check_set(struct limit *limit, int set)
+{
+    const struct packed *packed = &limit->packed[set][0];
+    for (int work = 0; work < LIMIT_WORKS; ++work)
+        for (int k = 0; k < LIMIT_ROOTS; ++k) {
+            double *deviation = &limit->deviation[set][work];
+            for (int32_t n = 0; n < LIMIT_TARGETS * LIMIT_SUMS; ++n)
+                packed->data.results[n] = 0;
+            limit->sets[set]->run(&packed->data, (enum limit_work)work, (enum limit_root)k, true,
+                                  LIMIT_TARGETS);
+            *deviation =
+                numbers_larger(*deviation, packed_deviation(packed, (enum limit_work)work));
+        }
+}
+
+static void open_library_side(struct limit *limit)
+{
+    const struct settings *settings = &limit->settings;
+    const size_t threads = (size_t)settings->threads;
+    scene_run(&limit->scene, WORK_SEARCH);
+    limit->set_count = limit_sets(limit->sets);
+    for (int set = 0; set < limit->set_count; ++set) {
+        limit->packed[set] = allocate_held(threads, sizeof *limit->packed[set]);
+        for (size_t thread = 0; thread < threads; ++thread)
+            limit->packed[set][thread] = packed_create(
+                limit->sets[set], settings->support, settings->jitter, scene_pairs(&limit->scene));
+        check_set(limit, set);
+    }
+}
+
+static void measure(struct limit *limit)
+{
+    const struct settings *settings = &limit->settings;
+    sphg_context *context = library_open(settings->threads);
+    limit->scene = scene_of_lattice(context, settings, 3);
+    limit->probe = probe_create(context, settings_side(settings->particles, 3), settings->support,
+                                settings->jitter);
+    if (!limit->probe_only)
+        open_library_side(limit);
+    for (int32_t item = 0; item < items_of(limit) && item < PACKED; ++item)
+        run(limit, item);
+    rounds_measure(
+        &(struct rounds){"limit", settings->repetitions, items_of(limit), run, NULL, limit},
+        limit->times);
+}
+
+/* ---- Reporting ------------------------------------------------------------------------------- */
+
+static const struct samples *times_of(const struct limit *limit, int set, int work, int finished)
+{
+    return &limit->times[PACKED + set * SET_ITEMS + (work * 2 + finished) * LIMIT_ROOTS];
+}
+
+/* The root that is the faster one by its median. */
+static int fastest_of(const struct samples times[LIMIT_ROOTS])
+{
+    return samples_median(&times[LIMIT_NEWTON]) < samples_median(&times[LIMIT_SQUARE_ROOT]);
 }
 
 /* Limit over library, [%]. */
 static double share_of(const struct limit *limit, const struct samples *samples, int work)
 {
-    return 100 * samples_median(samples) / samples_median(&limit->library[work]);
+    return 100 * samples_median(samples) / samples_median(&limit->times[LIBRARY + work]);
 }
 
-static const char *describe_arrangement(int index)
+static const char *const arrangements[LIMIT_ROOTS] = {
+    "targets in lanes, sqrt and division, weights first",
+    "targets in lanes, estimate and Newton step, weights first"};
+
+static struct table *table_of_probe(const struct limit *limit, sphg_context *context)
 {
-    const struct limit_arrangement how = limit_arrangement(index);
-    return table_text("%s in lanes, %s, %s", how.lanes_are_targets ? "targets" : "pairs",
-                      how.by_newton ? "estimate and Newton step" : "sqrt and division",
-                      how.in_passes ? "weights first" : "one loop");
+    static const struct column columns[] = {{"probe", "work", NULL, NULL},
+                                            {"time", "", NULL, NULL},
+                                            {"error", "error_max", "%.1e", NULL},
+                                            {"off by", "matrix_deviation", "%.1e", NULL},
+                                            {0}};
+    struct table *table = table_create("probe", columns);
+    for (int work = 0; work < PROBE_WORKS; ++work)
+        TABLE_ROW(table, cell_text(work_names[work]), cell_time(&limit->times[work], 1),
+                  cell_number(probe_error(limit->probe)),
+                  cell_number(probe_matrix_deviation(limit->probe, context)));
+    return table;
 }
-
-/* ---- On a terminal --------------------------------------------------------------------------- */
 
 static void print_times(const struct limit *limit)
 {
@@ -59,8 +186,8 @@ static void print_times(const struct limit *limit)
                                               {0}};
     struct table *table = table_create("", columns), *shares = table_create("", of_shares);
     TABLE_ROW(table, cell_text(table_text("library, %s", library_isa())),
-              cell_time(&limit->library[0], 1), cell_time(&limit->library[1], 1),
-              cell_time(&limit->library[2], 1));
+              cell_time(&limit->times[LIBRARY], 1), cell_time(&limit->times[LIBRARY + 1], 1),
+              cell_time(&limit->times[LIBRARY + 2], 1));
     for (int finished = 0; finished < 2; ++finished) {
         table_section(table, finished ? "limit: reduced, inverted, formed" : "limit: sums alone");
         table_section(shares, table_text("share of the limit, %s [%%]", stage_names[finished]));
@@ -68,9 +195,9 @@ static void print_times(const struct limit *limit)
             struct cell cells[LIMIT_WORKS + 1] = {cell_text(limit->sets[set]->name)},
                                             percent[LIMIT_WORKS + 1] = {cells[0]};
             for (int work = 0; work < LIMIT_WORKS; ++work) {
-                const struct samples *fastest = limit_of(limit, set, work, finished);
-                cells[work + 1] = cell_time(fastest, 1);
-                percent[work + 1] = cell_number(share_of(limit, fastest, work));
+                const struct samples *times = times_of(limit, set, work, finished);
+                cells[work + 1] = cell_time(&times[fastest_of(times)], 1);
+                percent[work + 1] = cell_number(share_of(limit, &times[fastest_of(times)], work));
             }
             table_add(table, cells, LIMIT_WORKS + 1);
             table_add(shares, percent, LIMIT_WORKS + 1);
@@ -78,68 +205,6 @@ static void print_times(const struct limit *limit)
     }
     table_print(table);
     table_print(shares);
-}
-
-static void print_arrangements(const struct limit *limit)
-{
-    static const struct column columns[] = {{"fastest arrangement, sums", NULL, NULL, NULL},
-                                            {"", NULL, NULL, NULL},
-                                            {"", NULL, NULL, NULL},
-                                            {0}};
-    struct table *table = table_create("", columns);
-    for (int set = 0; set < limit->set_count; ++set)
-        for (int work = 0; work < LIMIT_WORKS; ++work)
-            TABLE_ROW(table, cell_text(limit->sets[set]->name), cell_text(work_names[work]),
-                      cell_text(describe_arrangement(fastest_of(&limit->times[set][work], 0))));
-    table_print(table);
-}
-
-static void print_packed(const struct limit *limit)
-{
-    for (int set = 0; set < limit->set_count; ++set) {
-        double worst = 0;
-        for (int work = 0; work < LIMIT_WORKS; ++work)
-            worst = numbers_larger(worst, limit->times[set][work].deviation);
-        printf("%-11s%s: %.1f pairs in %d vectors a target, %.0f kB, off double by %.1e\n",
-               set ? "" : "packed", limit->sets[set]->name, limit->packed_pairs[set],
-               limit->slots[set] / limit->sets[set]->lanes, limit->kilobytes[set], worst);
-    }
-}
-
-static void print_results(const struct limit *limit, const struct table *probe)
-{
-    const struct settings *settings = &limit->settings;
-    text_print_lattice(settings, limit->count, limit->probe_pairs);
-    printf("; KGC, cubic spline, f32\n");
-    text_print_machine(settings->threads);
-    if (!limit->probe_only)
-        print_packed(limit);
-    printf("probe      int32 CSR, sorted 16-byte rows; error of its Jacobians, and what its "
-           "matrices are off the library's\n"
-           "times      median (min-max) of %d rounds, ms for all targets\n",
-           settings->repetitions);
-    text_print_if_busy(&limit->probe[PROBE_GRADIENT], settings->threads);
-    table_print(probe);
-    if (limit->probe_only)
-        return;
-    print_times(limit);
-    print_arrangements(limit);
-}
-
-/* ---- For programs ---------------------------------------------------------------------------- */
-
-static struct table *table_of_probe(const struct limit *limit)
-{
-    static const struct column columns[] = {{"probe", "work", NULL, NULL},
-                                            {"time", "", NULL, NULL},
-                                            {"error", "error_max", "%.1e", NULL},
-                                            {"off by", "matrix_deviation", "%.1e", NULL},
-                                            {0}};
-    struct table *table = table_create("probe", columns);
-    for (int work = 0; work < PROBE_WORKS; ++work)
-        TABLE_ROW(table, cell_text(work_names[work]), cell_time(&limit->probe[work], 1),
-                  cell_number(limit->probe_error), cell_number(limit->probe_deviation));
-    return table;
 }
 
 /* Every arrangement of every set, and the library, whose share of the limit stands with the limit.
@@ -153,33 +218,78 @@ static struct table *table_of_arrangements(const struct limit *limit)
         {NULL, "is_limit", NULL, NULL}, {NULL, "percent_of_library", NULL, NULL},
         {NULL, "vectors", NULL, NULL},  {0}};
     struct table *table = table_create("limit", columns);
-    for (int n = 0; n < LIMIT_WORKS * 2 * limit->set_count * LIMIT_ARRANGEMENTS; ++n) {
-        const int k = n % LIMIT_ARRANGEMENTS, set = n / LIMIT_ARRANGEMENTS % limit->set_count;
-        const int stage = n / LIMIT_ARRANGEMENTS / limit->set_count % 2;
-        const int work = n / LIMIT_ARRANGEMENTS / limit->set_count / 2;
-        const struct limit_times *times = &limit->times[set][work];
-        const struct samples *samples = &times->arrangements[stage][k];
+    for (int n = 0; n < limit->set_count * SET_ITEMS; ++n) {
+        const int k = n % LIMIT_ROOTS, set = n / SET_ITEMS;
+        const int stage = n / LIMIT_ROOTS % 2, work = n / LIMIT_ROOTS / 2 % LIMIT_WORKS;
+        const struct samples *times = times_of(limit, set, work, stage);
         TABLE_ROW(table, cell_text(work_names[work]), cell_text(stage_names[stage]),
-                  cell_text(limit->sets[set]->name), cell_text(describe_arrangement(k)),
-                  cell_time(samples, 1), cell_number(times->deviation),
-                  cell_number(k == fastest_of(times, stage)),
-                  cell_number(share_of(limit, samples, work)),
-                  cell_number((double)limit->slots[set] / limit->sets[set]->lanes));
+                  cell_text(limit->sets[set]->name), cell_text(arrangements[k]),
+                  cell_time(&times[k], 1), cell_number(limit->deviation[set][work]),
+                  cell_number(k == fastest_of(times)),
+                  cell_number(share_of(limit, &times[k], work)),
+                  cell_number((double)limit->packed[set][0].data.slots / limit->sets[set]->lanes));
     }
     for (int work = 0; work < LIMIT_WORKS; ++work)
         TABLE_ROW(table, cell_text(work_names[work]), cell_text("library"), cell_none(),
-                  cell_none(), cell_time(&limit->library[work], 1), cell_none(), cell_none(),
-                  cell_none(), cell_none());
+                  cell_none(), cell_time(&limit->times[LIBRARY + work], 1), cell_none(),
+                  cell_none(), cell_none(), cell_none());
     return table;
+}
+
+/* What each set goes through, and which arrangement of its sums is the fastest. */
+static void print_sets(const struct limit *limit)
+{
+    for (int set = 0; set < limit->set_count; ++set) {
+        const struct packed *packed = &limit->packed[set][0];
+        double worst = 0;
+        for (int work = 0; work < LIMIT_WORKS; ++work)
+            worst = numbers_larger(worst, limit->deviation[set][work]);
+        printf("%-11s%s: %.1f pairs in %d vectors a target, %.0f kB, off double by %.1e\n",
+               set ? "" : "packed", limit->sets[set]->name, packed->pairs,
+               packed->data.slots / packed->lanes, packed->kilobytes, worst);
+    }
+}
+
+static void print_arrangements(const struct limit *limit)
+{
+    static const struct column columns[] = {{"fastest arrangement, sums", NULL, NULL, NULL},
+                                            {"", NULL, NULL, NULL},
+                                            {"", NULL, NULL, NULL},
+                                            {0}};
+    struct table *table = table_create("", columns);
+    for (int set = 0; set < limit->set_count; ++set)
+        for (int work = 0; work < LIMIT_WORKS; ++work)
+            TABLE_ROW(table, cell_text(limit->sets[set]->name), cell_text(work_names[work]),
+                      cell_text(arrangements[fastest_of(times_of(limit, set, work, 0))]));
+    table_print(table);
+}
+
+static void report_results(const struct limit *limit)
+{
+    const struct settings *settings = &limit->settings;
+    struct report *report = report_create(settings);
+    report_lattice(report, limit->scene.count, probe_pairs(limit->probe));
+    printf("; KGC, cubic spline, f32\n");
+    report_machine(report);
+    if (!limit->probe_only)
+        print_sets(limit);
+    printf("probe      int32 CSR, sorted 16-byte rows; error of its Jacobians, and what its "
+           "matrices are off the library's\n"
+           "times      median (min-max) of %d rounds, ms for all targets\n",
+           settings->repetitions);
+    report_if_busy(report, &limit->times[PROBE_GRADIENT]);
+    report_table(report, table_of_probe(limit, limit->scene.context));
+    if (!limit->probe_only) {
+        print_times(limit);
+        print_arrangements(limit);
+        report_times(report, table_of_arrangements(limit));
+    }
+    report_write(report);
 }
 
 int command_limit(int argc, char **argv)
 {
-    struct limit limit = {.settings = {.particles = 1000000,
-                                       .threads = machine_threads(),
-                                       .repetitions = 15,
-                                       .support = 2,
-                                       .jitter = 0.2}};
+    struct limit limit = {.settings = settings_default(1000000, 15, NULL)};
     const struct command_option options[] = {
         {"probe", 0, NULL, "only the fixed yardstick by which machines are compared", OPTION_FLAG,
          &limit.probe_only, 0, 0, NULL, NULL},
@@ -190,14 +300,7 @@ int command_limit(int argc, char **argv)
                   "instruction set in every arrangement of the loop, and the library beside it: "
                   "which share of the arithmetic limit the library reaches.",
                   argc, argv);
-    limit_measure(&limit);
-    const struct table *probe = table_of_probe(&limit);
-    print_results(&limit, probe);
-    struct report *report = report_create(limit.settings.threads);
-    report_lattice(report, &limit.settings, limit.count, limit.probe_pairs);
-    report_table(report, probe);
-    if (!limit.probe_only)
-        report_table(report, table_of_arrangements(&limit));
-    report_write(report, limit.settings.json);
+    measure(&limit);
+    report_results(&limit);
     return EXIT_SUCCESS;
 }

@@ -6,17 +6,15 @@
 
 struct packed {
     struct limit_data data;
-    float *memory; /* of all its arrays */
     int32_t lanes;
-    double pairs;      /* a target, on average */
-    double kilobytes;  /* read by the loops */
-    double *reference; /* [target][15]: C, then J, in double from the same floats */
+    double pairs;                                /* a target, on average */
+    double kilobytes;                            /* read by the loops */
+    double reference[LIMIT_TARGETS][LIMIT_SUMS]; /* C, then J, in double from the same floats */
 };
 
-/* support in spacings; room for the mean number of pairs, rounded up to whole vectors. */
+/* support in spacings; room for the mean number of pairs, rounded up to whole vectors. Held. */
 struct packed packed_create(const struct limit_set *set, double support, double jitter,
                             double mean_pairs);
-void packed_destroy(struct packed *packed);
 
 /* Largest relative difference between finished results and the reference, Frobenius norm. */
 double packed_deviation(const struct packed *packed, enum limit_work work);

@@ -14,43 +14,40 @@ enum {
     LIMIT_COMPONENTS = 7, /* of a pair: x y z (units of H), 6 sigma V/H^3, field a b c */
     LIMIT_OWN = 6,        /* of a target: x y z, field a b c */
     LIMIT_SUMS = 15,      /* xx xy xz yy yz zz, then the field's ax ay az bx by bz cx cy cz */
-    LIMIT_LANES_MOST = 16,
-    LIMIT_SLOTS_MOST = 2400 /* pairs of a target */
+    LIMIT_LANES_MOST = 16
 };
 
-/* How the loop is arranged; the fastest counts. */
-struct limit_arrangement {
-    bool lanes_are_targets; /* else the lanes are pairs of one target, and sums need reduction */
-    bool by_newton; /* reciprocal root by estimate and Newton step, else sqrt and division */
-    bool in_passes; /* weights of a vector's worth of targets first, then their sums */
+/* The faster one counts. Each lane is a target, and weights of all its pairs come before their
+ * sums: lanes that are pairs of one target, and one loop for both, were slower everywhere. */
+enum limit_root {
+    LIMIT_SQUARE_ROOT /* and division */,
+    LIMIT_NEWTON /* and estimate */,
+    LIMIT_ROOTS
 };
-enum { LIMIT_ARRANGEMENTS = 8 };
-struct limit_arrangement limit_arrangement(int index);
 
-/* One thread's data. Pairs beyond a target's own have volume 0. */
+/* One thread's data; group: as many targets as lanes. Pairs beyond a target's own have volume 0. */
 struct limit_data {
-    int32_t slots;      /* pairs of a target, a whole number of vectors */
-    float *by_target;   /* [target][component][slot] */
-    float *by_lane;     /* [group][slot][component][lane], group: as many targets as lanes */
-    float *own;         /* [target][own] */
-    float *own_by_lane; /* [group][own][lane] */
+    int32_t slots;      /* pairs of a target */
+    float *pairs;       /* [group][slot][component][lane] */
+    float *own;         /* [group][own][lane] */
     float *corrections; /* [group][6][lane] */
-    float *weights;     /* room for slots x LIMIT_LANES_MOST */
-    float *sums;        /* [target of a group][sum][lane], or in lanes [sum][lane] */
+    float *weights;     /* room for [slot][lane] */
+    float *sums;        /* [sum][lane] */
     float *results;     /* [group][15][lane]: C, then J */
 };
 
 struct limit_set {
     const char *name;
     int32_t lanes;
-    /* Goes through so many targets, round and round. finished: sums are reduced, C inverted or
-     * J = B C formed, and left in results; else sums stay where they are. */
-    void (*run)(const struct limit_data *data, enum limit_work work, int arrangement, bool finished,
-                int32_t targets);
+    /* Goes through so many targets, round and round. finished: C is inverted or J = B C formed, and
+     * left in results; else sums stay where they are. */
+    void (*run)(const struct limit_data *data, enum limit_work work, enum limit_root root,
+                bool finished, int32_t targets);
 };
 
 /* The sets that this processor can run, fastest last; the count is returned. */
-int limit_sets(const struct limit_set *sets[], int room);
+enum { LIMIT_SETS_MOST = 4 };
+int limit_sets(const struct limit_set *sets[LIMIT_SETS_MOST]);
 
 extern const struct limit_set limit_set_base, limit_set_v3, limit_set_v4_narrow, limit_set_v4;
 #endif

@@ -2,35 +2,21 @@
 #include "probe.h"
 #include "lattice.h"
 #include "probe_passes.h"
-#include "report/processor.h"
 #include "team.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-enum { CACHE_LINE = 64, PADDING = 16 };
+enum { PADDING = 16 };
 
 static const double pi = 3.14159265358979323846;
 
 struct probe {
     int32_t count;
     float (*positions)[4], (*fields)[4];
-    int64_t *offsets;
-    int32_t *indices;
+    struct library_lists lists;
     float *corrections, *jacobians;
     probe_pass *passes[PROBE_WORKS], *pass;
 };
-
-static void *allocate_lines(int64_t count, int64_t size)
-{
-    const int64_t bytes = (count * size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
-    void *memory = aligned_alloc(CACHE_LINE, (size_t)bytes);
-    if (!memory) {
-        fprintf(stderr, "sphgrad-bench: out of memory (%lld bytes)\n", (long long)bytes);
-        exit(EXIT_FAILURE);
-    }
-    return memory;
-}
 
 /* Cells as wide as H, rows of them along x. */
 static int32_t cell_of(const struct numbers *positions, int32_t i, int32_t cells)
@@ -71,31 +57,11 @@ static const sphg_scheme probe_scheme = {.support_radius = 1};
 
 static sphg_neighbors *search(const struct probe *probe, sphg_context *context)
 {
-    sphg_neighbors *neighbors = NULL;
-    const sphg_geometry geometry = {
-        .sources = sphg_view_f32(probe->positions[0], sizeof *probe->positions),
-        .source_count = probe->count,
-        .target_count = probe->count};
-    library_check(context, sphg_neighbors_create(context, &neighbors));
+    sphg_neighbors *neighbors = library_neighbors(context);
+    const sphg_geometry geometry =
+        sphg_all(sphg_view_f32(probe->positions[0], sizeof *probe->positions), probe->count);
     library_check(context, sphg_neighbors_search(context, neighbors, &probe_scheme, &geometry));
     return neighbors;
-}
-
-static void find_lists(struct probe *probe, sphg_context *context)
-{
-    sphg_neighbors *neighbors = search(probe, context);
-    const sphg_sources sources = {.neighbors = neighbors};
-    sphg_pairs pairs = {.offsets = probe->offsets};
-    library_check(context, sphg_pair_gradients(context, &probe_scheme, &sources, NULL,
-                                               sphg_absent(), &pairs));
-    probe->indices = allocate_lines(pairs.count + PADDING, sizeof *probe->indices);
-    for (int32_t k = 0; k < PADDING; ++k)
-        probe->indices[pairs.count + k] = 0;
-    pairs.indices = probe->indices;
-    pairs.capacity = pairs.count;
-    library_check(context, sphg_pair_gradients(context, &probe_scheme, &sources, NULL,
-                                               sphg_absent(), &pairs));
-    sphg_neighbors_destroy(neighbors);
 }
 
 static void choose_passes(struct probe *probe)
@@ -103,7 +69,7 @@ static void choose_passes(struct probe *probe)
     probe->passes[PROBE_MATRICES] = probe_matrices_base;
     probe->passes[PROBE_GRADIENT] = probe_gradient_base;
 #ifdef BENCH_HAVE_X86
-    if (processor_has_v3()) {
+    if (library_runs(SPHG_ISA_X86_V3)) {
         probe->passes[PROBE_MATRICES] = probe_matrices_v3;
         probe->passes[PROBE_GRADIENT] = probe_gradient_v3;
     }
@@ -114,32 +80,19 @@ struct probe *probe_create(sphg_context *context, int32_t side, double support, 
 {
     const struct lattice lattice = {
         .dimension = 3, .side = side, .spacing = 1 / support, .jitter = jitter};
-    struct probe *probe = allocate_or_exit(1, sizeof *probe);
+    struct probe *probe = allocate_held(1, sizeof *probe);
     struct numbers positions = numbers_create(SPHG_F32, lattice_count(&lattice), 3);
     const int32_t count = probe->count = positions.count;
     lattice_fill(&lattice, &positions);
-    probe->positions = allocate_lines(count, sizeof *probe->positions);
-    probe->fields = allocate_lines(count, sizeof *probe->fields);
-    probe->offsets = allocate_lines((int64_t)count + 1, sizeof *probe->offsets);
-    probe->corrections = allocate_lines((int64_t)count + PADDING, 6 * sizeof(float));
-    probe->jacobians = allocate_lines((int64_t)count + PADDING, 9 * sizeof(float));
+    probe->positions = allocate_lines((size_t)count, sizeof *probe->positions);
+    probe->fields = allocate_lines((size_t)count, sizeof *probe->fields);
+    probe->corrections = allocate_lines((size_t)count + PADDING, 6 * sizeof(float));
+    probe->jacobians = allocate_lines((size_t)count + PADDING, 9 * sizeof(float));
     sort(probe, &positions, (int32_t)(side / support) + 4, 48 / pi / (support * support * support));
     set_fields(probe);
-    find_lists(probe, context);
+    probe->lists = library_lists(context, &probe_scheme, search(probe, context), count);
     choose_passes(probe);
-    numbers_destroy(&positions);
     return probe;
-}
-
-void probe_destroy(struct probe *probe)
-{
-    free(probe->positions);
-    free(probe->fields);
-    free(probe->offsets);
-    free(probe->indices);
-    free(probe->corrections);
-    free(probe->jacobians);
-    free(probe);
 }
 
 int32_t probe_count(const struct probe *probe)
@@ -149,7 +102,7 @@ int32_t probe_count(const struct probe *probe)
 
 double probe_pairs(const struct probe *probe)
 {
-    return (double)probe->offsets[probe->count] / probe->count;
+    return (double)probe->lists.count / probe->count;
 }
 
 static void run_share(void *data, int32_t begin, int32_t end)
@@ -157,8 +110,8 @@ static void run_share(void *data, int32_t begin, int32_t end)
     const struct probe *probe = data;
     const struct probe_arrays arrays = {.positions = (const float(*)[4])probe->positions,
                                         .fields = (const float(*)[4])probe->fields,
-                                        .offsets = probe->offsets,
-                                        .indices = probe->indices,
+                                        .offsets = probe->lists.offsets,
+                                        .indices = probe->lists.indices,
                                         .corrections = probe->corrections,
                                         .jacobians = probe->jacobians};
     probe->pass(&arrays, begin, end, probe->count);
@@ -191,22 +144,18 @@ static double matrix_deviation(const struct probe *probe, const float *expected,
 
 double probe_matrix_deviation(const struct probe *probe, sphg_context *context)
 {
-    sphg_neighbors *neighbors = search(probe, context);
     const float volume = probe->positions[0][3] * (float)(pi / 48); /* sigma is 8 / pi */
-    const sphg_sources sources = {.neighbors = neighbors, .volume = sphg_same_f32(&volume)};
-    float(*corrections)[6] = allocate_or_exit((size_t)probe->count, sizeof *corrections);
-    uint8_t *ranks = allocate_or_exit((size_t)probe->count, 1);
+    const sphg_sources sources = {.neighbors = search(probe, context),
+                                  .volume = sphg_same_f32(&volume)};
+    float(*corrections)[6] = allocate_held((size_t)probe->count, sizeof *corrections);
+    uint8_t *ranks = allocate_held((size_t)probe->count, 1);
     double most = 0;
     library_check(context, sphg_correction(context, &probe_scheme, &sources, NULL,
                                            sphg_view_f32(corrections[0], sizeof *corrections),
                                            sphg_view_u8(ranks, 1)));
-    for (int32_t i = 0; i < probe->count; ++i) {
-        const double deviation = ranks[i] == 3 ? matrix_deviation(probe, corrections[i], i) : 0;
-        most = numbers_larger(most, deviation);
-    }
-    sphg_neighbors_destroy(neighbors);
-    free(corrections);
-    free(ranks);
+    for (int32_t i = 0; i < probe->count; ++i)
+        if (ranks[i] == 3)
+            most = numbers_larger(most, matrix_deviation(probe, corrections[i], i));
     return most;
 }
 
@@ -222,7 +171,7 @@ double probe_error(const struct probe *probe)
             const double d = (double)jacobian[k * lanes] - expected[k];
             squares += d * d / 6;
         }
-        most = sqrt(squares) <= most ? most : sqrt(squares);
+        most = numbers_larger(most, sqrt(squares));
     }
     return most;
 }

@@ -10,9 +10,8 @@ enum probe_work { PROBE_MATRICES, PROBE_GRADIENT, PROBE_WORKS };
 
 struct probe;
 
-/* A cube of side^3 particles, jittered. The lists are found with the library, untimed. */
+/* A cube of side^3 particles, jittered. The lists are found with the library, untimed. Held. */
 struct probe *probe_create(sphg_context *context, int32_t side, double support, double jitter);
-void probe_destroy(struct probe *probe);
 
 int32_t probe_count(const struct probe *probe);
 double probe_pairs(const struct probe *probe); /* a particle */

@@ -48,6 +48,31 @@ INLINE void load_columns(const float (*rows)[4], const int32_t *indices, vec col
 #endif
 }
 
+/* The lanes of v[k] summed into lane k, by halving: at each level a lane whose number has the
+ * level's bit takes over from the second of two vectors, the others from the first. */
+INLINE vec sum_lanes(const vec v[LANES])
+{
+#if VECTOR_BYTES == 32
+    vec f[4];
+    for (int k = 0; k < 4; ++k)
+        f[k] = __builtin_shufflevector(v[k], v[k + 4], 0, 1, 2, 3, 12, 13, 14, 15) +
+               __builtin_shufflevector(v[k], v[k + 4], 4, 5, 6, 7, 8, 9, 10, 11);
+    vec g[2];
+    for (int k = 0; k < 2; ++k)
+        g[k] = __builtin_shufflevector(f[k], f[k + 2], 0, 1, 10, 11, 4, 5, 14, 15) +
+               __builtin_shufflevector(f[k], f[k + 2], 2, 3, 8, 9, 6, 7, 12, 13);
+    return __builtin_shufflevector(g[0], g[1], 0, 9, 2, 11, 4, 13, 6, 15) +
+           __builtin_shufflevector(g[0], g[1], 1, 8, 3, 10, 5, 12, 7, 14);
+#else
+    vec g[2];
+    for (int k = 0; k < 2; ++k)
+        g[k] = __builtin_shufflevector(v[k], v[k + 2], 0, 1, 6, 7) +
+               __builtin_shufflevector(v[k], v[k + 2], 2, 3, 4, 5);
+    return __builtin_shufflevector(g[0], g[1], 0, 5, 2, 7) +
+           __builtin_shufflevector(g[0], g[1], 1, 4, 3, 6);
+#endif
+}
+
 /* x_ij and the weight of LANES pairs, of which the first `left` count. */
 INLINE vec weigh(const struct probe_arrays *arrays, const int32_t *indices, int64_t left,
                  const vec own[3], vec x[3])

@@ -2,8 +2,6 @@
 /* The command `table1`. */
 #include "table1.h"
 #include "commands.h"
-#include "report/machine.h"
-#include <math.h>
 #include <stdlib.h>
 
 static const struct table1_method paper[TABLE1_METHODS] = {
@@ -81,7 +79,8 @@ static void read_options(struct table1 *table, int argc, char **argv)
     check_combination(table, particles_given, jitter_given);
     if (!source->input && settings->support <= 0)
         settings->support = 2;
-    source->side = (int32_t)lround(cbrt((double)settings->particles));
+    source->dimension = 3;
+    source->side = settings_side(settings->particles, 3);
     source->jitter = settings->jitter;
     source->shuffled = order == 1;
     source->precision = settings->precision;
@@ -89,8 +88,8 @@ static void read_options(struct table1 *table, int argc, char **argv)
 
 int command_table1(int argc, char **argv)
 {
-    struct table1 table = {
-        .settings = {.particles = 1000000, .threads = machine_threads(), .repetitions = 9}};
+    struct table1 table = {.settings = settings_default(1000000, 9, NULL)};
+    table.settings.support = table.settings.jitter = 0; /* of a lattice 2, of a file as it says */
     for (int k = 0; k < TABLE1_METHODS; ++k)
         table.methods[k] = paper[k];
     read_options(&table, argc, argv);
@@ -98,6 +97,5 @@ int command_table1(int argc, char **argv)
     table.support_radius = table.settings.support * (table.source.input ? 1 : lattice_spacing);
     table1_measure(&table);
     table1_report(&table);
-    particles_destroy(&table.particles);
     return EXIT_SUCCESS;
 }

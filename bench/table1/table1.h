@@ -4,23 +4,27 @@
 #define SPHGRAD_BENCH_TABLE1_H
 #include "particles/particles.h"
 #include "report/timing.h"
-#include "settings.h"
 #include "study/probe.h"
 
 enum { TABLE1_METHODS = 6 };
 
-enum table1_work { TABLE1_MATRIX, TABLE1_GRADIENT, TABLE1_FUSED, TABLE1_WORKS };
-
+/* Untimed: the field v = (-y, x, 2z), in 2D (-y, x), max |J_i - J|_F / |J|_F over particles of full
+ * rank (plain SPH, which has no rank: over all); NaN if there are none. */
 struct table1_method {
     sphg_method method;
     double paper_matrix, paper_gradient; /* [ms], 32 cores of a Threadripper PRO 5975WX */
-    /* [kept]: with weights that a sweep before kept; linearised methods only. */
-    struct samples times[2][TABLE1_WORKS];
-    /* Untimed: the field v = (-y, x, 2z), in 2D (-y, x), max |J_i - J|_F / |J|_F over particles of
-     * full rank (plain SPH, which has no rank: over all); NaN if there are none. */
     double gradient_error, fused_error, kept_error;
     int64_t not_finite; /* numbers in any Jacobian, of v and of the timed field */
     sphg_stats stats;
+};
+
+/* Timed: the search; each method's works but the search, without and with weights that a sweep
+ * before kept (linearised methods only); the probe. */
+enum {
+    TABLE1_SEARCH,
+    TABLE1_FIRST,
+    TABLE1_PROBE = TABLE1_FIRST + 2 * TABLE1_METHODS * WORKS,
+    TABLE1_ITEMS = TABLE1_PROBE + PROBE_WORKS
 };
 
 struct table1 {
@@ -31,16 +35,21 @@ struct table1 {
     sphg_neighbors_info neighbors;
     double volume_ratio; /* median of the file's volumes over 1 / sum W */
     double first_search; /* [ms], with all allocations */
-    struct samples search;
-    struct samples probe[PROBE_WORKS]; /* for as many particles as its cube holds */
-    int32_t probe_count;
+    int32_t probe_count; /* particles that the probe's cube holds */
     struct table1_method methods[TABLE1_METHODS];
+    struct samples times[TABLE1_ITEMS];
 };
+
+/* Which of the times. */
+static inline int table1_item(int kept, int method, enum work work)
+{
+    return TABLE1_FIRST + (kept * TABLE1_METHODS + method) * WORKS + (int)work;
+}
 
 /* Whether a method forms weights that neighbours can keep. */
 bool table1_keeps_weights(const struct table1_method *one);
 
-/* Opens the library, warms up, measures, closes. */
+/* Opens the library, warms up, measures. */
 void table1_measure(struct table1 *table);
 
 void table1_report(const struct table1 *table);

@@ -1,216 +1,112 @@
 /* SPDX-License-Identifier: MIT */
-/* The measurements of table1. Each repetition goes once through everything: the search, then each
+/* The measurements of table1. Each round goes once through everything: the search, then each
  * method's three calls. So a slow second of the machine hits all columns alike. */
-#include "library.h"
 #include "particles/linear_field.h"
 #include "report/progress.h"
-#include "settings.h"
 #include "table1.h"
 #include <math.h>
 #include <stdlib.h>
 
-/* What all measurements share. */
 struct bench {
     struct table1 *table;
-    sphg_context *context;
-    sphg_neighbors *neighbors;
-    sphg_neighbors *keeping; /* the same pairs, with room for weights */
-    int with_weights;        /* which of both is swept */
-    struct probe *probe;
-    struct numbers corrections; /* room for the widest; each method uses the start of it */
-    struct numbers jacobians;
+    struct scene scenes[2];    /* [1]: the same pairs, with room for weights */
+    struct numbers velocities; /* of the file, or the linear field */
     uint8_t *ranks;
+    struct probe *probe;
 };
 
-static sphg_scheme scheme_of(const struct bench *bench, sphg_method method)
+/* A work of one method, on that field. */
+static void compute(const struct bench *bench, int kept, sphg_method method, enum work work,
+                    const struct numbers *field)
 {
-    return (sphg_scheme){.dimension = bench->table->particles.dimension,
-                         .method = method,
-                         .kernel = bench->table->settings.kernel,
-                         .support_radius = bench->table->support_radius};
+    struct scene scene = bench->scenes[kept];
+    scene.scheme.method = method;
+    scene.field = *field;
+    scene_run(&scene, work);
 }
 
-static sphg_sources sources_of(const struct bench *bench)
-{
-    return (sphg_sources){.neighbors = bench->with_weights ? bench->keeping : bench->neighbors,
-                          .volume = numbers_view(&bench->table->particles.volumes),
-                          .same_volumes = bench->with_weights};
-}
+/* ---- Errors ---------------------------------------------------------------------------------- */
 
-static sphg_view correction_table(const struct bench *bench, sphg_method method)
+/* What is fused says which particles could be corrected. */
+static void compute_ranks(const struct bench *bench, struct table1_method *one)
 {
-    const sphg_scheme scheme = scheme_of(bench, method);
-    struct numbers table = bench->corrections;
-    table.width = sphg_correction_width(&scheme);
-    return table.width > 0 ? numbers_view(&table) : sphg_absent();
-}
-
-static void search(struct bench *bench, sphg_neighbors *neighbors, int keep_weights)
-{
-    const struct particles *particles = &bench->table->particles;
-    const sphg_scheme scheme = scheme_of(bench, SPHG_KGC);
-    sphg_geometry geometry = library_geometry(&particles->positions, bench->jacobians.type);
-    geometry.keep_weights = keep_weights;
-    library_search(bench->context, neighbors, &scheme, &geometry);
-}
-
-static void compute_matrix(struct bench *bench, sphg_method method)
-{
-    const sphg_scheme scheme = scheme_of(bench, method);
-    const sphg_sources sources = sources_of(bench);
-    library_correct(bench->context, &scheme, &sources, correction_table(bench, method), NULL);
-}
-
-static void compute_gradient(struct bench *bench, sphg_method method, const struct numbers *field)
-{
-    const sphg_scheme scheme = scheme_of(bench, method);
-    sphg_sources sources = sources_of(bench);
-    sources.correction = correction_table(bench, method);
-    library_jacobian(bench->context, &scheme, &sources, field, &bench->jacobians);
-}
-
-/* stats, ranks: wanted where they are not NULL. */
-static void compute_fused(struct bench *bench, sphg_method method, const struct numbers *field,
-                          sphg_stats *stats, uint8_t *ranks)
-{
-    const sphg_scheme scheme = scheme_of(bench, method);
-    const sphg_sources sources = sources_of(bench);
-    const sphg_view at_sources = numbers_view(field);
+    struct scene scene = bench->scenes[0];
+    const sphg_sources sources = scene_sources(&scene);
+    const sphg_view at_sources = numbers_view(&scene.field);
     const sphg_field wanted = {.shape = SPHG_VECTOR,
-                               .form = SPHG_DIFFERENCE,
                                .at_sources = &at_sources,
-                               .gradient = numbers_view(&bench->jacobians)};
+                               .gradient = numbers_view(&scene.jacobians)};
     const sphg_request request = {.sources = &sources,
                                   .fields = &wanted,
                                   .set_count = 1,
                                   .field_count = 1,
-                                  .rank = ranks ? sphg_view_u8(ranks, 1) : sphg_absent(),
-                                  .stats = stats};
-    library_check(bench->context, sphg_evaluate(bench->context, &scheme, &request));
-}
-
-static int64_t count_not_finite(const struct numbers *numbers)
-{
-    int64_t count = 0;
-    for (int32_t i = 0; i < numbers->count; ++i)
-        for (int32_t k = 0; k < numbers->width; ++k)
-            count += !isfinite(numbers_get(numbers, i, k));
-    return count;
+                                  .rank = sphg_view_u8(bench->ranks, 1),
+                                  .stats = &one->stats};
+    scene.scheme.method = one->method;
+    scene_evaluate(&scene, &request);
 }
 
 /* Plain SPH corrects nothing and has no rank: all particles count. */
-static double largest_error(const struct bench *bench, sphg_method method)
+static double take_error(const struct bench *bench, struct table1_method *one)
 {
-    return linear_field_worst(&bench->jacobians, method == SPHG_PLAIN ? NULL : bench->ranks);
+    const struct numbers *jacobians = &bench->scenes[0].jacobians;
+    one->not_finite += linear_field_not_finite(jacobians);
+    return linear_field_worst(jacobians, one->method == SPHG_PLAIN ? NULL : bench->ranks);
 }
 
-static void measure_errors(struct bench *bench, struct table1_method *one,
-                           const struct numbers *linear_field)
+static void measure_errors(const struct bench *bench, struct table1_method *one)
 {
-    const sphg_method method = one->method;
-    const int corrected = method != SPHG_PLAIN;
-    compute_fused(bench, method, linear_field, corrected ? &one->stats : NULL,
-                  corrected ? bench->ranks : NULL);
-    one->fused_error = largest_error(bench, method);
-    one->not_finite += count_not_finite(&bench->jacobians);
-    if (corrected)
-        compute_matrix(bench, method);
-    compute_gradient(bench, method, linear_field);
-    one->gradient_error = largest_error(bench, method);
-    one->not_finite += count_not_finite(&bench->jacobians);
-    if (!table1_keeps_weights(one))
-        return;
-    bench->with_weights = 1;
-    compute_matrix(bench, method); /* which keeps them */
-    compute_gradient(bench, method, linear_field);
-    one->kept_error = largest_error(bench, method);
-    bench->with_weights = 0;
-}
-
-static void warm_up(struct bench *bench)
-{
-    const struct particles *particles = &bench->table->particles;
-    struct numbers linear_field =
-        numbers_create(particles->velocities.type, particles->count, particles->dimension);
-    linear_field_fill(&particles->positions, &linear_field);
-    for (int k = 0; k < TABLE1_METHODS; ++k) {
-        struct table1_method *one = &bench->table->methods[k];
-        progress_show("warm-up: %s", method_names[one->method]);
-        measure_errors(bench, one, &linear_field);
-        if (particles->own_velocities) {
-            compute_gradient(bench, one->method, &particles->velocities);
-            one->not_finite += count_not_finite(&bench->jacobians);
-        }
-    }
-    numbers_destroy(&linear_field);
-}
-
-static void run(struct bench *bench, sphg_method method, enum table1_work work)
-{
-    const struct numbers *field = &bench->table->particles.velocities;
-    if (work == TABLE1_MATRIX)
-        compute_matrix(bench, method);
-    else if (work == TABLE1_GRADIENT)
-        compute_gradient(bench, method, field);
+    const struct numbers *linear = &bench->scenes[0].field;
+    progress_show("warm-up: %s", method_names[one->method]);
+    if (one->method == SPHG_PLAIN)
+        compute(bench, 0, one->method, WORK_FUSED, linear);
     else
-        compute_fused(bench, method, field, NULL, NULL);
-}
-
-/* Plain SPH has no matrix, and nothing to be fused. Weights of one scheme are kept at a time: those
- * of this method are formed first, untimed. */
-static void time_method(struct bench *bench, struct table1_method *one, int kept)
-{
-    bench->with_weights = kept;
-    if (kept)
-        compute_matrix(bench, one->method);
-    for (int work = 0; work < TABLE1_WORKS; ++work) {
-        if (one->method == SPHG_PLAIN && work != TABLE1_GRADIENT)
-            continue;
-        const struct moment start = now();
-        run(bench, one->method, (enum table1_work)work);
-        samples_add(&one->times[kept][work], since(start));
+        compute_ranks(bench, one);
+    one->fused_error = take_error(bench, one);
+    for (int kept = 0; kept < 1 + table1_keeps_weights(one); ++kept) {
+        if (one->method != SPHG_PLAIN)
+            compute(bench, kept, one->method, WORK_MATRICES, linear); /* keeps weights, too */
+        compute(bench, kept, one->method, WORK_GRADIENT, linear);
+        *(kept ? &one->kept_error : &one->gradient_error) = take_error(bench, one);
     }
-    bench->with_weights = 0;
+    compute(bench, 0, one->method, WORK_FUSED, &bench->velocities);
+    take_error(bench, one);
 }
 
-/* A cube of as many particles, a million at most, whatever the table is about. */
-static void prepare_probe(struct bench *bench)
-{
-    const int32_t most = 1000000, count = bench->table->particles.count;
-    progress_show("warm-up: probe");
-    bench->probe =
-        probe_create(bench->context, settings_side(count < most ? count : most, 3), 2, 0.2);
-    bench->table->probe_count = probe_count(bench->probe);
-    for (int work = 0; work < PROBE_WORKS; ++work)
-        probe_run(bench->probe, (enum probe_work)work, bench->table->settings.threads);
-}
+/* ---- Times ----------------------------------------------------------------------------------- */
 
-static void time_probe(struct bench *bench)
+/* Plain SPH has no matrix, and nothing to be fused. */
+static double run(void *data, int32_t item)
 {
-    for (int work = 0; work < PROBE_WORKS; ++work) {
-        const struct moment start = now();
-        probe_run(bench->probe, (enum probe_work)work, bench->table->settings.threads);
-        samples_add(&bench->table->probe[work], since(start));
+    const struct bench *bench = data;
+    const int place = item - TABLE1_FIRST, kept = place / WORKS / TABLE1_METHODS;
+    const enum work work = (enum work)(place % WORKS);
+    if (item == TABLE1_SEARCH) {
+        scene_run(&bench->scenes[0], WORK_SEARCH);
+        return 1;
     }
+    if (item >= TABLE1_PROBE) {
+        probe_run(bench->probe, (enum probe_work)(item - TABLE1_PROBE),
+                  bench->table->settings.threads);
+        return 1;
+    }
+    const struct table1_method *one = &bench->table->methods[place / WORKS % TABLE1_METHODS];
+    if (work == WORK_SEARCH || (one->method == SPHG_PLAIN && work != WORK_GRADIENT) ||
+        (kept && !table1_keeps_weights(one)))
+        return 0;
+    compute(bench, kept, one->method, work, &bench->velocities);
+    return 1;
 }
 
-static void repeat(struct bench *bench)
+/* Weights of one scheme are kept at a time: those of a method are formed before its first work. */
+static double prepare(void *data, int32_t item)
 {
-    struct table1 *table = bench->table;
-    for (int32_t repetition = 0; repetition < table->settings.repetitions; ++repetition) {
-        progress_show("repetition %d of %d", repetition + 1, table->settings.repetitions);
-        const struct moment start = now();
-        search(bench, bench->neighbors, 0);
-        samples_add(&table->search, since(start));
-        for (int k = 0; k < TABLE1_METHODS; ++k)
-            time_method(bench, &table->methods[k], 0);
-        for (int k = 0; k < TABLE1_METHODS; ++k)
-            if (table1_keeps_weights(&table->methods[k]))
-                time_method(bench, &table->methods[k], 1);
-        time_probe(bench);
-    }
-    progress_clear();
+    const bool first_work = item > TABLE1_FIRST && item < TABLE1_PROBE &&
+                            (item - TABLE1_FIRST) % WORKS == WORK_MATRICES;
+    return first_work && item >= table1_item(1, 0, WORK_SEARCH) ? run(data, item) : 0;
 }
+
+/* ---- The whole ------------------------------------------------------------------------------- */
 
 static double median_ratio(const struct numbers *given, const struct numbers *expected)
 {
@@ -224,55 +120,67 @@ static double median_ratio(const struct numbers *given, const struct numbers *ex
 
 /* Volumes that neither lattice nor file gave; those of a file are compared with what would have
  * been taken without them. */
-static void complete_volumes(struct bench *bench)
+static void complete_volumes(struct table1 *table, struct scene *scene)
 {
-    struct particles *particles = &bench->table->particles;
-    const sphg_scheme scheme = scheme_of(bench, SPHG_PLAIN);
-    struct numbers volumes = numbers_create(bench->jacobians.type, particles->count, 1);
-    bench->table->volume_ratio = 1;
-    if (!particles->volumes.data || bench->table->source.input)
-        library_volumes(bench->context, &scheme, bench->neighbors, &volumes);
-    if (!particles->volumes.data) {
-        particles->volumes = volumes;
+    const bool given = table->particles.volumes.count > 0;
+    table->volume_ratio = 1;
+    if (given && !table->source.input)
         return;
-    }
-    if (bench->table->source.input)
-        bench->table->volume_ratio = median_ratio(&particles->volumes, &volumes);
-    numbers_destroy(&volumes);
+    const struct numbers volumes = scene_volumes(scene);
+    if (given)
+        table->volume_ratio = median_ratio(&scene->volumes, &volumes);
+    else
+        scene->volumes = volumes;
 }
 
-static void first_search(struct bench *bench)
+static struct bench open_bench(struct table1 *table)
 {
+    const struct particles *particles = &table->particles;
+    const sphg_scheme widest = {.dimension = particles->dimension,
+                                .method = SPHG_CMLS,
+                                .kernel = table->settings.kernel,
+                                .support_radius = table->support_radius};
+    const struct numbers volumes = particles->volumes.count
+                                       ? particles->volumes
+                                       : numbers_create(field_type(table->source.precision), 1, 1);
+    struct bench bench = {.table = table,
+                          .ranks = allocate_held((size_t)particles->count, 1),
+                          .scenes = {scene_open(library_open(table->settings.threads), &widest,
+                                                particles->positions, volumes)}};
+    struct scene *scene = &bench.scenes[0];
     progress_show("warm-up: search");
     const double start = now().wall;
-    search(bench, bench->neighbors, 0);
-    bench->table->first_search = now().wall - start;
-    bench->table->neighbors = library_info(bench->context, bench->neighbors);
-    search(bench, bench->keeping, 1);
+    scene_run(scene, WORK_SEARCH);
+    table->first_search = now().wall - start;
+    table->neighbors = library_info(scene->context, scene->neighbors);
+    complete_volumes(table, scene);
+    bench.scenes[1] = scene_beside(scene);
+    bench.scenes[1].geometry.keep_weights = 1;
+    bench.scenes[1].same_volumes = true;
+    scene_run(&bench.scenes[1], WORK_SEARCH);
+    bench.velocities = particles->velocities.count ? particles->velocities : scene->field;
+    return bench;
+}
+
+/* A cube of as many particles, a million at most, whatever the table is about. */
+static void open_probe(struct bench *bench)
+{
+    const int32_t most = 1000000, count = bench->table->particles.count;
+    progress_show("warm-up: probe");
+    bench->probe = probe_create(bench->scenes[0].context,
+                                settings_side(count < most ? count : most, 3), 2, 0.2);
+    bench->table->probe_count = probe_count(bench->probe);
+    for (int work = 0; work < PROBE_WORKS; ++work)
+        run(bench, TABLE1_PROBE + work);
 }
 
 void table1_measure(struct table1 *table)
 {
-    const int32_t dimension = table->particles.dimension;
-    const sphg_scheme widest = {.dimension = dimension, .method = SPHG_CMLS, .support_radius = 1};
-    const sphg_type type = table->particles.velocities.type;
-    const int32_t count = table->particles.count;
-    struct bench bench = {.table = table, .context = library_open(table->settings.threads)};
-    bench.corrections = numbers_create(type, count, sphg_correction_width(&widest));
-    bench.jacobians = numbers_create(type, count, dimension * dimension);
-    bench.ranks = allocate_or_exit((size_t)count, 1);
-    bench.neighbors = library_neighbors(bench.context);
-    bench.keeping = library_neighbors(bench.context);
-    first_search(&bench);
-    complete_volumes(&bench);
-    prepare_probe(&bench);
-    warm_up(&bench);
-    repeat(&bench);
-    probe_destroy(bench.probe);
-    sphg_neighbors_destroy(bench.neighbors);
-    sphg_neighbors_destroy(bench.keeping);
-    sphg_context_destroy(bench.context);
-    numbers_destroy(&bench.corrections);
-    numbers_destroy(&bench.jacobians);
-    free(bench.ranks);
+    struct bench bench = open_bench(table);
+    open_probe(&bench);
+    for (int k = 0; k < TABLE1_METHODS; ++k)
+        measure_errors(&bench, &table->methods[k]);
+    rounds_measure(
+        &(struct rounds){"table1", table->settings.repetitions, TABLE1_ITEMS, run, prepare, &bench},
+        table->times);
 }

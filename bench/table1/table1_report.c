@@ -39,11 +39,11 @@ static void print_input(const struct table1 *table)
     printf("           columns %s\n", particles->columns);
     printf("           %s order, volume %s, timed field: %s\n",
            table->source.shuffled ? "shuffled" : "file's", particles->volume_origin,
-           particles->own_velocities ? "the file's velocities"
-                                     : linear_field_formula(particles->dimension));
+           particles->velocities.count ? "the file's velocities"
+                                       : linear_field_formula(particles->dimension));
 }
 
-static void print_set_up(const struct table1 *table)
+static void print_set_up(const struct table1 *table, const struct report *report)
 {
     const struct settings *settings = &table->settings;
     printf("Table 1 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933\n\n");
@@ -55,14 +55,14 @@ static void print_set_up(const struct table1 *table)
            kernel_title(settings->kernel), settings->support,
            table->source.input ? "" : " spacings", precision_names[settings->precision],
            settings->precision == PRECISION_MIXED ? ": positions f64, the rest f32" : "");
-    text_print_machine(settings->threads);
+    report_machine(report);
 }
 
 static void print_search(const struct table1 *table)
 {
     char pairs[TEXT_SIZE], median[TEXT_SIZE], least[TEXT_SIZE], most[TEXT_SIZE], first[TEXT_SIZE];
     const double count = table->particles.count;
-    const struct spread search = samples_wall(&table->search);
+    const struct spread search = samples_wall(&table->times[TABLE1_SEARCH]);
     printf("pairs      %s, %.2f a particle; %.1f bytes a particle held by the neighbours\n",
            text_grouped(table->neighbors.pairs, pairs), (double)table->neighbors.pairs / count,
            (double)table->neighbors.bytes / count);
@@ -77,23 +77,23 @@ static void print_search(const struct table1 *table)
 }
 
 /* How much longer a particle takes here than with the probe. */
-static double over_probe(const struct table1 *table, enum table1_work work, enum probe_work probe)
+static double over_probe(const struct table1 *table, enum work work, enum probe_work probe)
 {
-    const struct table1_method *kgc = &table->methods[1];
-    return samples_median(&kgc->times[0][work]) / table->particles.count /
-           (samples_median(&table->probe[probe]) / table->probe_count);
+    return samples_median(&table->times[table1_item(0, 1, work)]) / table->particles.count /
+           (samples_median(&table->times[TABLE1_PROBE + probe]) / table->probe_count);
 }
 
 static void print_probe(const struct table1 *table)
 {
+    const struct samples *probe = &table->times[TABLE1_PROBE];
     char matrices[TEXT_SIZE], gradient[TEXT_SIZE], count[TEXT_SIZE];
-    text_time(samples_median(&table->probe[PROBE_MATRICES]), matrices);
-    text_time(samples_median(&table->probe[PROBE_GRADIENT]), gradient);
+    text_time(samples_median(&probe[PROBE_MATRICES]), matrices);
+    text_time(samples_median(&probe[PROBE_GRADIENT]), gradient);
     printf("yardstick  %s and %s ms for matrices and gradient of %s particles by `limit --probe`;\n"
            "           a particle's T_mat and T_grad of KGC take %.2f and %.2f of its\n",
            matrices, gradient, text_grouped(table->probe_count, count),
-           over_probe(table, TABLE1_MATRIX, PROBE_MATRICES),
-           over_probe(table, TABLE1_GRADIENT, PROBE_GRADIENT));
+           over_probe(table, WORK_MATRICES, PROBE_MATRICES),
+           over_probe(table, WORK_GRADIENT, PROBE_GRADIENT));
 }
 
 /* ---- The table ------------------------------------------------------------------------------- */
@@ -150,18 +150,21 @@ static const struct column columns[] = {{"", "method", NULL, NULL},
                                         {"paper, T_grad [ms]", "paper_gradient", "%.2f", NULL},
                                         {0}};
 
-static void add_method(struct table *rows, const struct table1 *table,
-                       const struct table1_method *one, bool show_ranks)
+static void add_method(struct table *rows, const struct table1 *table, int method, bool show_ranks)
 {
+    const struct table1_method *one = &table->methods[method];
     struct cell cells[sizeof columns / sizeof columns[0]];
     const bool corrected = one->method != SPHG_PLAIN;
     int count = 0;
     cells[count++] = cell_text(method_names[one->method]);
-    for (int k = 0; k < 2 * TABLE1_WORKS; ++k)
-        cells[count++] = cell_time(&one->times[k / TABLE1_WORKS][k % TABLE1_WORKS], 1);
+    for (int kept = 0; kept < 2; ++kept)
+        for (int work = WORK_MATRICES; work < WORKS; ++work)
+            cells[count++] =
+                cell_time(&table->times[table1_item(kept, method, (enum work)work)], 1);
     cells[count++] = cell_none();
-    for (int work = 0; work < TABLE1_WORKS; ++work)
-        cells[count++] = cell_per_pair(table, &one->times[0][work]);
+    for (int work = WORK_MATRICES; work < WORKS; ++work)
+        cells[count++] =
+            cell_per_pair(table, &table->times[table1_item(0, method, (enum work)work)]);
     cells[count++] = cell_none();
     cells[count++] = cell_error(one->gradient_error);
     cells[count++] = corrected ? cell_error(one->fused_error) : cell_none();
@@ -219,25 +222,22 @@ static void print_footer(const struct table1 *table, bool deficient)
 /* Beside a file's particles the paper's lattice would say nothing. */
 static void draw(const struct table1 *table, const struct table *rows)
 {
-    static const char *const parts[] = {"table1/table1.gp", NULL};
     const struct settings *settings = &table->settings;
     char count[TEXT_SIZE];
     if (!settings->output)
         return;
     table_write_csv(rows, settings->output, "table1.csv");
-    const bool drawn = plot_draw(
-        settings->output, "table1.gp",
-        table_text("title = '%s particles, %s, H = %g spacings, search not included; %s, "
-                   "%s, %s'\nthreads = %d\n",
-                   text_grouped(table->particles.count, count), kernel_title(settings->kernel),
-                   settings->support, machine_cpu(), library_isa(),
-                   precision_names[settings->precision], settings->threads),
-        parts);
-    printf("\nwritten to %s: table1.csv, table1.gp%s\n", settings->output,
-           drawn ? ", table1.png" : "");
+    plot_written(settings->output, "table1/table1", "table1.csv",
+                 table_text("title = '%s particles, %s, H = %g spacings, search not included; %s, "
+                            "%s, %s'\nthreads = %d\n",
+                            text_grouped(table->particles.count, count),
+                            kernel_title(settings->kernel), settings->support, machine_cpu(),
+                            library_isa(), precision_names[settings->precision],
+                            settings->threads));
 }
 
-static void write_report(const struct table1 *table, const struct table *rows)
+static void write_report(const struct table1 *table, const struct table *rows,
+                         struct report *report)
 {
     static const struct column of_search[] = {{NULL, "search", NULL, NULL}, {0}};
     static const struct column of_probe[] = {{NULL, "matrices", NULL, NULL},
@@ -248,13 +248,12 @@ static void write_report(const struct table1 *table, const struct table *rows)
     const double count = table->particles.count;
     struct table *search = table_create("table1", of_search),
                  *probe = table_create("probe", of_probe);
-    TABLE_ROW(search, cell_time(&table->search, 1));
-    TABLE_ROW(probe, cell_time(&table->probe[PROBE_MATRICES], 1),
-              cell_time(&table->probe[PROBE_GRADIENT], 1), cell_count(table->probe_count));
-    struct report *report = report_create(settings->threads);
+    TABLE_ROW(search, cell_time(&table->times[TABLE1_SEARCH], 1));
+    TABLE_ROW(probe, cell_time(&table->times[TABLE1_PROBE + PROBE_MATRICES], 1),
+              cell_time(&table->times[TABLE1_PROBE + PROBE_GRADIENT], 1),
+              cell_count(table->probe_count));
     report_text(report, "particles_from", table->source.input ? table->source.input : "lattice");
-    report_lattice(report, settings, table->particles.count,
-                   (double)table->neighbors.pairs / count);
+    report_lattice_numbers(report, table->particles.count, (double)table->neighbors.pairs / count);
     report_number(report, "dimension", table->particles.dimension);
     report_number(report, "bytes_per_particle", (double)table->neighbors.bytes / count);
     report_text(report, "kernel", kernel_names[settings->kernel]);
@@ -262,19 +261,20 @@ static void write_report(const struct table1 *table, const struct table *rows)
     report_text(report, "order", table->source.shuffled ? "shuffled" : "lattice");
     report_number(report, "support_radius", table->support_radius);
     report_number(report, "search_first_ms", table->first_search);
-    report_table(report, search);
-    report_table(report, probe);
-    report_table(report, rows);
-    report_write(report, settings->json);
+    report_times(report, search);
+    report_times(report, probe);
+    report_times(report, rows);
+    report_write(report);
 }
 
 void table1_report(const struct table1 *table)
 {
     const bool deficient = some_are_deficient(table);
+    struct report *report = report_create(&table->settings);
     struct table *rows = table_create("table1", columns);
     for (int k = 0; k < TABLE1_METHODS; ++k)
-        add_method(rows, table, &table->methods[k], deficient || table->source.input);
-    print_set_up(table);
+        add_method(rows, table, k, deficient || table->source.input);
+    print_set_up(table, report);
     print_search(table);
     print_probe(table);
     printf("\nmedian of %d repetition%s after a warm-up, methods in turn; search not included\n\n",
@@ -283,5 +283,5 @@ void table1_report(const struct table1 *table)
     print_suspect(table);
     print_footer(table, deficient);
     draw(table, rows);
-    write_report(table, rows);
+    write_report(table, rows, report);
 }
