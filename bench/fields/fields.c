@@ -32,22 +32,20 @@ struct lattice_results {
 static void write_particles(const char *folder, const char *name, const struct study *study,
                             const double *errors)
 {
-    struct column columns[5 + 2 * WAYS] = {{NULL, "x", NULL, NULL},
-                                           {NULL, "y", NULL, NULL},
-                                           {NULL, "vx", NULL, NULL},
-                                           {NULL, "vy", NULL, NULL}};
+    const struct scene *scene = &study->scene;
+    const char *keys[2 * WAYS];
+    struct table *table = table_create("");
     for (int k = 0; k < 2 * WAYS; ++k)
-        columns[4 + k].key =
-            table_text("%s_error_%s", k < WAYS ? "gradient" : "curl", ways[k % WAYS].name);
-    struct table *table = table_create("", columns);
-    for (int32_t i = 0; i < study->scene.count; ++i) {
-        struct cell cells[4 + 2 * WAYS];
-        for (int axis = 0; axis < 2; ++axis) {
-            cells[axis] = cell_number(numbers_get(&study->scene.positions, i, axis));
-            cells[2 + axis] = cell_number(numbers_get(&study->scene.field, i, axis));
-        }
+        keys[k] = table_text("%s_error_%s", k < WAYS ? "gradient" : "curl", ways[k % WAYS].name);
+    for (int32_t i = 0; i < scene->count; ++i) {
+        struct cell cells[4 + 2 * WAYS] = {
+            cell_number(NULL, "x", NULL, numbers_get(&scene->positions, i, 0)),
+            cell_number(NULL, "y", NULL, numbers_get(&scene->positions, i, 1)),
+            cell_number(NULL, "vx", NULL, numbers_get(&scene->field, i, 0)),
+            cell_number(NULL, "vy", NULL, numbers_get(&scene->field, i, 1))};
         for (int k = 0; k < 2 * WAYS; ++k)
-            cells[4 + k] = cell_number(errors[(ptrdiff_t)k * study->scene.count + i]);
+            cells[4 + k] =
+                cell_number(NULL, keys[k], NULL, errors[(ptrdiff_t)k * scene->count + i]);
         table_add(table, cells, 4 + 2 * WAYS);
     }
     table_write_csv(table, folder, name);
@@ -88,21 +86,17 @@ static void measure(const char *folder, struct lattice_results *results)
 
 static struct table *table_of_errors(const struct lattice_results *results)
 {
-    static const struct column columns[] = {{"", NULL, NULL, NULL},
-                                            {"boundary max", NULL, "%.3e", NULL},
-                                            {"mean", NULL, "%.3e", NULL},
-                                            {"inside max", NULL, "%.3e", NULL},
-                                            {"mean", NULL, "%.3e", NULL},
-                                            {"curl max", NULL, "%.3e", NULL},
-                                            {0}};
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     for (int field = 0; field < KINDS; ++field) {
         table_section(table, study_field_formula((enum study_field)field));
         for (int k = 0; k < WAYS; ++k) {
             const struct study_errors *e = &results->errors[field][k][0];
-            TABLE_ROW(table, cell_text(ways[k].name), cell_number(e->most[STUDY_BOUNDARY]),
-                      cell_number(e->mean[STUDY_BOUNDARY]), cell_number(e->most[STUDY_INSIDE]),
-                      cell_number(e->mean[STUDY_INSIDE]), cell_number(e->curl_max));
+            TABLE_ROW(table, cell_text("", NULL, ways[k].name),
+                      cell_number("boundary max", NULL, "%.3e", e->most[STUDY_BOUNDARY]),
+                      cell_number("mean", NULL, "%.3e", e->mean[STUDY_BOUNDARY]),
+                      cell_number("inside max", NULL, "%.3e", e->most[STUDY_INSIDE]),
+                      cell_number("mean", NULL, "%.3e", e->mean[STUDY_INSIDE]),
+                      cell_number("curl max", NULL, "%.3e", e->curl_max));
         }
     }
     return table;
@@ -111,26 +105,19 @@ static struct table *table_of_errors(const struct lattice_results *results)
 /* The error falls as d^order between the two finest lattices. */
 static struct table *table_of_convergence(const struct lattice_results *results)
 {
-    static struct column columns[10];
-    const char *const halves[] = {"boundary", "inside"};
-    const int32_t side = results->setting.side;
-    columns[0] = (struct column){"convergence, trigonometric, max", NULL, NULL, NULL};
-    for (int half = 0; half < 2; ++half) {
-        columns[4 * half + 1].head = table_text("%s N = %d", halves[half], (int)side);
-        columns[4 * half + 2].head = table_text("%d", 2 * (int)side);
-        columns[4 * half + 3].head = table_text("%d", 4 * (int)side);
-        columns[4 * half + 4] = (struct column){"order", NULL, "%.2f", NULL};
-        for (int size = 0; size < SIZES; ++size)
-            columns[4 * half + 1 + size].format = "%.3e";
-    }
-    struct table *table = table_create("", columns);
+    static const char *const halves[] = {"boundary N = ", "inside N = "};
+    struct table *table = table_create("");
     for (int k = 0; k < WAYS; ++k) {
         const struct study_errors *e = results->errors[FIELD_TRIGONOMETRIC][k];
-        struct cell cells[9] = {cell_text(ways[k].name)};
+        struct cell cells[9] = {cell_text("convergence, trigonometric, max", NULL, ways[k].name)};
+        int count = 1;
         for (int half = STUDY_BOUNDARY; half <= STUDY_INSIDE; ++half) {
             for (int size = 0; size < SIZES; ++size)
-                cells[4 * half + 1 + size] = cell_number(e[size].most[half]);
-            cells[4 * half + 4] = cell_number(log2(e[1].most[half] / e[2].most[half]));
+                cells[count++] = cell_number(table_text("%s%d", size ? "" : halves[half],
+                                                        (int)results->setting.side << size),
+                                             NULL, "%.3e", e[size].most[half]);
+            cells[count++] =
+                cell_number("order", NULL, "%.2f", log2(e[1].most[half] / e[2].most[half]));
         }
         table_add(table, cells, 9);
     }
@@ -151,23 +138,21 @@ static void print_lattice(const struct lattice_results *results)
 
 static void write_convergence(const char *folder, const struct lattice_results results[2])
 {
-    static const char *const keys[] = {"lattice",     "field",        "method",        "N",
-                                       "spacing",     "boundary_max", "boundary_mean", "inside_max",
-                                       "inside_mean", "curl_max"};
-    static struct column columns[sizeof keys / sizeof keys[0] + 1];
-    for (size_t k = 0; k < sizeof keys / sizeof keys[0]; ++k)
-        columns[k].key = keys[k];
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     for (int n = 0; n < 2 * KINDS * WAYS * SIZES; ++n) {
         const int size = n % SIZES, k = n / SIZES % WAYS, field = n / SIZES / WAYS % KINDS;
         const struct lattice_results *lattice = &results[n / SIZES / WAYS / KINDS];
         const struct study_errors *e = &lattice->errors[field][k][size];
         const int32_t side = lattice->setting.side << size;
-        TABLE_ROW(table, cell_text(lattice->name),
-                  cell_text(study_field_name((enum study_field)field)), cell_text(ways[k].name),
-                  cell_count(side), cell_number(2.0 / side), cell_number(e->most[STUDY_BOUNDARY]),
-                  cell_number(e->mean[STUDY_BOUNDARY]), cell_number(e->most[STUDY_INSIDE]),
-                  cell_number(e->mean[STUDY_INSIDE]), cell_number(e->curl_max));
+        TABLE_ROW(table, cell_text(NULL, "lattice", lattice->name),
+                  cell_text(NULL, "field", study_field_name((enum study_field)field)),
+                  cell_text(NULL, "method", ways[k].name), cell_count(NULL, "N", side),
+                  cell_number(NULL, "spacing", NULL, 2.0 / side),
+                  cell_number(NULL, "boundary_max", NULL, e->most[STUDY_BOUNDARY]),
+                  cell_number(NULL, "boundary_mean", NULL, e->mean[STUDY_BOUNDARY]),
+                  cell_number(NULL, "inside_max", NULL, e->most[STUDY_INSIDE]),
+                  cell_number(NULL, "inside_mean", NULL, e->mean[STUDY_INSIDE]),
+                  cell_number(NULL, "curl_max", NULL, e->curl_max));
     }
     table_write_csv(table, folder, "fields_convergence.csv");
 }
@@ -177,25 +162,26 @@ static void write_convergence(const char *folder, const struct lattice_results r
 /* Relative errors of waves, for those who resolve curvature, slopes alone, or not all of these. */
 static struct table *table_of_waves(struct study *study, struct study_errors *last)
 {
-    static const struct column columns[] = {{"", "method", NULL, NULL},
-                                            {"curvature: mean", "curvature_mean", "%.3e", NULL},
-                                            {"max", "curvature_max", "%.3e", NULL},
-                                            {"slopes: mean", "slopes_mean", "%.3e", NULL},
-                                            {"max", "slopes_max", "%.3e", NULL},
-                                            {"neither: mean", "neither_mean", "%.3e", NULL},
-                                            {"max", "neither_max", "%.3e", NULL},
-                                            {0}};
+    static const struct {
+        const char *mean, *mean_key, *max_key;
+    } groups[STUDY_GROUPS] = {{"curvature: mean", "curvature_mean", "curvature_max"},
+                              {"slopes: mean", "slopes_mean", "slopes_max"},
+                              {"neither: mean", "neither_mean", "neither_max"}};
     const double k = 2 * 3.14159265358979323846 / (10 * study->scene.scheme.support_radius);
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     study_fill(study, FIELD_WAVES);
     for (int way = 0; way < WAYS; ++way) {
-        struct cell cells[1 + 2 * STUDY_GROUPS] = {cell_text(ways[way].name)};
+        struct cell cells[1 + 2 * STUDY_GROUPS] = {cell_text("", "method", ways[way].name)};
         study_derive(study, &ways[way]);
         *last = study_compare(study, NULL, NULL);
-        for (int n = 0; n < 2 * STUDY_GROUPS; ++n) {
-            const int group = STUDY_CURVATURE - n / 2;
-            const double error = n % 2 ? last->most[group] : last->mean[group];
-            cells[1 + n] = last->counts[group] ? cell_number(error / k) : cell_none();
+        for (int n = 0; n < STUDY_GROUPS; ++n) {
+            const int group = STUDY_CURVATURE - n;
+            cells[1 + 2 * n] =
+                cell_if(last->counts[group], cell_number(groups[n].mean, groups[n].mean_key, "%.3e",
+                                                         last->mean[group] / k));
+            cells[2 + 2 * n] =
+                cell_if(last->counts[group],
+                        cell_number("max", groups[n].max_key, "%.3e", last->most[group] / k));
         }
         table_add(table, cells, 1 + 2 * STUDY_GROUPS);
     }

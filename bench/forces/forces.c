@@ -148,10 +148,6 @@ static struct forces open_scenes(const struct settings *settings)
 
 int command_forces(int argc, char **argv)
 {
-    static const struct column columns[] = {
-        {"operator", "operator", NULL, NULL}, {"method", "method", NULL, NULL},
-        {"kept lists", "lists", NULL, NULL},  {"kept weights", "lists and weights", NULL, NULL},
-        {"error", "error", "%.1e", NULL},     {0}};
     struct settings settings = settings_default(1000000, 9, NULL);
     struct samples *times = allocate_to_the_end(ITEMS, sizeof *times);
     const struct command_option options[] = {
@@ -170,11 +166,13 @@ int command_forces(int argc, char **argv)
         &(struct rounds){"forces", settings.repetitions, ITEMS, run, .prepare = run, &forces},
         times);
 
-    struct table *table = table_create("forces", columns);
+    struct table *table = table_create("forces");
     for (int k = 0; k < CASES; ++k)
-        TABLE_ROW(table, cell_text(cases[k].name), cell_text(method_names[cases[k].method]),
-                  cell_time(&times[k * SUPPLIES], 1), cell_time(&times[k * SUPPLIES + 1], 1),
-                  cell_number(errors[k]));
+        TABLE_ROW(table, cell_text("operator", "operator", cases[k].name),
+                  cell_text("method", "method", method_names[cases[k].method]),
+                  cell_ms("kept lists", "lists", &times[k * SUPPLIES]),
+                  cell_ms("kept weights", "lists and weights", &times[k * SUPPLIES + 1]),
+                  cell_number("error", "error", "%.1e", errors[k]));
     struct report *report = report_create(&settings);
     report_lattice(report, forces.results[0].count, scene_pairs(&forces.scenes[0][0]));
     printf("; cubic spline, %s\n", precision_names[settings.precision]);

@@ -6,7 +6,6 @@
 #include "report/machine.h"
 #include "report/plot.h"
 #include "report/report.h"
-#include "report/text.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -29,45 +28,26 @@ static void create_points(struct frontier *frontier)
 
 /* ---- Tables ---------------------------------------------------------------------------------- */
 
-static struct cell path_of(const struct frontier_point *point)
-{
-    static const char *const names[PATHS] = {"kept lists", "list-free", "host's lists"};
-    return cell_text(names[point->path]);
-}
-
-static struct cell option_of(const struct frontier_point *point)
-{
-    return cell_text(point->method == SPHG_PLAIN ? "one sweep"
-                     : point->by_table           ? "table"
-                                                 : "fused");
-}
-
 static void add_point(struct table *table, const struct frontier *frontier,
                       const struct frontier_point *point)
 {
-    TABLE_ROW(table, cell_text(method_names[point->method]), cell_text(kernel_names[point->kernel]),
-              cell_text(precision_names[point->precision]), path_of(point), option_of(point),
-              cell_time(&point->time, 1e6 / frontier->count), cell_number(point->mean[0]),
-              cell_number(point->most[0]), cell_number(point->mean[1]), cell_number(point->most[1]),
-              cell_number(point->on_frontier[0]), cell_number(point->on_frontier[1]));
-}
-
-static struct table *create_table(void)
-{
-    static const struct column columns[] = {{"method", "method", NULL, NULL},
-                                            {"kernel", "kernel", NULL, NULL},
-                                            {"type", "precision", NULL, NULL},
-                                            {"path", "path", NULL, NULL},
-                                            {"option", "option", NULL, NULL},
-                                            {"ns", "", "%.1f (%.0f-%.0f)", "ns_per_particle"},
-                                            {"trig. mean", "trigonometric_mean", "%.2e", NULL},
-                                            {"max", "trigonometric_max", "%.1e", NULL},
-                                            {"lin. mean", "linear_mean", "%.1e", NULL},
-                                            {"max", "linear_max", "%.1e", NULL},
-                                            {NULL, "trigonometric_frontier", NULL, NULL},
-                                            {NULL, "linear_frontier", NULL, NULL},
-                                            {0}};
-    return table_create("frontier", columns);
+    static const char *const paths[PATHS] = {"kept lists", "list-free", "host's lists"};
+    TABLE_ROW(table, cell_text("method", "method", method_names[point->method]),
+              cell_text("kernel", "kernel", kernel_names[point->kernel]),
+              cell_text("type", "precision", precision_names[point->precision]),
+              cell_text("path", "path", paths[point->path]),
+              cell_text("option", "option",
+                        point->method == SPHG_PLAIN ? "one sweep"
+                        : point->by_table           ? "table"
+                                                    : "fused"),
+              cell_time("ns", "", &point->time, 1e6 / frontier->count, "ns_per_particle",
+                        "%.1f (%.0f-%.0f)"),
+              cell_number("trig. mean", "trigonometric_mean", "%.2e", point->mean[0]),
+              cell_number("max", "trigonometric_max", "%.1e", point->most[0]),
+              cell_number("lin. mean", "linear_mean", "%.1e", point->mean[1]),
+              cell_number("max", "linear_max", "%.1e", point->most[1]),
+              cell_number(NULL, "trigonometric_frontier", NULL, point->on_frontier[0]),
+              cell_number(NULL, "linear_frontier", NULL, point->on_frontier[1]));
 }
 
 /* Points lie in the order of their times: the first is the fastest. */
@@ -86,7 +66,7 @@ static void add_fastest(struct table *table, const struct frontier *frontier, sp
 
 static void print_fastest(const struct frontier *frontier)
 {
-    struct table *table = create_table();
+    struct table *table = table_create("frontier");
     printf("\nfastest way of each method and precision, whatever its error\n");
     for (int k = 0; k < FRONTIER_METHODS * FRONTIER_PRECISIONS * SIDES; ++k)
         add_fastest(table, frontier, (sphg_method)(k / SIDES / FRONTIER_PRECISIONS),
@@ -98,7 +78,7 @@ static void print_fastest(const struct frontier *frontier)
 static void print_frontier(const struct frontier *frontier, enum frontier_field field,
                            enum frontier_side side, const char *title)
 {
-    struct table *table = create_table();
+    struct table *table = table_create("frontier");
     for (int k = 0; k < frontier->point_count; ++k)
         if (frontier->points[k].on_frontier[field] && frontier_side(&frontier->points[k]) == side)
             add_point(table, frontier, &frontier->points[k]);
@@ -106,53 +86,14 @@ static void print_frontier(const struct frontier *frontier, enum frontier_field 
     table_print(table);
 }
 
-/* The points of each frontier: "1", "2" and so on, over the host's lists "a", "b". */
-static struct table *table_of_steps(const struct frontier *frontier)
-{
-    static const struct column columns[] = {{NULL, "field", NULL, NULL},
-                                            {NULL, "side", NULL, NULL},
-                                            {NULL, "mark", NULL, NULL},
-                                            {NULL, "ns", NULL, NULL},
-                                            {NULL, "error", NULL, NULL},
-                                            {NULL, "method", NULL, NULL},
-                                            {NULL, "kernel", NULL, NULL},
-                                            {NULL, "precision", NULL, NULL},
-                                            {NULL, "path", NULL, NULL},
-                                            {NULL, "option", NULL, NULL},
-                                            {0}};
-    static const char *const fields[] = {"trigonometric", "linear"}, *const sides[] = {"search",
-                                                                                       "host"};
-    struct table *table = table_create("", columns);
-    for (int n = 0; n < FRONTIER_FIELDS * SIDES; ++n) {
-        int mark = 0;
-        for (int k = 0; k < frontier->point_count; ++k) {
-            const struct frontier_point *point = &frontier->points[k];
-            if (!point->on_frontier[n / SIDES] || (int)frontier_side(point) != n % SIDES)
-                continue;
-            TABLE_ROW(
-                table, cell_text(fields[n / SIDES]), cell_text(sides[n % SIDES]),
-                cell_text(n % SIDES == SIDE_HOST ? table_text("%c", 'a' + mark % 26)
-                                                 : table_text("%d", mark + 1)),
-                cell_number(1e6 / frontier->count * samples_median(&point->time)),
-                cell_number(frontier_error(point, (enum frontier_field)(n / SIDES))),
-                cell_text(method_names[point->method]), cell_text(kernel_title(point->kernel)),
-                cell_text(precision_names[point->precision]), path_of(point), option_of(point));
-            ++mark;
-        }
-    }
-    return table;
-}
-
 /* ---- The whole ------------------------------------------------------------------------------- */
 
 static void print_results(const struct frontier *frontier, const struct report *report)
 {
     const struct settings *settings = &frontier->settings;
-    char count[TEXT_SIZE];
     printf("particles  %s, a block with free surfaces, jittered by %g spacings, H = %g spacings, "
            "%.1f pairs a particle\n",
-           text_grouped(frontier->count, count), settings->jitter, settings->support,
-           frontier->pairs);
+           text_grouped(frontier->count), settings->jitter, settings->support, frontier->pairs);
     report_machine(report);
     printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
            "through %d ways;\n           host's lists: taken over, not searched for\n",
@@ -174,12 +115,11 @@ static void print_results(const struct frontier *frontier, const struct report *
 static void write_results(const struct frontier *frontier, struct report *report)
 {
     const struct settings *settings = &frontier->settings;
-    struct table *all = create_table();
+    struct table *all = table_create("frontier");
     for (int k = 0; k < frontier->point_count; ++k)
         add_point(all, frontier, &frontier->points[k]);
     table_write_csv(all, settings->output, "frontier.csv");
-    table_write_csv(table_of_steps(frontier), settings->output, "frontier_steps.csv");
-    plot_written(settings->output, "frontier/frontier", "frontier.csv, frontier_steps.csv",
+    plot_written(settings->output, "frontier/frontier", "frontier.csv",
                  table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s\"\n",
                             frontier->count, settings->support, settings->threads,
                             settings->threads > 1 ? "s" : "", machine_cpu()));

@@ -2,14 +2,14 @@
 # The frontier: time from positions to gradients against error, on a wavy field and on a linear one. Every way is a grey
 # dot; left out are those over a host's lists, which need no search. Few are marked and named: of each method in f32, and
 # of KGC in f64, the fastest whose error on the wavy field is within 5 % of the least.
-# Reads frontier.csv and frontier_steps.csv; `title` says of what.
+# Reads frontier.csv, whose rows stand in the order of their times; `title` says of what.
 set terminal pngcairo size 1200,600 font 'Sans,13' background '#ffffff'
 set output 'frontier.png'
 set datafile separator ','
 set datafile columnheaders
 set encoding utf8
 data = 'frontier.csv'
-steps = 'frontier_steps.csv'
+set datafile missing NaN # what a line leaves out does not break it
 
 # ---- The ways that are marked ------------------------------------------------------------------------
 
@@ -43,13 +43,14 @@ times = ratio(4, 1).(ratio(4, 1) eq ratio(5, 1) ? '' : ' and '.ratio(5, 1)).' ti
 
 # ---- Panels ------------------------------------------------------------------------------------------
 
-edge(field, x) = strcol('field') eq field && strcol('side') eq 'search' ? x : NaN
+error(field) = column(field eq 'linear' ? 'linear_max' : 'trigonometric_mean')
+edge(field, x) = column(field.'_frontier') == 1 ? searches(x) : NaN
 panel(k) = sprintf('set lmargin at screen %.3f; set rmargin at screen %.3f; set tmargin at screen 0.81; set bmargin at screen 0.12', \
     0.08 + 0.5 * k, 0.485 + 0.5 * k)
 fields = 'trigonometric linear'
 do for [k = 1:2] { # before there are ranges, outside which nothing would be counted
-    stats steps using (edge(word(fields, k), column('ns'))) name word(fields, k).'_ns' nooutput
-    stats steps using (edge(word(fields, k), column('error'))) name word(fields, k).'_error' nooutput
+    stats data using (edge(word(fields, k), column('ns_per_particle'))) name word(fields, k).'_ns' nooutput
+    stats data using (edge(word(fields, k), error(word(fields, k)))) name word(fields, k).'_error' nooutput
 }
 stats data using (searches(column('ns_per_particle'))) nooutput
 set logscale xy
@@ -68,7 +69,6 @@ set label 101 title.'; each grey dot is a method, kernel, precision and path' \
 set multiplot
 do for [k = 0:1] {
     field = word(fields, k + 1)
-    error = k ? 'linear_max' : 'trigonometric_mean'
     eval panel(k)
     do for [m = 1:6 + k] {
         set label m '' at time[m], (k ? linear[m] : wavy[m]) point pt int(word(points, m)) ps 1.8 lw 2.5 \
@@ -103,7 +103,7 @@ do for [k = 0:1] {
         nohead lw 2 lc rgb '#999999'
     set arrow 2 from first value(field.'_ns_max'), first value(field.'_error_min') to graph 1, first value(field.'_error_min') \
         nohead lw 2 lc rgb '#999999'
-    plot data using (searches(column('ns_per_particle'))):(column(error)) with points pt 7 ps 0.4 lc rgb '#c0c0c0', \
-        steps using (edge(field, column('ns'))):(column('error')) with steps lw 2 lc rgb '#999999'
+    plot data using (searches(column('ns_per_particle'))):(error(field)) with points pt 7 ps 0.4 lc rgb '#c0c0c0', \
+        data using (edge(field, column('ns_per_particle'))):(error(field)) with steps lw 2 lc rgb '#999999'
 }
 unset multiplot

@@ -41,29 +41,22 @@ static struct table *table_of_points(const struct study cubes[CUBES],
                                      const struct study_errors errors[POINTS],
                                      const struct samples times[POINTS])
 {
-    static const struct column columns[] = {{"", "way", NULL, NULL},
-                                            {"H", "support", NULL, NULL},
-                                            {"N", "side", NULL, NULL},
-                                            {"ns", "", "%.0f (%.0f-%.0f)", "ns_per_particle"},
-                                            {"ms", "all", "%.2f (%.2f-%.2f)", NULL},
-                                            {"boundary max", "boundary_max", "%.2e", NULL},
-                                            {"mean", "boundary_mean", "%.2e", NULL},
-                                            {"inside max", "inside_max", "%.2e", NULL},
-                                            {"mean", "inside_mean", "%.2e", NULL},
-                                            {0}};
-    struct table *table = table_create("order", columns);
+    struct table *table = table_create("order");
     for (int k = 0; k < POINTS; ++k) {
         const struct study *cube = &cubes[k / WAYS];
         if (k > 0 && k % WAYS == 0)
             table_section(table, NULL);
-        TABLE_ROW(table, cell_text(ways[k % WAYS].name),
-                  cell_text(table_text("%g", cube->setting.support)),
-                  cell_text(table_text("%d", cube->setting.side)),
-                  cell_time(&times[k], 1e6 / cube->scene.count), cell_time(&times[k], 1),
-                  cell_number(errors[k].most[STUDY_BOUNDARY]),
-                  cell_number(errors[k].mean[STUDY_BOUNDARY]),
-                  cell_number(errors[k].most[STUDY_INSIDE]),
-                  cell_number(errors[k].mean[STUDY_INSIDE]));
+        TABLE_ROW(
+            table, cell_text("", "way", ways[k % WAYS].name),
+            cell_text("H", "support", table_text("%g", cube->setting.support)),
+            cell_text("N", "side", table_text("%d", cube->setting.side)),
+            cell_time("ns", "", &times[k], 1e6 / cube->scene.count, "ns_per_particle",
+                      "%.0f (%.0f-%.0f)"),
+            cell_time("ms", "all", &times[k], 1, NULL, "%.2f (%.2f-%.2f)"),
+            cell_number("boundary max", "boundary_max", "%.2e", errors[k].most[STUDY_BOUNDARY]),
+            cell_number("mean", "boundary_mean", "%.2e", errors[k].mean[STUDY_BOUNDARY]),
+            cell_number("inside max", "inside_max", "%.2e", errors[k].most[STUDY_INSIDE]),
+            cell_number("mean", "inside_mean", "%.2e", errors[k].mean[STUDY_INSIDE]));
     }
     return table;
 }

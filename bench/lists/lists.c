@@ -174,41 +174,35 @@ static struct lists open_scenes(const struct settings *settings)
     return lists;
 }
 
-static const char time_format[] = "%.3f (%.3f-%.3f)";
+static struct cell cell_per_pair(const char *name, const char *key, const struct samples *time,
+                                 int64_t pairs)
+{
+    return cell_time(name, key, time, 1e6 / (double)pairs, "ns_per_pair", "%.3f (%.3f-%.3f)");
+}
 
 static struct table *table_of_sums(const struct samples *times, const double *errors, int64_t pairs)
 {
-    static const struct column columns[] = {{"sums over", "supply", NULL, NULL},
-                                            {"build", "build", time_format, "ns_per_pair"},
-                                            {"matrices", "matrices", time_format, "ns_per_pair"},
-                                            {"gradient", "gradient", time_format, "ns_per_pair"},
-                                            {"fused", "fused", time_format, "ns_per_pair"},
-                                            {"error", "error_max", "%.1e", NULL},
-                                            {NULL, "pairs", NULL, NULL},
-                                            {0}};
-    struct table *table = table_create("lists/sums", columns);
-    const double ns_a_pair = 1e6 / (double)pairs;
+    struct table *table = table_create("lists/sums");
     for (int k = 0; k < SUMS; k += WORKS)
-        TABLE_ROW(table, cell_text(supply_names[k / WORKS]),
-                  cell_time(&times[k + WORK_SEARCH], ns_a_pair),
-                  cell_time(&times[k + WORK_MATRICES], ns_a_pair),
-                  cell_time(&times[k + WORK_GRADIENT], ns_a_pair),
-                  cell_time(&times[k + WORK_FUSED], ns_a_pair), cell_number(errors[k + WORK_FUSED]),
-                  cell_count(pairs));
+        TABLE_ROW(table, cell_text("sums over", "supply", supply_names[k / WORKS]),
+                  cell_per_pair("build", "build", &times[k + WORK_SEARCH], pairs),
+                  cell_per_pair("matrices", "matrices", &times[k + WORK_MATRICES], pairs),
+                  cell_per_pair("gradient", "gradient", &times[k + WORK_GRADIENT], pairs),
+                  cell_per_pair("fused", "fused", &times[k + WORK_FUSED], pairs),
+                  cell_number("error", "error_max", "%.1e", errors[k + WORK_FUSED]),
+                  cell_count(NULL, "pairs", pairs));
     return table;
 }
 
 static struct table *table_of_exports(const struct samples *times, const double *errors,
                                       int64_t pairs)
 {
-    static const struct column columns[] = {{"pairs written out", "what", NULL, NULL},
-                                            {"time", "", time_format, "ns_per_pair"},
-                                            {"error", "error_max", "%.1e", NULL},
-                                            {0}};
-    struct table *table = table_create("lists/pairs", columns);
+    struct table *table = table_create("lists/pairs");
     for (int k = 0; k < EXPORTS; ++k)
-        TABLE_ROW(table, cell_text(exports[k].name), cell_time(&times[k], 1e6 / (double)pairs),
-                  exports[k].gradients ? cell_number(errors[k]) : cell_none());
+        TABLE_ROW(
+            table, cell_text("pairs written out", "what", exports[k].name),
+            cell_per_pair("time", "", &times[k], pairs),
+            cell_if(exports[k].gradients, cell_number("error", "error_max", "%.1e", errors[k])));
     return table;
 }
 

@@ -3,7 +3,6 @@
 #include "library.h"
 #include "machine.h"
 #include "numbers.h"
-#include "text.h"
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <stdio.h>
@@ -16,20 +15,9 @@ struct report {
     int32_t families;
 };
 
-/* A number of a benchmark. */
-struct counter {
-    const char *name;
-    double value;
-};
-
-struct counters {
-    int count;
-    struct counter list[TABLE_COLUMNS_MOST + 1]; /* and the time in its unit */
-};
-
 struct report *report_create(const struct settings *settings)
 {
-    struct report *report = allocate_or_exit(1, sizeof *report);
+    struct report *report = allocate_to_the_end(1, sizeof *report);
     report->settings = settings;
     report->root = cJSON_CreateObject();
     report->context = cJSON_AddObjectToObject(report->root, "context");
@@ -57,21 +45,21 @@ void report_number(struct report *report, const char *name, double value)
     cJSON_AddNumberToObject(report->context, name, value);
 }
 
+/* ---- On the terminal ------------------------------------------------------------------------ */
+
 void report_lattice(struct report *report, int32_t count, double pairs)
 {
     const struct settings *settings = report->settings;
-    char text[TEXT_SIZE];
     printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, %.2f pairs a particle",
-           text_grouped(count, text), settings->jitter, settings->support, pairs);
+           text_grouped(count), settings->jitter, settings->support, pairs);
     report_lattice_numbers(report, count, pairs);
 }
 
 void report_lattice_numbers(struct report *report, int32_t count, double pairs)
 {
-    const struct settings *settings = report->settings;
     report_number(report, "particles", count);
-    report_number(report, "support_spacings", settings->support);
-    report_number(report, "jitter", settings->jitter);
+    report_number(report, "support_spacings", report->settings->support);
+    report_number(report, "jitter", report->settings->jitter);
     report_number(report, "pairs_per_particle", pairs);
 }
 
@@ -90,125 +78,9 @@ void report_if_busy(const struct report *report, const struct samples *samples)
     const int32_t processors = machine_cpus() < threads ? machine_cpus() : threads;
     const double had = samples_cpu(samples).median / (samples_wall(samples).median * processors);
     if (had < 0.8)
-        printf(
-            "BUSY       others ran: the program had %.0f %% of its processors' time, and the times "
-            "are too long\n",
-            100 * had);
-}
-
-static cJSON *add_entry(struct report *report, const char *name, const char *run_name,
-                        const char *run_type)
-{
-    cJSON *entry = cJSON_CreateObject();
-    cJSON_AddItemToArray(report->benchmarks, entry);
-    cJSON_AddStringToObject(entry, "name", name);
-    cJSON_AddNumberToObject(entry, "family_index", report->families);
-    cJSON_AddNumberToObject(entry, "per_family_instance_index", 0);
-    cJSON_AddStringToObject(entry, "run_name", run_name);
-    cJSON_AddStringToObject(entry, "run_type", run_type);
-    cJSON_AddNumberToObject(entry, "threads", report->settings->threads);
-    return entry;
-}
-
-static void add_measured(cJSON *entry, double real, double cpu, const char *unit,
-                         const struct counters *counters)
-{
-    cJSON_AddNumberToObject(entry, "real_time", real);
-    cJSON_AddNumberToObject(entry, "cpu_time", cpu);
-    cJSON_AddStringToObject(entry, "time_unit", unit);
-    for (int k = 0; k < counters->count; ++k)
-        cJSON_AddNumberToObject(entry, counters->list[k].name, counters->list[k].value);
-}
-
-static void add_repetition(struct report *report, const char *name, const struct samples *samples,
-                           int32_t index, const struct counters *counters)
-{
-    cJSON *entry = add_entry(report, name, name, "iteration");
-    cJSON_AddNumberToObject(entry, "repetitions", samples->count);
-    cJSON_AddNumberToObject(entry, "repetition_index", index);
-    cJSON_AddNumberToObject(entry, "iterations", 1);
-    add_measured(entry, samples->values[index].wall, samples->values[index].cpu, "ms", counters);
-}
-
-static void add_aggregate(struct report *report, const char *name, const struct samples *samples,
-                          const struct counter *aggregate, double cpu,
-                          const struct counters *counters)
-{
-    char full_name[256];
-    const int is_ratio = strcmp(aggregate->name, "cv") == 0;
-    snprintf(full_name, sizeof full_name, "%s_%s", name, aggregate->name);
-    cJSON *entry = add_entry(report, full_name, name, "aggregate");
-    cJSON_AddNumberToObject(entry, "repetitions", samples->count);
-    cJSON_AddNumberToObject(entry, "iterations", samples->count);
-    cJSON_AddStringToObject(entry, "aggregate_name", aggregate->name);
-    cJSON_AddStringToObject(entry, "aggregate_unit", is_ratio ? "percentage" : "time");
-    add_measured(entry, aggregate->value, cpu, "ms", counters);
-}
-
-static void add_benchmark(struct report *report, const char *name, const struct samples *samples,
-                          const struct counters *counters)
-{
-    for (int32_t index = 0; index < samples->count; ++index)
-        add_repetition(report, name, samples, index, counters);
-    if (samples->count == 1) {
-        ++report->families;
-        return;
-    }
-    const struct spread wall = samples_wall(samples), cpu = samples_cpu(samples);
-    const struct counter aggregates[] = {
-        {"mean", wall.mean},        {"median", wall.median},
-        {"stddev", wall.deviation}, {"cv", wall.mean > 0 ? wall.deviation / wall.mean : 0},
-        {"min", wall.min},          {"max", wall.max}};
-    const double cpus[] = {cpu.mean,      cpu.median,
-                           cpu.deviation, cpu.mean > 0 ? cpu.deviation / cpu.mean : 0,
-                           cpu.min,       cpu.max};
-    for (size_t k = 0; k < sizeof cpus / sizeof cpus[0]; ++k)
-        add_aggregate(report, name, samples, &aggregates[k], cpus[k], counters);
-    ++report->families;
-}
-
-static void add_counter(struct counters *counters, const char *name, double value)
-{
-    counters->list[counters->count++] = (struct counter){name, value};
-}
-
-/* What the times of a row have in common: the start of their names, and counters. */
-static void describe_row(const struct table *table, int32_t row, char *name, size_t size,
-                         struct counters *counters)
-{
-    const struct column *columns = table_columns(table);
-    const struct cell *cells = table_row(table, row);
-    size_t length = (size_t)snprintf(name, size, "%s", table_name(table));
-    for (int c = 0; columns[c].head || columns[c].key; ++c) {
-        if (!columns[c].key)
-            continue;
-        if (cells[c].kind == CELL_TEXT && length < size)
-            length += (size_t)snprintf(name + length, size - length, "/%s", cells[c].text);
-        if (cells[c].kind == CELL_NUMBER || cells[c].kind == CELL_COUNT)
-            add_counter(counters, columns[c].key, cells[c].number);
-    }
-}
-
-void report_times(struct report *report, const struct table *table)
-{
-    const struct column *columns = table_columns(table);
-    for (int32_t row = 0; row < table_rows(table); ++row) {
-        const struct cell *cells = table_row(table, row);
-        char first[192], name[224];
-        struct counters common = {0};
-        describe_row(table, row, first, sizeof first, &common);
-        for (int c = 0; columns[c].head || columns[c].key; ++c) {
-            if (cells[c].kind != CELL_TIME || !columns[c].key)
-                continue;
-            struct counters counters = common;
-            if (columns[c].unit)
-                add_counter(&counters, columns[c].unit,
-                            cells[c].number * samples_median(cells[c].samples));
-            snprintf(name, sizeof name, "%s%s%s", first, *columns[c].key ? "/" : "",
-                     columns[c].key);
-            add_benchmark(report, name, cells[c].samples, &counters);
-        }
-    }
+        printf("BUSY       others ran: the program had %.0f %% of its processors' time, and the "
+               "times are too long\n",
+               100 * had);
 }
 
 void report_table(struct report *report, const struct table *table)
@@ -217,12 +89,98 @@ void report_table(struct report *report, const struct table *table)
     report_times(report, table);
 }
 
-static int write_text(const char *text, const char *path)
+/* ---- For programs --------------------------------------------------------------------------- */
+
+/* A time of a row: what all its entries say. */
+struct benchmark {
+    struct report *report;
+    const char *name;
+    const struct cell *cells, *time; /* of the row */
+    int32_t cell_count;
+};
+
+/* Counters are the numbers of the row, and the median in the unit. */
+static cJSON *add_entry(const struct benchmark *one, const char *name, const char *type,
+                        double real, double cpu)
+{
+    const struct cell *time = one->time;
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddItemToArray(one->report->benchmarks, entry);
+    cJSON_AddStringToObject(entry, "name", name);
+    cJSON_AddNumberToObject(entry, "family_index", one->report->families);
+    cJSON_AddNumberToObject(entry, "per_family_instance_index", 0);
+    cJSON_AddStringToObject(entry, "run_name", one->name);
+    cJSON_AddStringToObject(entry, "run_type", type);
+    cJSON_AddNumberToObject(entry, "threads", one->report->settings->threads);
+    cJSON_AddNumberToObject(entry, "repetitions", time->samples->count);
+    cJSON_AddNumberToObject(entry, "real_time", real);
+    cJSON_AddNumberToObject(entry, "cpu_time", cpu);
+    cJSON_AddStringToObject(entry, "time_unit", "ms");
+    for (int32_t c = 0; c < one->cell_count; ++c)
+        if (one->cells[c].key &&
+            (one->cells[c].kind == CELL_NUMBER || one->cells[c].kind == CELL_COUNT))
+            cJSON_AddNumberToObject(entry, one->cells[c].key, one->cells[c].number);
+    if (time->unit)
+        cJSON_AddNumberToObject(entry, time->unit, time->number * samples_median(time->samples));
+    return entry;
+}
+
+static void add_benchmark(const struct benchmark *one)
+{
+    const struct samples *samples = one->time->samples;
+    const struct spread wall = samples_wall(samples), cpu = samples_cpu(samples);
+    const struct {
+        const char *name;
+        double wall, cpu;
+    } aggregates[] = {{"mean", wall.mean, cpu.mean},
+                      {"median", wall.median, cpu.median},
+                      {"stddev", wall.deviation, cpu.deviation},
+                      {"cv", wall.mean > 0 ? wall.deviation / wall.mean : 0,
+                       cpu.mean > 0 ? cpu.deviation / cpu.mean : 0},
+                      {"min", wall.min, cpu.min},
+                      {"max", wall.max, cpu.max}};
+    for (int32_t k = 0; k < samples->count; ++k) {
+        cJSON *entry =
+            add_entry(one, one->name, "iteration", samples->values[k].wall, samples->values[k].cpu);
+        cJSON_AddNumberToObject(entry, "repetition_index", k);
+        cJSON_AddNumberToObject(entry, "iterations", 1);
+    }
+    for (size_t k = 0; samples->count > 1 && k < sizeof aggregates / sizeof aggregates[0]; ++k) {
+        const bool is_ratio = strcmp(aggregates[k].name, "cv") == 0;
+        cJSON *entry = add_entry(one, table_text("%s_%s", one->name, aggregates[k].name),
+                                 "aggregate", aggregates[k].wall, aggregates[k].cpu);
+        cJSON_AddNumberToObject(entry, "iterations", samples->count);
+        cJSON_AddStringToObject(entry, "aggregate_name", aggregates[k].name);
+        cJSON_AddStringToObject(entry, "aggregate_unit", is_ratio ? "percentage" : "time");
+    }
+    ++one->report->families;
+}
+
+void report_times(struct report *report, const struct table *table)
+{
+    for (int32_t row = 0; row < table->row_count; ++row) {
+        const struct cell *cells = table_row(table, row);
+        const char *name = table->name;
+        for (int32_t c = 0; c < table->column_count; ++c)
+            if (cells[c].key && cells[c].kind == CELL_TEXT)
+                name = table_text("%s/%s", name, cells[c].text);
+        for (int32_t c = 0; c < table->column_count; ++c)
+            if (cells[c].key && cells[c].kind == CELL_TIME)
+                add_benchmark(&(struct benchmark){
+                    .report = report,
+                    .name = *cells[c].key ? table_text("%s/%s", name, cells[c].key) : name,
+                    .cells = cells,
+                    .time = &cells[c],
+                    .cell_count = table->column_count});
+    }
+}
+
+static bool write_text(const char *text, const char *path)
 {
     FILE *file = fopen(path, "w");
     if (!file)
-        return 0;
-    const int written = fprintf(file, "%s\n", text) > 0;
+        return false;
+    const bool written = fprintf(file, "%s\n", text) > 0;
     return fclose(file) == 0 && written;
 }
 
@@ -236,5 +194,4 @@ void report_write(struct report *report)
     }
     cJSON_free(text);
     cJSON_Delete(report->root);
-    free(report);
 }

@@ -1,68 +1,78 @@
 /* SPDX-License-Identifier: MIT */
-/* What a command has measured: rows of cells under columns, each with a name and a unit. The same
- * table is printed, written as CSV, and added to the report in JSON (report.h). */
+/* What a command has measured: rows of cells, each with a name and a unit. The same table is
+ * printed, written as CSV, and added to the report in JSON (report.h). */
 #ifndef SPHGRAD_BENCH_TABLE_H
 #define SPHGRAD_BENCH_TABLE_H
 #include "timing.h"
+#include <stdbool.h>
 #include <stddef.h>
-
-/* Formats: of a number what printf takes for a double; of a time the same for three, median, least
- * and most. NULL: as few digits as two runs agree on. */
-struct column {
-    const char *head;   /* above what is printed; NULL: not printed */
-    const char *key;    /* in files; NULL: not there. "": of a time, which needs no other name */
-    const char *format; /* of numbers and times */
-    const char *unit;   /* of times; NULL: ms */
-};
 
 enum cell_kind { CELL_NONE, CELL_TEXT, CELL_NUMBER, CELL_COUNT, CELL_TIME };
 
+/* Names, format and unit of a column are those of its first cell. */
 struct cell {
+    const char *head; /* above what is printed; NULL: not printed */
+    const char *key;  /* in files; NULL: not there. "": of a time, which needs no other name */
     enum cell_kind kind;
     const char *text;
+    const char *format; /* of a number what printf takes; of a time the same for three, median,
+                           least and most. NULL: as few digits as two runs agree on */
     double number;
-    const struct samples *samples; /* [ms], times `number` in the column's unit */
+    const struct samples *samples; /* [ms], times `number` in the unit */
+    const char *unit;              /* of these; NULL: ms */
 };
 
-static inline struct cell cell_none(void) /* printed as "-" */
+static inline struct cell cell_text(const char *head, const char *key, const char *text)
 {
-    return (struct cell){.kind = CELL_NONE};
+    return (struct cell){.head = head, .key = key, .kind = CELL_TEXT, .text = text};
 }
-static inline struct cell cell_text(const char *text)
-{
-    return (struct cell){.kind = CELL_TEXT, .text = text};
-}
-static inline struct cell cell_number(double number)
-{
-    return (struct cell){.kind = CELL_NUMBER, .number = number};
-}
-static inline struct cell cell_count(int64_t count) /* printed as "1 234 567" */
-{
-    return (struct cell){.kind = CELL_COUNT, .number = (double)count};
-}
-static inline struct cell cell_time(const struct samples *samples, double unit_of_ms)
+static inline struct cell cell_number(const char *head, const char *key, const char *format,
+                                      double number)
 {
     return (struct cell){
-        .kind = samples->count ? CELL_TIME : CELL_NONE, .number = unit_of_ms, .samples = samples};
+        .head = head, .key = key, .kind = CELL_NUMBER, .format = format, .number = number};
+}
+static inline struct cell cell_count(const char *head, const char *key, int64_t count)
+{
+    return (struct cell){.head = head, .key = key, .kind = CELL_COUNT, .number = (double)count};
+}
+static inline struct cell cell_time(const char *head, const char *key,
+                                    const struct samples *samples, double unit_of_ms,
+                                    const char *unit, const char *format)
+{
+    const enum cell_kind kind = samples->count ? CELL_TIME : CELL_NONE;
+    return (struct cell){head, key, kind, NULL, format, unit_of_ms, samples, unit};
+}
+static inline struct cell cell_ms(const char *head, const char *key, const struct samples *samples)
+{
+    return cell_time(head, key, samples, 1, NULL, NULL);
+}
+static inline struct cell cell_if(bool there, struct cell cell) /* else it is printed as "-" */
+{
+    cell.kind = there ? cell.kind : CELL_NONE;
+    return cell;
 }
 
-struct table;
+/* Columns from the first row on; sections begin with a row. */
+struct table {
+    const char *name; /* what the names of its benchmarks begin with */
+    int32_t column_count, row_count, row_room, section_count, section_room;
+    struct cell *cells;
+    struct section {
+        int32_t row;
+        const char *title;
+    } * sections;
+};
 
-enum { TABLE_COLUMNS_MOST = 32 };
+/* The table and the texts below last to the end of the program, names and samples must, too. */
+struct table *table_create(const char *name);
 
-/* The columns end with one that has neither head nor key. They, the texts of cells and the samples
- * last at least as long as the table, which lasts to the end of the program. name: what the names
- * of its benchmarks begin with. */
-struct table *table_create(const char *name, const struct column *columns);
-
-/* One cell a column: anything else ends the program. */
+/* As many cells in each row: anything else ends the program. */
 void table_add(struct table *table, const struct cell *cells, size_t count);
 #define TABLE_ROW(table, ...)                                                                      \
     table_add(table, (const struct cell[]){__VA_ARGS__},                                           \
               sizeof((const struct cell[]){__VA_ARGS__}) / sizeof(struct cell))
-
-/* A text that lasts as long as the table. */
-__attribute__((format(printf, 1, 2))) const char *table_text(const char *format, ...);
+const struct cell *table_row(const struct table *table, int32_t row);
 
 /* What follows stands under the heads again, the first of which reads `title`; NULL: after a blank
  * line. */
@@ -77,9 +87,7 @@ void table_print_turned(const struct table *table);
  * KEY_UNIT, and that with _least and _most. */
 void table_write_csv(const struct table *table, const char *folder, const char *name);
 
-/* What a report takes from it. */
-int32_t table_rows(const struct table *table);
-const struct cell *table_row(const struct table *table, int32_t row);
-const struct column *table_columns(const struct table *table);
-const char *table_name(const struct table *table);
+__attribute__((format(printf, 1, 2))) const char *table_text(const char *format, ...);
+const char *text_grouped(int64_t value);    /* 1234567 as "1 234 567" */
+const char *text_time(double milliseconds); /* four digits are more than two runs agree on */
 #endif

@@ -5,73 +5,66 @@
 #include "report/machine.h"
 #include "report/plot.h"
 #include "report/report.h"
-#include "report/text.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+static struct cell cell_per_particle(const char *name, const struct scaling_case *one,
+                                     enum work work)
+{
+    return cell_time(table_text("%s [ns]", name), name, &one->time[work], 1e6 / one->count,
+                     "ns_per_particle", "%.1f (%.0f-%.0f)");
+}
+
 static struct table *table_of_cases(const struct scaling *scaling)
 {
-    static const char format[] = "%.1f (%.0f-%.0f)", unit[] = "ns_per_particle";
-    static const struct column columns[] = {{NULL, "group", NULL, NULL},
-                                            {"", "label", NULL, NULL},
-                                            {NULL, "particles", NULL, NULL},
-                                            {NULL, "case_threads", NULL, NULL},
-                                            {NULL, "dimension", NULL, NULL},
-                                            {"pairs", "pairs_per_particle", "%.1f", NULL},
-                                            {"bytes", "bytes_per_particle", "%.0f", NULL},
-                                            {"search [ns]", "search", format, unit},
-                                            {"matrices [ns]", "matrices", format, unit},
-                                            {"gradient [ns]", "gradient", format, unit},
-                                            {"fused [ns]", "fused", format, unit},
-                                            {"deficient %", NULL, "%.1f", NULL},
-                                            {NULL, "deficient_share", NULL, NULL},
-                                            {"error", "error_max", "%.1e", NULL},
-                                            {NULL, "not_finite", NULL, NULL},
-                                            {0}};
-    struct table *table = table_create("scaling", columns);
+    struct table *table = table_create("scaling");
     for (int k = 0; k < scaling->case_count; ++k) {
         const struct scaling_case *one = &scaling->cases[k];
-        const double ns = 1e6 / one->count;
         if (k == 0 || strcmp(one->group, one[-1].group) != 0)
             table_section(table, one->group);
-        TABLE_ROW(table, cell_text(one->group), cell_text(one->label), cell_count(one->count),
-                  cell_count(one->threads), cell_count(one->cloud.dimension),
-                  cell_number(one->pairs), cell_number(one->bytes),
-                  cell_time(&one->time[WORK_SEARCH], ns), cell_time(&one->time[WORK_MATRICES], ns),
-                  cell_time(&one->time[WORK_GRADIENT], ns), cell_time(&one->time[WORK_FUSED], ns),
-                  cell_number(100 * one->deficient), cell_number(one->deficient),
-                  cell_number(one->error), cell_count(one->not_finite));
+        TABLE_ROW(table, cell_text(NULL, "group", one->group), cell_text("", "label", one->label),
+                  cell_count(NULL, "particles", one->count),
+                  cell_count(NULL, "case_threads", one->threads),
+                  cell_count(NULL, "dimension", one->cloud.dimension),
+                  cell_number("pairs", "pairs_per_particle", "%.1f", one->pairs),
+                  cell_number("bytes", "bytes_per_particle", "%.0f", one->bytes),
+                  cell_per_particle("search", one, WORK_SEARCH),
+                  cell_per_particle("matrices", one, WORK_MATRICES),
+                  cell_per_particle("gradient", one, WORK_GRADIENT),
+                  cell_per_particle("fused", one, WORK_FUSED),
+                  cell_number("deficient %", NULL, "%.1f", 100 * one->deficient),
+                  cell_number(NULL, "deficient_share", NULL, one->deficient),
+                  cell_number("error", "error_max", "%.1e", one->error),
+                  cell_count(NULL, "not_finite", one->not_finite));
     }
     return table;
+}
+
+static struct cell cell_speed_up(const char *name, const struct scaling_case *single,
+                                 const struct scaling_case *one, enum work work)
+{
+    const double speed_up = samples_median(&single->time[work]) / samples_median(&one->time[work]);
+    return cell_text(name, NULL,
+                     table_text("%.2f, %.0f %%", speed_up, 100 * speed_up / one->threads));
 }
 
 /* Beside the first of the cases with more and more threads. */
 static struct table *table_of_speed_ups(const struct scaling *scaling)
 {
-    static const struct column columns[] = {{"threads", NULL, NULL, NULL},
-                                            {"search", NULL, NULL, NULL},
-                                            {"matrices", NULL, NULL, NULL},
-                                            {"gradient", NULL, NULL, NULL},
-                                            {"fused", NULL, NULL, NULL},
-                                            {"speed-up, efficiency", NULL, NULL, NULL},
-                                            {0}};
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     const struct scaling_case *single = NULL;
     for (int k = 0; k < scaling->case_count; ++k) {
         const struct scaling_case *one = &scaling->cases[k];
-        struct cell cells[WORKS + 2] = {cell_text(one->label)};
         if (strcmp(one->group, "threads") != 0)
             continue;
         single = single ? single : one;
-        for (int work = 0; work < WORKS; ++work) {
-            const double speed_up =
-                samples_median(&single->time[work]) / samples_median(&one->time[work]);
-            cells[work + 1] =
-                cell_text(table_text("%.2f, %.0f %%", speed_up, 100 * speed_up / one->threads));
-        }
-        cells[WORKS + 1] = cell_text("");
-        table_add(table, cells, WORKS + 2);
+        TABLE_ROW(table, cell_text("threads", NULL, one->label),
+                  cell_speed_up("search", single, one, WORK_SEARCH),
+                  cell_speed_up("matrices", single, one, WORK_MATRICES),
+                  cell_speed_up("gradient", single, one, WORK_GRADIENT),
+                  cell_speed_up("fused", single, one, WORK_FUSED),
+                  cell_text("speed-up, efficiency", NULL, ""));
     }
     return table;
 }
@@ -81,10 +74,9 @@ static void report_results(const struct scaling *scaling)
     const struct settings *settings = &scaling->settings;
     const struct table *cases = table_of_cases(scaling);
     struct report *report = report_create(settings);
-    char count[TEXT_SIZE];
     printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, lattice order, but "
            "for what a\n           group changes; KGC, cubic spline, f32\n",
-           text_grouped(settings->particles, count), settings->jitter, settings->support);
+           text_grouped(settings->particles), settings->jitter, settings->support);
     report_machine(report);
     printf("times      ns a particle, median (min-max) of %d rounds through the cases of a group; "
            "fused:\n           matrices and gradient in one call; bytes: a particle, held by the "

@@ -2,7 +2,6 @@
 /* The cases of scaling: in each group one thing changes. */
 #include "scaling.h"
 #include "report/table.h"
-#include "report/text.h"
 
 enum { CASES_MOST = 64 };
 
@@ -24,12 +23,11 @@ static void add_sizes(struct scaling *scaling)
     static const double factors[] = {0.1, 0.3, 1, 3, 10, 30};
     for (int k = 0; k < (scaling->full ? 6 : 5); ++k) {
         const double particles = factors[k] * scaling->settings.particles;
-        char count[TEXT_SIZE];
         if (particles < 1 || particles > 1e9)
             continue;
         struct scaling_case *one = add(scaling, "particles");
         one->cloud.particles = (int32_t)particles;
-        one->label = table_text("%s", text_grouped(one->cloud.particles, count));
+        one->label = text_grouped(one->cloud.particles);
     }
 }
 

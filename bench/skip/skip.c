@@ -16,29 +16,22 @@ static const char *exactness(const struct skip_row *row, const struct skip_resul
 
 static struct table *table_of(const struct skip *skip)
 {
-    static const struct column columns[] = {{NULL, "group", NULL, NULL},
-                                            {"what", "what", NULL, NULL},
-                                            {"against", NULL, NULL, NULL},
-                                            {"full [ms]", "full", NULL, NULL},
-                                            {"this [ms]", "this", NULL, NULL},
-                                            {"saved %", "saved_percent", "%.0f", NULL},
-                                            {"exact", NULL, NULL, NULL},
-                                            {NULL, "compared", NULL, NULL},
-                                            {NULL, "targets_with_other_bits", NULL, NULL},
-                                            {NULL, "deviation", NULL, NULL},
-                                            {0}};
-    struct table *table = table_create("skip", columns);
+    struct table *table = table_create("skip");
     for (int k = 0; k < SKIP_ROWS; ++k) {
         const struct skip_row *row = &skip_rows[k];
         const struct skip_result *result = &skip->results[k];
-        const struct samples *times = skip->times[k];
+        const struct samples *full = &skip->times[k][0], *part = &skip->times[k][1];
         if (k > 0 && strcmp(row->group, skip_rows[k - 1].group) != 0)
             table_section(table, NULL);
-        TABLE_ROW(table, cell_text(row->group), cell_text(row->what), cell_text(row->against),
-                  cell_time(&times[0], 1), cell_time(&times[1], 1),
-                  cell_number(100 * (1 - samples_median(&times[1]) / samples_median(&times[0]))),
-                  cell_text(exactness(row, result)), cell_number(skip_is_compared(row)),
-                  cell_count(result->differences), cell_number(result->deviation));
+        TABLE_ROW(table, cell_text(NULL, "group", row->group), cell_text("what", "what", row->what),
+                  cell_text("against", NULL, row->against), cell_ms("full [ms]", "full", full),
+                  cell_ms("this [ms]", "this", part),
+                  cell_number("saved %", "saved_percent", "%.0f",
+                              100 * (1 - samples_median(part) / samples_median(full))),
+                  cell_text("exact", NULL, exactness(row, result)),
+                  cell_number(NULL, "compared", NULL, skip_is_compared(row)),
+                  cell_count(NULL, "targets_with_other_bits", result->differences),
+                  cell_number(NULL, "deviation", NULL, result->deviation));
     }
     return table;
 }

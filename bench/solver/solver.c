@@ -3,7 +3,6 @@
 #include "solver.h"
 #include "commands.h"
 #include "report/report.h"
-#include "report/text.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -41,56 +40,49 @@ static double most(const double *values, const bool *available)
     return largest;
 }
 
+static struct cell cell_per_matrix(const char *name, const struct solver_group *group, int k,
+                                   int path)
+{
+    return cell_time(name, name, &group->times[k][path], 1e6 / group->count, "ns_per_matrix",
+                     "%.2f (%.2f-%.2f)");
+}
+
 static void add_case(struct table *table, const struct solver *solver,
                      const struct solver_group *group, int k)
 {
     static const char *const works[] = {"invert moments", "eigen", "SVD"};
     const struct solver_case *one = &solver_cases[k];
     const struct solver_result *result = &group->results[k];
-    const double ns_a_matrix = 1e6 / group->count;
     const bool copied = one->spectrum == SOLVER_COPIED;
-    struct cell cells[8 + LIBRARY_PATHS];
-    int count = 0;
-    cells[count++] = cell_text(table_text("%dD", (int)group->dimension));
-    cells[count++] = cell_text(group->type == SPHG_F64 ? "f64" : "f32");
-    cells[count++] = cell_text(table_text("%d", (int)group->count));
-    cells[count++] = cell_text(works[one->work]);
-    cells[count++] = cell_text(one->what);
-    cells[count++] = copied ? cell_time(&group->times[k][0], ns_a_matrix) : cell_none();
+    struct cell cells[8 + LIBRARY_PATHS] = {
+        cell_text(NULL, "dimension", table_text("%dD", (int)group->dimension)),
+        cell_text(NULL, "precision", group->type == SPHG_F64 ? "f64" : "f32"),
+        cell_text(NULL, "matrices", table_text("%d", (int)group->count)),
+        cell_text("", "work", works[one->work]),
+        cell_text("", "what", one->what),
+        cell_if(copied, cell_per_matrix("memcpy", group, k, 0))};
+    size_t count = 6;
     for (int path = 0; path < LIBRARY_PATHS; ++path)
         if (solver->available[path])
-            cells[count++] = copied ? cell_none() : cell_time(&group->times[k][path], ns_a_matrix);
-    cells[count++] = one->spectrum == SOLVER_MOMENTS
-                         ? cell_number(100 * most(result->decomposed, solver->available))
-                         : cell_none();
-    cells[count++] = !copied && one->share == 0
-                         ? cell_number(most(result->deviation, solver->available))
-                         : cell_none();
-    table_add(table, cells, (size_t)count);
+            cells[count++] =
+                cell_if(!copied, cell_per_matrix(library_path_name(path), group, k, path));
+    cells[count++] = cell_if(one->spectrum == SOLVER_MOMENTS,
+                             cell_number("fell %", "decomposed_percent", "%.2f",
+                                         100 * most(result->decomposed, solver->available)));
+    cells[count++] = cell_if(
+        !copied && one->share == 0,
+        cell_number("off by", "deviation", "%.1e", most(result->deviation, solver->available)));
+    table_add(table, cells, count);
 }
 
 static struct table *table_of(const struct solver *solver)
 {
-    static const char format[] = "%.2f (%.2f-%.2f)", unit[] = "ns_per_matrix";
-    static struct column columns[9 + LIBRARY_PATHS] = {
-        {NULL, "dimension", NULL, NULL}, {NULL, "precision", NULL, NULL},
-        {NULL, "matrices", NULL, NULL},  {"", "work", NULL, NULL},
-        {"", "what", NULL, NULL},        {"memcpy", "memcpy", format, unit}};
-    int count = 6;
-    for (int path = 0; path < LIBRARY_PATHS; ++path)
-        if (solver->available[path])
-            columns[count++] =
-                (struct column){library_path_name(path), library_path_name(path), format, unit};
-    columns[count++] = (struct column){"fell %", "decomposed_percent", "%.2f", NULL};
-    columns[count++] = (struct column){"off by", "deviation", "%.1e", NULL};
-    columns[count] = (struct column){0};
-    struct table *table = table_create("solver", columns);
+    struct table *table = table_create("solver");
     for (int g = 0; g < solver->group_count; ++g) {
         const struct solver_group *group = &solver->groups[g];
-        char text[TEXT_SIZE];
         table_section(table, table_text("%dD, %s, %s", (int)group->dimension,
                                         group->type == SPHG_F64 ? "f64" : "f32",
-                                        text_grouped(group->count, text)));
+                                        text_grouped(group->count)));
         for (int k = 0; k < SOLVER_CASES; ++k)
             if (solver_has(group, k))
                 add_case(table, solver, group, k);

@@ -6,7 +6,6 @@
 #include "report/machine.h"
 #include "report/plot.h"
 #include "report/report.h"
-#include "report/text.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,28 +52,24 @@ static void add_summary(struct table *table, const char *sweep, const char *meth
 {
     const bool ranked = sum->rank_most > 0;
     TABLE_ROW(
-        table, cell_text(sweep), cell_text(method), cell_count(sum->cases),
-        cell_count(sum->targets), cell_count(sum->compared), cell_number(sum->ratio[PRECISION_F32]),
-        cell_number(sum->ratio[PRECISION_F64]), cell_number(sum->ratio[PRECISION_MIXED]),
-        ranked ? cell_text(table_text("%.2f - %.2f", sum->rank_least, sum->rank_most))
-               : cell_none(),
-        ranked ? cell_text(
-                     table_text("%.1f - %.1f", 100 * sum->fallback_least, 100 * sum->fallback_most))
-               : cell_none(),
-        cell_count(sum->wrong_ranks), cell_count(sum->other_bits), cell_count(sum->not_finite));
+        table, cell_text("sweep", NULL, sweep), cell_text("method", NULL, method),
+        cell_count("cases", NULL, sum->cases), cell_count("targets", NULL, sum->targets),
+        cell_count("compared", NULL, sum->compared),
+        cell_number("f32", NULL, "%.2g", sum->ratio[PRECISION_F32]),
+        cell_number("f64", NULL, "%.2g", sum->ratio[PRECISION_F64]),
+        cell_number("mixed", NULL, "%.2g", sum->ratio[PRECISION_MIXED]),
+        cell_if(ranked, cell_text("rank", NULL,
+                                  table_text("%.2f - %.2f", sum->rank_least, sum->rank_most))),
+        cell_if(ranked, cell_text("decomposed", NULL,
+                                  table_text("%.1f - %.1f", 100 * sum->fallback_least,
+                                             100 * sum->fallback_most))),
+        cell_count("wrong", NULL, sum->wrong_ranks), cell_count("bits", NULL, sum->other_bits),
+        cell_count("not finite", NULL, sum->not_finite));
 }
 
 static void print_summaries(const struct stability *stability)
 {
-    static const struct column columns[] = {
-        {"sweep", NULL, NULL, NULL},      {"method", NULL, NULL, NULL},
-        {"cases", NULL, NULL, NULL},      {"targets", NULL, NULL, NULL},
-        {"compared", NULL, NULL, NULL},   {"f32", NULL, "%.2g", NULL},
-        {"f64", NULL, "%.2g", NULL},      {"mixed", NULL, "%.2g", NULL},
-        {"rank", NULL, NULL, NULL},       {"decomposed", NULL, NULL, NULL},
-        {"wrong", NULL, NULL, NULL},      {"bits", NULL, NULL, NULL},
-        {"not finite", NULL, NULL, NULL}, {0}};
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     for (int sweep = stability->first; sweep <= stability->last; ++sweep)
         for (int method = 0; method < STABILITY_METHODS; ++method) {
             const struct summary sum = summarise(stability, sweep, method);
@@ -102,15 +97,7 @@ static const struct stability_case *beside(const struct stability *stability,
 
 static void print_places(const struct stability *stability)
 {
-    static const struct column columns[] = {
-        {"sweep", NULL, NULL, NULL},        {"at", NULL, "%.3g", NULL},
-        {"method", NULL, NULL, NULL},       {"policy", NULL, NULL, NULL},
-        {"targets", NULL, NULL, NULL},      {"rank", NULL, "%.2f", NULL},
-        {"decomposed", NULL, "%.2f", NULL}, {"linear", NULL, "%.2g", NULL},
-        {"noise", NULL, "%.2g", NULL},      {"exact f32", NULL, "%.1g", NULL},
-        {"f64", NULL, "%.1g", NULL},        {"bound f32", NULL, "%.2g", NULL},
-        {"f64", NULL, "%.2g", NULL},        {0}};
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     printf("\nplaces     f32, but for the last columns; rank: particles of full rank, decomposed: "
            "shares in percent;\n           linear: mean error of a linear field, noise: largest "
            "|J| H of a random field; exact: the\n           largest error of a linear field at "
@@ -119,74 +106,62 @@ static void print_places(const struct stability *stability)
         const struct stability_case *one = &stability->cases[k];
         const struct stability_case *wide = beside(stability, one, PRECISION_F64);
         if (one->precision == PRECISION_F32)
-            TABLE_ROW(table, cell_text(sweep_names[one->sweep]), cell_number(one->at),
-                      cell_text(method_names[one->method]), cell_text(policy_names[one->policy]),
-                      cell_count(one->targets),
-                      cell_number(100 * (double)one->full / (double)one->targets),
-                      cell_number(100 * stability_fallback(one)),
-                      cell_number(stability_linear(one)), cell_number(one->noise),
-                      cell_number(one->linear_full), cell_number(wide->linear_full),
-                      cell_number(stability_ratio(one)), cell_number(stability_ratio(wide)));
+            TABLE_ROW(
+                table, cell_text("sweep", NULL, sweep_names[one->sweep]),
+                cell_number("at", NULL, "%.3g", one->at),
+                cell_text("method", NULL, method_names[one->method]),
+                cell_text("policy", NULL, policy_names[one->policy]),
+                cell_count("targets", NULL, one->targets),
+                cell_number("rank", NULL, "%.2f", 100 * (double)one->full / (double)one->targets),
+                cell_number("decomposed", NULL, "%.2f", 100 * stability_fallback(one)),
+                cell_number("linear", NULL, "%.2g", stability_linear(one)),
+                cell_number("noise", NULL, "%.2g", one->noise),
+                cell_number("exact f32", NULL, "%.1g", one->linear_full),
+                cell_number("f64", NULL, "%.1g", wide->linear_full),
+                cell_number("bound f32", NULL, "%.2g", stability_ratio(one)),
+                cell_number("f64", NULL, "%.2g", stability_ratio(wide)));
     }
     table_print(table);
 }
 
 /* ---- All of it ------------------------------------------------------------------------------- */
 
+static struct cell counted(const char *key, int64_t count)
+{
+    return cell_count(NULL, key, count);
+}
+
+static struct cell measured(const char *key, double number)
+{
+    return cell_number(NULL, key, NULL, number);
+}
+
 static struct table *table_of_cases(const struct stability *stability)
 {
-    /* The last is the time. */
-    static const char *const keys[] = {"sweep",
-                                       "policy",
-                                       "method",
-                                       "precision",
-                                       "place",
-                                       "at",
-                                       "end",
-                                       "threshold",
-                                       "targets",
-                                       "rank",
-                                       "full",
-                                       "decomposed",
-                                       "empty",
-                                       "compared",
-                                       "undecided",
-                                       "ratio_full",
-                                       "ratio_touched",
-                                       "wrong_ranks",
-                                       "not_finite",
-                                       "linear_mean",
-                                       "linear_full",
-                                       "noise",
-                                       "condition",
-                                       "jump",
-                                       "jump_left",
-                                       "correction_jump",
-                                       "correction_jump_left",
-                                       "other_bits",
-                                       ""};
-    enum { KEYS = sizeof keys / sizeof keys[0] };
-    static struct column columns[KEYS + 1];
-    for (int k = 0; k < KEYS; ++k)
-        columns[k].key = keys[k];
-    struct table *table = table_create("stability", columns);
+    struct table *table = table_create("stability");
     for (int k = 0; k < stability->case_count; ++k) {
         struct stability_case *one = &stability->cases[k];
         one->once = (struct samples){&one->time, 1, 1};
-        TABLE_ROW(
-            table, cell_text(sweep_names[one->sweep]), cell_text(policy_names[one->policy]),
-            cell_text(method_names[one->method]), cell_text(precision_names[one->precision]),
-            cell_text(table_text("%g", one->at)), cell_number(one->at), cell_number(one->end),
-            cell_number(stability_threshold(one)), cell_count(one->targets),
-            cell_number(stability_rank(one)), cell_number((double)one->full / (double)one->targets),
-            cell_number(stability_fallback(one)), cell_count(one->empty), cell_count(one->compared),
-            cell_count(one->undecided), cell_number(one->ratio_full),
-            cell_number(one->ratio_touched), cell_count(one->wrong_ranks),
-            cell_count(one->not_finite), cell_number(stability_linear(one)),
-            cell_number(one->linear_full), cell_number(one->noise), cell_number(one->condition),
-            cell_number(one->jump), cell_number(one->jump_left), cell_number(one->correction_jump),
-            cell_number(one->correction_jump_left), cell_count(one->other_bits),
-            cell_time(&one->once, 1));
+        TABLE_ROW(table, cell_text(NULL, "sweep", sweep_names[one->sweep]),
+                  cell_text(NULL, "policy", policy_names[one->policy]),
+                  cell_text(NULL, "method", method_names[one->method]),
+                  cell_text(NULL, "precision", precision_names[one->precision]),
+                  cell_text(NULL, "place", table_text("%g", one->at)), measured("at", one->at),
+                  measured("end", one->end), measured("threshold", stability_threshold(one)),
+                  counted("targets", one->targets), measured("rank", stability_rank(one)),
+                  measured("full", (double)one->full / (double)one->targets),
+                  measured("decomposed", stability_fallback(one)), counted("empty", one->empty),
+                  counted("compared", one->compared), counted("undecided", one->undecided),
+                  measured("ratio_full", one->ratio_full),
+                  measured("ratio_touched", one->ratio_touched),
+                  counted("wrong_ranks", one->wrong_ranks), counted("not_finite", one->not_finite),
+                  measured("linear_mean", stability_linear(one)),
+                  measured("linear_full", one->linear_full), measured("noise", one->noise),
+                  measured("condition", one->condition), measured("jump", one->jump),
+                  measured("jump_left", one->jump_left),
+                  measured("correction_jump", one->correction_jump),
+                  measured("correction_jump_left", one->correction_jump_left),
+                  counted("other_bits", one->other_bits), cell_ms(NULL, "", &one->once));
     }
     return table;
 }
@@ -211,12 +186,11 @@ static bool draw(const struct stability *stability)
 static void print_results(const struct stability *stability, const struct report *report)
 {
     const struct settings *settings = &stability->settings;
-    char count[TEXT_SIZE];
     const int32_t side = settings_side(settings->particles, 3);
     printf("particles  %s in the largest block, jitter %g spacings, H = %g spacings, %s, "
            "eps 1e-2, but\n           for what a sweep changes; %d round%s of random "
            "numbers, seed %d\n",
-           text_grouped((int64_t)side * side * side, count), settings->jitter, settings->support,
+           text_grouped((int64_t)side * side * side), settings->jitter, settings->support,
            kernel_names[settings->kernel], settings->repetitions,
            settings->repetitions > 1 ? "s" : "", (int)stability->seed);
     report_machine(report);

@@ -157,47 +157,38 @@ static const char *const arrangements[LIMIT_ROOTS] = {
     "targets in lanes, sqrt and division, weights first",
     "targets in lanes, estimate and Newton step, weights first"};
 
-static struct table *table_of_probe(const struct limit *limit, sphg_context *context)
+static struct table *table_of_probe(const struct limit *limit)
 {
-    static const struct column columns[] = {{"probe", "work", NULL, NULL},
-                                            {"time", "", NULL, NULL},
-                                            {"error", "error_max", "%.1e", NULL},
-                                            {"off by", "matrix_deviation", "%.1e", NULL},
-                                            {0}};
-    struct table *table = table_create("probe", columns);
+    const double error = probe_error(limit->probe),
+                 deviation = probe_matrix_deviation(limit->probe, limit->scene.context);
+    struct table *table = table_create("probe");
     for (int work = 0; work < PROBE_WORKS; ++work)
-        TABLE_ROW(table, cell_text(work_names[work]), cell_time(&limit->times[work], 1),
-                  cell_number(probe_error(limit->probe)),
-                  cell_number(probe_matrix_deviation(limit->probe, context)));
+        TABLE_ROW(table, cell_text("probe", "work", work_names[work]),
+                  cell_ms("time", "", &limit->times[work]),
+                  cell_number("error", "error_max", "%.1e", error),
+                  cell_number("off by", "matrix_deviation", "%.1e", deviation));
     return table;
 }
 
 static void print_times(const struct limit *limit)
 {
-    static const struct column columns[] = {{"", NULL, NULL, NULL},
-                                            {"matrices", NULL, NULL, NULL},
-                                            {"gradient", NULL, NULL, NULL},
-                                            {"fused", NULL, NULL, NULL},
-                                            {0}};
-    static const struct column of_shares[] = {{"", NULL, NULL, NULL},
-                                              {"matrices", NULL, "%.0f", NULL},
-                                              {"gradient", NULL, "%.0f", NULL},
-                                              {"fused", NULL, "%.0f", NULL},
-                                              {0}};
-    struct table *table = table_create("", columns), *shares = table_create("", of_shares);
-    TABLE_ROW(table, cell_text(table_text("library, %s", library_isa())),
-              cell_time(&limit->times[LIBRARY], 1), cell_time(&limit->times[LIBRARY + 1], 1),
-              cell_time(&limit->times[LIBRARY + 2], 1));
+    struct table *table = table_create(""), *shares = table_create("");
+    TABLE_ROW(table, cell_text("", NULL, table_text("library, %s", library_isa())),
+              cell_ms("matrices", NULL, &limit->times[LIBRARY]),
+              cell_ms("gradient", NULL, &limit->times[LIBRARY + 1]),
+              cell_ms("fused", NULL, &limit->times[LIBRARY + 2]));
     for (int finished = 0; finished < 2; ++finished) {
         table_section(table, finished ? "limit: reduced, inverted, formed" : "limit: sums alone");
         table_section(shares, table_text("share of the limit, %s [%%]", stage_names[finished]));
         for (int set = 0; set < limit->set_count; ++set) {
-            struct cell cells[LIMIT_WORKS + 1] = {cell_text(limit->sets[set]->name)},
+            struct cell cells[LIMIT_WORKS + 1] = {cell_text("", NULL, limit->sets[set]->name)},
                                             percent[LIMIT_WORKS + 1] = {cells[0]};
             for (int work = 0; work < LIMIT_WORKS; ++work) {
-                const struct samples *times = times_of(limit, set, work, finished);
-                cells[work + 1] = cell_time(&times[fastest_of(times)], 1);
-                percent[work + 1] = cell_number(share_of(limit, &times[fastest_of(times)], work));
+                const struct samples *times = times_of(limit, set, work, finished),
+                                     *fastest = &times[fastest_of(times)];
+                cells[work + 1] = cell_ms(work_names[work], NULL, fastest);
+                percent[work + 1] =
+                    cell_number(work_names[work], NULL, "%.0f", share_of(limit, fastest, work));
             }
             table_add(table, cells, LIMIT_WORKS + 1);
             table_add(shares, percent, LIMIT_WORKS + 1);
@@ -209,31 +200,29 @@ static void print_times(const struct limit *limit)
 
 /* Every arrangement of every set, and the library, whose share of the limit stands with the limit.
  */
-static struct table *table_of_arrangements(const struct limit *limit)
+static void report_arrangements(const struct limit *limit, struct report *report)
 {
-    static const struct column columns[] = {
-        {NULL, "work", NULL, NULL},     {NULL, "stage", NULL, NULL},
-        {NULL, "set", NULL, NULL},      {NULL, "arrangement", NULL, NULL},
-        {NULL, "", NULL, NULL},         {NULL, "deviation", NULL, NULL},
-        {NULL, "is_limit", NULL, NULL}, {NULL, "percent_of_library", NULL, NULL},
-        {NULL, "vectors", NULL, NULL},  {0}};
-    struct table *table = table_create("limit", columns);
+    struct table *table = table_create("limit"), *library = table_create("limit");
     for (int n = 0; n < limit->set_count * SET_ITEMS; ++n) {
         const int k = n % LIMIT_ROOTS, set = n / SET_ITEMS;
         const int stage = n / LIMIT_ROOTS % 2, work = n / LIMIT_ROOTS / 2 % LIMIT_WORKS;
         const struct samples *times = times_of(limit, set, work, stage);
-        TABLE_ROW(table, cell_text(work_names[work]), cell_text(stage_names[stage]),
-                  cell_text(limit->sets[set]->name), cell_text(arrangements[k]),
-                  cell_time(&times[k], 1), cell_number(limit->deviation[set][work]),
-                  cell_number(k == fastest_of(times)),
-                  cell_number(share_of(limit, &times[k], work)),
-                  cell_number((double)limit->packed[set][0].data.slots / limit->sets[set]->lanes));
+        TABLE_ROW(table, cell_text(NULL, "work", work_names[work]),
+                  cell_text(NULL, "stage", stage_names[stage]),
+                  cell_text(NULL, "set", limit->sets[set]->name),
+                  cell_text(NULL, "arrangement", arrangements[k]), cell_ms(NULL, "", &times[k]),
+                  cell_number(NULL, "deviation", NULL, limit->deviation[set][work]),
+                  cell_number(NULL, "is_limit", NULL, k == fastest_of(times)),
+                  cell_number(NULL, "percent_of_library", NULL, share_of(limit, &times[k], work)),
+                  cell_number(NULL, "vectors", NULL,
+                              (double)limit->packed[set][0].data.slots / limit->sets[set]->lanes));
     }
     for (int work = 0; work < LIMIT_WORKS; ++work)
-        TABLE_ROW(table, cell_text(work_names[work]), cell_text("library"), cell_none(),
-                  cell_none(), cell_time(&limit->times[LIBRARY + work], 1), cell_none(),
-                  cell_none(), cell_none(), cell_none());
-    return table;
+        TABLE_ROW(library, cell_text(NULL, "work", work_names[work]),
+                  cell_text(NULL, "stage", "library"),
+                  cell_ms(NULL, "", &limit->times[LIBRARY + work]));
+    report_times(report, table);
+    report_times(report, library);
 }
 
 /* What each set goes through, and which arrangement of its sums is the fastest. */
@@ -252,15 +241,12 @@ static void print_sets(const struct limit *limit)
 
 static void print_arrangements(const struct limit *limit)
 {
-    static const struct column columns[] = {{"fastest arrangement, sums", NULL, NULL, NULL},
-                                            {"", NULL, NULL, NULL},
-                                            {"", NULL, NULL, NULL},
-                                            {0}};
-    struct table *table = table_create("", columns);
+    struct table *table = table_create("");
     for (int set = 0; set < limit->set_count; ++set)
         for (int work = 0; work < LIMIT_WORKS; ++work)
-            TABLE_ROW(table, cell_text(limit->sets[set]->name), cell_text(work_names[work]),
-                      cell_text(arrangements[fastest_of(times_of(limit, set, work, 0))]));
+            TABLE_ROW(table, cell_text("fastest arrangement, sums", NULL, limit->sets[set]->name),
+                      cell_text("", NULL, work_names[work]),
+                      cell_text("", NULL, arrangements[fastest_of(times_of(limit, set, work, 0))]));
     table_print(table);
 }
 
@@ -278,11 +264,11 @@ static void report_results(const struct limit *limit)
            "times      median (min-max) of %d rounds, ms for all targets\n",
            settings->repetitions);
     report_if_busy(report, &limit->times[PROBE_GRADIENT]);
-    report_table(report, table_of_probe(limit, limit->scene.context));
+    report_table(report, table_of_probe(limit));
     if (!limit->probe_only) {
         print_times(limit);
         print_arrangements(limit);
-        report_times(report, table_of_arrangements(limit));
+        report_arrangements(limit, report);
     }
     report_write(report);
 }

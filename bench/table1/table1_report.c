@@ -5,7 +5,6 @@
 #include "report/machine.h"
 #include "report/plot.h"
 #include "report/report.h"
-#include "report/text.h"
 #include "table1.h"
 #include <math.h>
 #include <stdio.h>
@@ -16,11 +15,10 @@ static void print_lattice(const struct table1 *table)
 {
     const struct settings *settings = &table->settings;
     const int32_t side = table->source.side;
-    char count[TEXT_SIZE], wanted[TEXT_SIZE];
-    printf("particles  %s in a lattice of %d x %d x %d",
-           text_grouped(table->particles.count, count), side, side, side);
+    printf("particles  %s in a lattice of %d x %d x %d", text_grouped(table->particles.count), side,
+           side, side);
     if (table->particles.count != settings->particles)
-        printf(" (the cube nearest to %s)", text_grouped(settings->particles, wanted));
+        printf(" (the cube nearest to %s)", text_grouped(settings->particles));
     printf(", spacing 1/128\n           ");
     if (settings->jitter > 0)
         printf("each coordinate moved by up to %g spacings, ", settings->jitter);
@@ -30,9 +28,8 @@ static void print_lattice(const struct table1 *table)
 
 static void print_input(const struct table1 *table)
 {
-    char count[TEXT_SIZE];
     const struct particles *particles = &table->particles;
-    printf("particles  %s of %s%s%s\n", text_grouped(particles->count, count), table->source.input,
+    printf("particles  %s of %s%s%s\n", text_grouped(particles->count), table->source.input,
            particles->flat[0] ? ", " : "", particles->flat);
     if (particles->more)
         printf("           the first of several frames in the file\n");
@@ -60,20 +57,16 @@ static void print_set_up(const struct table1 *table, const struct report *report
 
 static void print_search(const struct table1 *table)
 {
-    char pairs[TEXT_SIZE], median[TEXT_SIZE], least[TEXT_SIZE], most[TEXT_SIZE], first[TEXT_SIZE];
     const double count = table->particles.count;
     const struct spread search = samples_wall(&table->times[TABLE1_SEARCH]);
     printf("pairs      %s, %.2f a particle; %.1f bytes a particle held by the neighbours\n",
-           text_grouped(table->neighbors.pairs, pairs), (double)table->neighbors.pairs / count,
+           text_grouped(table->neighbors.pairs), (double)table->neighbors.pairs / count,
            (double)table->neighbors.bytes / count);
-    text_time(search.median, median);
-    text_time(search.min, least);
-    text_time(search.max, most);
-    text_time(table->first_search, first);
-    printf("search     T_ns %s ms (%s-%s)", median, least, most);
+    printf("search     T_ns %s ms (%s-%s)", text_time(search.median), text_time(search.min),
+           text_time(search.max));
     if (table->neighbors.pairs > 0)
         printf(", %.3f ns a pair", 1e6 * search.median / (double)table->neighbors.pairs);
-    printf("; the first, with allocation, %s ms\n", first);
+    printf("; the first, with allocation, %s ms\n", text_time(table->first_search));
 }
 
 /* How much longer a particle takes here than with the probe. */
@@ -86,12 +79,10 @@ static double over_probe(const struct table1 *table, enum work work, enum probe_
 static void print_probe(const struct table1 *table)
 {
     const struct samples *probe = &table->times[TABLE1_PROBE];
-    char matrices[TEXT_SIZE], gradient[TEXT_SIZE], count[TEXT_SIZE];
-    text_time(samples_median(&probe[PROBE_MATRICES]), matrices);
-    text_time(samples_median(&probe[PROBE_GRADIENT]), gradient);
     printf("yardstick  %s and %s ms for matrices and gradient of %s particles by `limit --probe`;\n"
            "           a particle's T_mat and T_grad of KGC take %.2f and %.2f of its\n",
-           matrices, gradient, text_grouped(table->probe_count, count),
+           text_time(samples_median(&probe[PROBE_MATRICES])),
+           text_time(samples_median(&probe[PROBE_GRADIENT])), text_grouped(table->probe_count),
            over_probe(table, WORK_MATRICES, PROBE_MATRICES),
            over_probe(table, WORK_GRADIENT, PROBE_GRADIENT));
 }
@@ -107,77 +98,53 @@ static bool some_are_deficient(const struct table1 *table)
     return false;
 }
 
-static struct cell cell_per_pair(const struct table1 *table, const struct samples *samples)
+static struct cell cell_per_pair(const char *head, const struct table1 *table,
+                                 const struct samples *samples)
 {
-    return samples->count > 0 && table->neighbors.pairs > 0
-               ? cell_number(1e6 * samples_median(samples) / (double)table->neighbors.pairs)
-               : cell_none();
+    const double pairs = (double)table->neighbors.pairs;
+    return cell_if(samples->count > 0 && pairs > 0,
+                   cell_number(head, NULL, "%.3f", 1e6 * samples_median(samples) / pairs));
 }
 
-static struct cell cell_error(double error)
+static struct cell cell_error(const char *head, const char *key, bool there, double error)
 {
-    return isnan(error) ? cell_none() : cell_number(error);
+    return cell_if(there && !isnan(error), cell_number(head, key, "%.2e", error));
 }
 
-static struct cell cell_paper(double time)
+static struct cell cell_paper(const char *head, const char *key, double time)
 {
-    return time > 0 ? cell_number(time) : cell_none();
+    return cell_if(time > 0, cell_number(head, key, "%.2f", time));
 }
 
 /* Rows of methods, which are printed as columns, as in the paper. */
-static const struct column columns[] = {{"", "method", NULL, NULL},
-                                        {"T_mat   [ms]", "matrix", NULL, NULL},
-                                        {"T_grad  [ms]", "gradient", NULL, NULL},
-                                        {"fused   [ms]", "fused", NULL, NULL},
-                                        {"T_mat  +weights [ms]", "matrix+weights", NULL, NULL},
-                                        {"T_grad +weights [ms]", "gradient+weights", NULL, NULL},
-                                        {"fused  +weights [ms]", "fused+weights", NULL, NULL},
-                                        {"", NULL, NULL, NULL},
-                                        {"T_mat   [ns a pair]", NULL, "%.3f", NULL},
-                                        {"T_grad  [ns a pair]", NULL, "%.3f", NULL},
-                                        {"fused   [ns a pair]", NULL, "%.3f", NULL},
-                                        {"", NULL, NULL, NULL},
-                                        {"error of T_grad", "gradient_error", "%.2e", NULL},
-                                        {"error of fused", "fused_error", "%.2e", NULL},
-                                        {NULL, "kept_error", NULL, NULL},
-                                        {"rank 0", NULL, NULL, NULL},
-                                        {"rank 1", NULL, NULL, NULL},
-                                        {"rank 2", NULL, NULL, NULL},
-                                        {"rank 3", NULL, NULL, NULL},
-                                        {"to the eigensolver", NULL, NULL, NULL},
-                                        {"", NULL, NULL, NULL},
-                                        {"paper, T_mat  [ms]", "paper_matrix", "%.2f", NULL},
-                                        {"paper, T_grad [ms]", "paper_gradient", "%.2f", NULL},
-                                        {0}};
-
 static void add_method(struct table *rows, const struct table1 *table, int method, bool show_ranks)
 {
+    const struct cell blank = {.head = ""};
     const struct table1_method *one = &table->methods[method];
-    struct cell cells[sizeof columns / sizeof columns[0]];
-    const bool corrected = one->method != SPHG_PLAIN;
-    int count = 0;
-    cells[count++] = cell_text(method_names[one->method]);
-    for (int kept = 0; kept < 2; ++kept)
-        for (int work = WORK_MATRICES; work < WORKS; ++work)
-            cells[count++] =
-                cell_time(&table->times[table1_item(kept, method, (enum work)work)], 1);
-    cells[count++] = cell_none();
-    for (int work = WORK_MATRICES; work < WORKS; ++work)
-        cells[count++] =
-            cell_per_pair(table, &table->times[table1_item(0, method, (enum work)work)]);
-    cells[count++] = cell_none();
-    cells[count++] = cell_error(one->gradient_error);
-    cells[count++] = corrected ? cell_error(one->fused_error) : cell_none();
-    cells[count++] = table1_keeps_weights(one) ? cell_error(one->kept_error) : cell_none();
-    for (int rank = 0; rank < 4; ++rank)
-        cells[count++] = corrected && show_ranks && rank <= table->particles.dimension
-                             ? cell_count(one->stats.rank[rank])
-                             : cell_none();
-    cells[count++] = corrected && show_ranks ? cell_count(one->stats.decomposed) : cell_none();
-    cells[count++] = cell_none();
-    cells[count++] = cell_paper(one->paper_matrix);
-    cells[count++] = cell_paper(one->paper_gradient);
-    table_add(rows, cells, (size_t)count);
+    const struct samples *plain = &table->times[table1_item(0, method, WORK_SEARCH)],
+                         *kept = &table->times[table1_item(1, method, WORK_SEARCH)];
+    const bool corrected = one->method != SPHG_PLAIN, ranked = corrected && show_ranks;
+    TABLE_ROW(rows, cell_text("", "method", method_names[one->method]),
+              cell_ms("T_mat   [ms]", "matrix", &plain[WORK_MATRICES]),
+              cell_ms("T_grad  [ms]", "gradient", &plain[WORK_GRADIENT]),
+              cell_ms("fused   [ms]", "fused", &plain[WORK_FUSED]),
+              cell_ms("T_mat  +weights [ms]", "matrix+weights", &kept[WORK_MATRICES]),
+              cell_ms("T_grad +weights [ms]", "gradient+weights", &kept[WORK_GRADIENT]),
+              cell_ms("fused  +weights [ms]", "fused+weights", &kept[WORK_FUSED]), blank,
+              cell_per_pair("T_mat   [ns a pair]", table, &plain[WORK_MATRICES]),
+              cell_per_pair("T_grad  [ns a pair]", table, &plain[WORK_GRADIENT]),
+              cell_per_pair("fused   [ns a pair]", table, &plain[WORK_FUSED]), blank,
+              cell_error("error of T_grad", "gradient_error", true, one->gradient_error),
+              cell_error("error of fused", "fused_error", corrected, one->fused_error),
+              cell_error(NULL, "kept_error", table1_keeps_weights(one), one->kept_error),
+              cell_if(ranked, cell_count("rank 0", NULL, one->stats.rank[0])),
+              cell_if(ranked, cell_count("rank 1", NULL, one->stats.rank[1])),
+              cell_if(ranked, cell_count("rank 2", NULL, one->stats.rank[2])),
+              cell_if(ranked && table->particles.dimension == 3,
+                      cell_count("rank 3", NULL, one->stats.rank[3])),
+              cell_if(ranked, cell_count("to the eigensolver", NULL, one->stats.decomposed)), blank,
+              cell_paper("paper, T_mat  [ms]", "paper_matrix", one->paper_matrix),
+              cell_paper("paper, T_grad [ms]", "paper_gradient", one->paper_gradient));
 }
 
 /* ---- What it means --------------------------------------------------------------------------- */
@@ -223,35 +190,27 @@ static void print_footer(const struct table1 *table, bool deficient)
 static void draw(const struct table1 *table, const struct table *rows)
 {
     const struct settings *settings = &table->settings;
-    char count[TEXT_SIZE];
     if (!settings->output)
         return;
     table_write_csv(rows, settings->output, "table1.csv");
     plot_written(settings->output, "table1/table1", "table1.csv",
                  table_text("title = '%s particles, %s, H = %g spacings, search not included; %s, "
                             "%s, %s'\nthreads = %d\n",
-                            text_grouped(table->particles.count, count),
-                            kernel_title(settings->kernel), settings->support, machine_cpu(),
-                            library_isa(), precision_names[settings->precision],
-                            settings->threads));
+                            text_grouped(table->particles.count), kernel_title(settings->kernel),
+                            settings->support, machine_cpu(), library_isa(),
+                            precision_names[settings->precision], settings->threads));
 }
 
 static void write_report(const struct table1 *table, const struct table *rows,
                          struct report *report)
 {
-    static const struct column of_search[] = {{NULL, "search", NULL, NULL}, {0}};
-    static const struct column of_probe[] = {{NULL, "matrices", NULL, NULL},
-                                             {NULL, "gradient", NULL, NULL},
-                                             {NULL, "particles", NULL, NULL},
-                                             {0}};
     const struct settings *settings = &table->settings;
     const double count = table->particles.count;
-    struct table *search = table_create("table1", of_search),
-                 *probe = table_create("probe", of_probe);
-    TABLE_ROW(search, cell_time(&table->times[TABLE1_SEARCH], 1));
-    TABLE_ROW(probe, cell_time(&table->times[TABLE1_PROBE + PROBE_MATRICES], 1),
-              cell_time(&table->times[TABLE1_PROBE + PROBE_GRADIENT], 1),
-              cell_count(table->probe_count));
+    struct table *search = table_create("table1"), *probe = table_create("probe");
+    TABLE_ROW(search, cell_ms(NULL, "search", &table->times[TABLE1_SEARCH]));
+    TABLE_ROW(probe, cell_ms(NULL, "matrices", &table->times[TABLE1_PROBE + PROBE_MATRICES]),
+              cell_ms(NULL, "gradient", &table->times[TABLE1_PROBE + PROBE_GRADIENT]),
+              cell_count(NULL, "particles", table->probe_count));
     report_text(report, "particles_from", table->source.input ? table->source.input : "lattice");
     report_lattice_numbers(report, table->particles.count, (double)table->neighbors.pairs / count);
     report_number(report, "dimension", table->particles.dimension);
@@ -271,7 +230,7 @@ void table1_report(const struct table1 *table)
 {
     const bool deficient = some_are_deficient(table);
     struct report *report = report_create(&table->settings);
-    struct table *rows = table_create("table1", columns);
+    struct table *rows = table_create("table1");
     for (int k = 0; k < TABLE1_METHODS; ++k)
         add_method(rows, table, k, deficient || table->source.input);
     print_set_up(table, report);
