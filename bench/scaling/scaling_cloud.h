@@ -6,8 +6,8 @@
 #include <stdbool.h>
 
 enum cloud_shape {
-    CLOUD_LATTICE,
     CLOUD_JITTERED,
+    CLOUD_LATTICE,
     CLOUD_ROTATED, /* jittered, then turned against the axes */
     CLOUD_SHEETS,  /* jittered sheets of one layer, out of each other's reach */
     CLOUD_SPRAY,   /* some three neighbours each */

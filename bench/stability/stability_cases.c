@@ -17,100 +17,62 @@ const char *const policy_names[STABILITY_POLICIES] = {
     [SPHG_IDENTITY] = "identity",
 };
 
-/* Places of a sweep; those of a walk are the ends of its legs. */
+/* Places of a sweep: listed, or `count` of them, each 10^exponent times the one before or `step`
+ * beside it. A walk goes from one to the next. */
 struct places {
+    double first, exponent, step;
+    bool is_walk;
     int count;
     double at[PLACES_MOST];
 };
 
-static struct places powers(double first, double factor, int count)
-{
-    struct places places = {.count = count};
-    for (int k = 0; k < count; ++k)
-        places.at[k] = first * pow(10, k * log10(factor));
-    return places;
-}
-
-static struct places equal_steps(double first, double step, int count)
-{
-    struct places places = {.count = count};
-    for (int k = 0; k < count; ++k)
-        places.at[k] = first + step * k;
-    return places;
-}
-
-static struct places thresholds(void)
-{
-    struct places places = powers(1e-6, sqrt(10), 11);
-    places.at[places.count++] = 0.3;
-    return places;
-}
-
-static struct places offsets(void)
-{
-    struct places places = powers(0.1, 10, 10);
-    places.at[0] = 0;
-    return places;
-}
-
-static struct places neighbour_counts(void)
-{
-    return (struct places){24, {0,  1,  2,  3,  4,  5,  6,   8,   10,  12,  15,  20,
-                                25, 30, 40, 50, 60, 80, 100, 130, 160, 200, 250, 300}};
-}
+static const struct places sweeps[] = {
+    [SWEEP_SLAB] = {.first = 1, .exponent = 0.5, .count = 25},
+    [SWEEP_THINNING] = {.first = 1, .exponent = 0.5, .count = 25},
+    [SWEEP_THRESHOLD] = {.count = 12,
+                         .at = {1e-6, 3.1622776601683795e-6, 1e-5, 3.1622776601683795e-5, 1e-4,
+                                3.1622776601683795e-4, 1e-3, 3.1622776601683795e-3, 1e-2,
+                                3.1622776601683795e-2, 1e-1, 0.3}},
+    [SWEEP_CURVATURE] = {.first = 1e-7, .exponent = 0.5, .count = 11},
+    [SWEEP_GRADING] = {.count = 7, .at = {1, 4, 16, 64, 256, 1024, 4096}},
+    [SWEEP_OFFSET] = {.count = 10, .at = {0, 1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8}},
+    [SWEEP_SCALE] = {.is_walk = true, .count = 17},
+    [SWEEP_NEIGHBOURS] = {.count = 24,
+                          .at = {0,  1,  2,  3,  4,  5,  6,   8,   10,  12,  15,  20,
+                                 25, 30, 40, 50, 60, 80, 100, 130, 160, 200, 250, 300}},
+    [SWEEP_VOLUMES] = {.first = 1, .exponent = 1, .count = 13},
+    [SWEEP_JITTER] = {.step = 0.1, .count = 11},
+    [SWEEP_CROWDS] = {.count = 8, .at = {1, 3, 10, 30, 100, 300, 1000, 4000}},
+    [SWEEP_MERGING] = {.first = 1.1, .step = -0.05, .is_walk = true, .count = 23}};
 
 /* From the smallest normal V = 2^(3 k) to the smallest normal 1 / H^3. */
-static struct places scales(double support, enum precision precision)
+static double scale_at(int k, double support, enum precision precision)
 {
     const int range = (precision == PRECISION_F64 ? -DBL_MIN_EXP : -FLT_MIN_EXP) + 1;
     const double least = -floor(range / 3.0), most = floor(range / 3.0 - log2(support));
-    struct places places = equal_steps(least, (most - least) / 16, 17);
-    for (int k = 0; k < places.count; ++k)
-        places.at[k] = round(places.at[k]);
-    return places;
+    return round(least + (most - least) / 16 * k);
 }
 
 static struct places places_of(const struct settings *settings, const struct stability_case *one)
 {
-    switch (one->sweep) {
-    case SWEEP_SLAB:
-    case SWEEP_THINNING:
-        return powers(1, sqrt(10), 25);
-    case SWEEP_THRESHOLD:
-        return thresholds();
-    case SWEEP_CURVATURE:
-        return powers(1e-7, sqrt(10), 11);
-    case SWEEP_GRADING:
-        return powers(1, 4, 7);
-    case SWEEP_OFFSET:
-        return offsets();
-    case SWEEP_SCALE:
-        return scales(settings->support, one->precision);
-    case SWEEP_NEIGHBOURS:
-        return neighbour_counts();
-    case SWEEP_VOLUMES:
-        return powers(1, 10, 13);
-    case SWEEP_JITTER:
-        return equal_steps(0, 0.1, 11);
-    case SWEEP_CROWDS:
-        return (struct places){8, {1, 3, 10, 30, 100, 300, 1000, 4000}};
-    default:
-        return equal_steps(1.1, -0.05, 23);
-    }
+    struct places places = sweeps[one->sweep];
+    for (int k = 0; k < places.count; ++k)
+        if (one->sweep == SWEEP_SCALE)
+            places.at[k] = scale_at(k, settings->support, one->precision);
+        else if (places.exponent > 0)
+            places.at[k] = places.first * pow(10, k * places.exponent);
+        else if (places.step != 0)
+            places.at[k] = places.first + places.step * k;
+    return places;
 }
 
 /* First, last, and a few between. */
 static struct places thinned(const struct places *all, int keep)
 {
-    struct places places = {.count = keep};
+    struct places places = {.is_walk = all->is_walk, .count = keep};
     for (int k = 0; k < keep; ++k)
         places.at[k] = all->at[k * (all->count - 1) / (keep - 1)];
     return places;
-}
-
-static bool is_walk(enum stability_sweep sweep)
-{
-    return sweep == SWEEP_SCALE || sweep == SWEEP_MERGING;
 }
 
 static void add_case(struct stability *stability, const struct stability_case *described)
@@ -129,10 +91,10 @@ static void add_places(struct stability *stability, struct stability_case *one)
     struct places places = places_of(&stability->settings, one);
     if (stability->quick)
         places = thinned(&places, 4);
-    const int last = is_walk(one->sweep) ? places.count - 1 : places.count;
+    const int last = places.is_walk ? places.count - 1 : places.count;
     for (int k = 0; k < last; ++k) {
         one->at = one->end = places.at[k];
-        if (is_walk(one->sweep))
+        if (places.is_walk)
             one->end = places.at[k + 1];
         add_case(stability, one);
     }

@@ -3,8 +3,7 @@
  * Folding is mostly rotation, which uncorrected viscosity resists. In 2D; the full size adds the
  * same in 3D, and other viscosities. */
 #include "solver/output.h"
-#include "solver/pressure.h"
-#include "solver/viscosity.h"
+#include "solver/viscous_fluid.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,15 +15,6 @@ static const double gravity[3] = {0.1, -9.81, 0}; /* leans a little, as the pape
 static const double friction = 0.1;               /* at the wall, a share of XSPH */
 static const double step = 2e-3;
 static const double early = 1.5, late = 2.1; /* [s] */
-
-struct sheet {
-    struct wall wall;
-    struct contact contact;
-    struct particles fluid;
-    struct pressure pressure;
-    struct operators operators;
-    struct viscosity viscosity;
-};
 
 /* A floor at y = 0, twice as dense as the fluid. */
 static struct wall make_floor(const struct sph *sph, double half_length, double half_width)
@@ -41,44 +31,14 @@ static struct wall make_floor(const struct sph *sph, double half_length, double 
 }
 
 /* sides: its form in particles; sides[2] above 1 is 3D. */
-static void sheet_init(struct sheet *sheet, const struct run *run, const struct sph *sph,
+static void sheet_init(struct viscous_fluid *sheet, const struct run *run, const struct sph *sph,
                        const int32_t sides[3], double nu)
 {
     struct random random = {run->options->seed};
-    sheet->wall = make_floor(sph, 4, sides[2] > 1 ? 1 : 0);
-    sheet->fluid = particles_block(sides, spacing, 1e-3, density, &random);
-    for (int32_t i = 0; i < sheet->fluid.count; ++i)
-        sheet->fluid.x[i][1] += spacing * (0.5 * (sides[1] - 1) + 1);
-    sheet->contact = contact_new(sph, &sheet->wall, sheet->fluid.count);
-    sheet->pressure = pressure_new(sph, &sheet->contact, sheet->fluid.count);
-    sheet->operators = operators_new(sph, sheet->pressure.neighbors, sheet->fluid.count);
-    sheet->viscosity = viscosity_new(&sheet->operators, sheet->fluid.count);
-    sheet->viscosity.dynamic = nu * density;
-}
-
-static void sheet_free(struct sheet *sheet)
-{
-    viscosity_free(&sheet->viscosity);
-    operators_free(&sheet->operators);
-    pressure_free(&sheet->pressure);
-    contact_free(&sheet->contact);
-    particles_free(&sheet->fluid);
-    wall_free(&sheet->wall);
-}
-
-static void advance(struct sheet *sheet)
-{
-    struct particles *fluid = &sheet->fluid;
-    pressure_prepare(&sheet->pressure, fluid);
-    pressure_stop_compression(&sheet->pressure, fluid, step);
-    operators_update(&sheet->operators, fluid);
-    for (int32_t i = 0; i < fluid->count; ++i)
-        add_scaled(fluid->v[i], step, gravity);
-    viscosity_solve(&sheet->viscosity, fluid, step);
-    contact_friction(&sheet->contact, friction, fluid);
-    pressure_keep_density(&sheet->pressure, fluid, step);
-    for (int32_t i = 0; i < fluid->count; ++i)
-        add_scaled(fluid->x[i], step, fluid->v[i]);
+    struct particles fluid = particles_block(sides, spacing, 1e-3, density, &random);
+    for (int32_t i = 0; i < fluid.count; ++i)
+        fluid.x[i][1] += spacing * (0.5 * (sides[1] - 1) + 1);
+    viscous_fluid_init(sheet, sph, make_floor(sph, 4, sides[2] > 1 ? 1 : 0), fluid, nu * density);
 }
 
 /* Mean x of the particles with y in [low, high); 0 where there are none. */
@@ -149,31 +109,31 @@ struct outcome {
 static struct outcome sink(const struct run *run, const struct sph *sph, const int32_t sides[3],
                            double nu, bool kept)
 {
-    struct sheet sheet;
+    struct viscous_fluid sheet;
     struct folds folds = {0};
     struct outcome outcome = {0};
     const int32_t middle = (int32_t)(early / step + 0.5), steps = (int32_t)(late / step + 0.5);
     sheet_init(&sheet, run, sph, sides, nu);
     for (int32_t k = 0; k < steps; ++k) {
         run_progress(run, k + 1, steps);
-        advance(&sheet);
-        folds_follow(&folds, centre_of_slice(&sheet.fluid, 0.4, 0.6));
+        viscous_fluid_step(&sheet, gravity, friction, step);
+        folds_follow(&folds, centre_of_slice(&sheet.particles, 0.4, 0.6));
         if (k + 1 == middle) {
-            outcome.amplitude = centre_line(&sheet.fluid);
-            outcome.early_top = highest(&sheet.fluid);
+            outcome.amplitude = centre_line(&sheet.particles);
+            outcome.early_top = highest(&sheet.particles);
             if (kept)
-                write_sheet(run, &sheet.fluid, "early");
+                write_sheet(run, &sheet.particles, "early");
         }
         if (kept && k % 25 == 0)
-            output_state(run, k / 25, step * (k + 1), &sheet.fluid);
+            output_state(run, k / 25, step * (k + 1), &sheet.particles);
     }
     if (kept)
-        write_sheet(run, &sheet.fluid, "late");
-    outcome.late_top = highest(&sheet.fluid);
+        write_sheet(run, &sheet.particles, "late");
+    outcome.late_top = highest(&sheet.particles);
     outcome.reversals = folds.reversals;
     outcome.iterations = (double)sheet.viscosity.implicit.iterations / steps;
     outcome.pressure_iterations = (double)sheet.pressure.density_iterations / steps;
-    sheet_free(&sheet);
+    viscous_fluid_free(&sheet);
     return outcome;
 }
 
@@ -210,14 +170,10 @@ static void more(const struct run *run, const struct sph *flat, const int32_t si
 /* What viscosity makes of a shear flow in the sheet as it stands. */
 static void measure_start(const struct run *run, const struct sph *sph, const int32_t sides[3])
 {
-    struct sheet sheet;
+    struct viscous_fluid sheet;
     sheet_init(&sheet, run, sph, sides, kinematic);
-    pressure_prepare(&sheet.pressure, &sheet.fluid);
-    operators_update(&sheet.operators, &sheet.fluid);
-    const struct shear_errors errors = viscosity_shear_errors(&sheet.viscosity, &sheet.fluid);
-    metrics_set(run->metrics, "shear_error", errors.power);
-    metrics_set(run->metrics, "shear_rate_error", errors.rate);
-    sheet_free(&sheet);
+    viscous_fluid_measure_shear(&sheet, run->metrics);
+    viscous_fluid_free(&sheet);
 }
 
 static void simulate_sheets(const struct run *run, const struct sph *sph, const int32_t sides[3])

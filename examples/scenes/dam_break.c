@@ -4,9 +4,8 @@
  * drops: of the field of the places x, whose gradient is I everywhere. */
 #include "numbers.h"
 #include "solver/output.h"
-#include "solver/pressure.h"
 #include "solver/time_step.h"
-#include "solver/viscosity.h"
+#include "solver/viscous_fluid.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -33,12 +32,7 @@ struct gradients {
 struct dam {
     double spacing, time, arrival;
     int32_t steps, frames; /* made, and written */
-    struct wall wall;
-    struct contact contact;
-    struct particles fluid;
-    struct pressure pressure;
-    struct operators operators;
-    struct viscosity viscosity;
+    struct viscous_fluid fluid;
     struct gradients gradients;
 };
 
@@ -82,17 +76,13 @@ static void dam_init(struct dam *dam, const struct run *run, const struct sph *s
 {
     struct random random = {run->options->seed};
     *dam = (struct dam){.spacing = spacing, .arrival = INFINITY};
-    dam->wall = make_tank(sph, spacing, &random);
-    dam->fluid = make_column(spacing, &random);
-    dam->contact = contact_new(sph, &dam->wall, dam->fluid.count);
-    dam->pressure = pressure_new(sph, &dam->contact, dam->fluid.count);
-    dam->operators = operators_new(sph, dam->pressure.neighbors, dam->fluid.count);
-    dam->viscosity = viscosity_new(&dam->operators, dam->fluid.count);
-    dam->viscosity.dynamic = kinematic * density;
-    dam->viscosity.warm = true;
-    dam->gradients.error = array_new(dam->fluid.count, sizeof *dam->gradients.error);
-    dam->gradients.rank = array_new(dam->fluid.count, sizeof *dam->gradients.rank);
-    dam->gradients.jacobian = array_new(dam->fluid.count, sizeof *dam->gradients.jacobian);
+    const struct wall wall = make_tank(sph, spacing, &random);
+    const struct particles fluid = make_column(spacing, &random);
+    viscous_fluid_init(&dam->fluid, sph, wall, fluid, kinematic * density);
+    dam->fluid.viscosity.warm = true;
+    dam->gradients.error = array_new(fluid.count, sizeof *dam->gradients.error);
+    dam->gradients.rank = array_new(fluid.count, sizeof *dam->gradients.rank);
+    dam->gradients.jacobian = array_new(fluid.count, sizeof *dam->gradients.jacobian);
 }
 
 static void dam_free(struct dam *dam)
@@ -100,27 +90,13 @@ static void dam_free(struct dam *dam)
     free(dam->gradients.error);
     free(dam->gradients.rank);
     free(dam->gradients.jacobian);
-    viscosity_free(&dam->viscosity);
-    operators_free(&dam->operators);
-    pressure_free(&dam->pressure);
-    contact_free(&dam->contact);
-    particles_free(&dam->fluid);
-    wall_free(&dam->wall);
+    viscous_fluid_free(&dam->fluid);
 }
 
 static void advance(struct dam *dam)
 {
-    struct particles *fluid = &dam->fluid;
-    const double dt = time_step(fluid, dam->spacing, longest_step);
-    pressure_prepare(&dam->pressure, fluid);
-    pressure_stop_compression(&dam->pressure, fluid, dt);
-    operators_update(&dam->operators, fluid);
-    for (int32_t i = 0; i < fluid->count; ++i)
-        add_scaled(fluid->v[i], dt, gravity);
-    viscosity_solve(&dam->viscosity, fluid, dt);
-    pressure_keep_density(&dam->pressure, fluid, dt);
-    for (int32_t i = 0; i < fluid->count; ++i)
-        add_scaled(fluid->x[i], dt, fluid->v[i]);
+    const double dt = time_step(&dam->fluid.particles, dam->spacing, longest_step);
+    viscous_fluid_step(&dam->fluid, gravity, 0, dt);
     dam->time += dt;
     ++dam->steps;
 }
@@ -133,7 +109,7 @@ static bool is_outside(const double *x)
 /* Which particles have neighbours enough for an exact gradient; of plain SPH none is asked for. */
 static void find_ranks(const struct sph *sph, struct dam *dam)
 {
-    const sphg_sources *sources = &dam->operators.sources;
+    const sphg_sources *sources = &dam->fluid.operators.sources;
     if (sph->corrected.method != SPHG_PLAIN)
         sph_check(sph, sphg_correction(sph->context, &sph->corrected, sources, NULL,
                                        sources->correction, sphg_view_u8(dam->gradients.rank, 1)));
@@ -143,11 +119,10 @@ static void find_ranks(const struct sph *sph, struct dam *dam)
 static void read_gradients(const struct sph *sph, struct dam *dam)
 {
     struct gradients *found = &dam->gradients;
-    pressure_prepare(&dam->pressure, &dam->fluid);
-    operators_update(&dam->operators, &dam->fluid);
-    operators_jacobian(&dam->operators, dam->fluid.x, found->jacobian);
+    viscous_fluid_prepare(&dam->fluid);
+    operators_jacobian(&dam->fluid.operators, dam->fluid.particles.x, found->jacobian);
     find_ranks(sph, dam);
-    for (int32_t i = 0; i < dam->fluid.count; ++i) {
+    for (int32_t i = 0; i < dam->fluid.particles.count; ++i) {
         const double *j = found->jacobian[i];
         found->error[i] = sqrt(
             0.5 * ((j[0] - 1) * (j[0] - 1) + j[1] * j[1] + j[3] * j[3] + (j[4] - 1) * (j[4] - 1)));
@@ -156,21 +131,21 @@ static void read_gradients(const struct sph *sph, struct dam *dam)
         if (found->rank[i] == 2)
             found->worst = numbers_larger(found->worst, found->error[i]);
     }
-    found->count += dam->fluid.count;
+    found->count += dam->fluid.particles.count;
 }
 
 static void note_arrival(struct dam *dam)
 {
-    for (int32_t i = 0; i < dam->fluid.count; ++i)
-        if (dam->fluid.x[i][0] > passed && !is_outside(dam->fluid.x[i]))
+    for (int32_t i = 0; i < dam->fluid.particles.count; ++i)
+        if (dam->fluid.particles.x[i][0] > passed && !is_outside(dam->fluid.particles.x[i]))
             dam->arrival = fmin(dam->arrival, dam->time);
 }
 
 static void write_fluid(const struct dam *dam, FILE *table)
 {
-    for (int32_t i = 0; table && i < dam->fluid.count; ++i)
-        fprintf(table, "%.4f %.4f %.3g\n", dam->fluid.x[i][0], dam->fluid.x[i][1],
-                dam->gradients.error[i]);
+    for (int32_t i = 0; table && i < dam->fluid.particles.count; ++i)
+        fprintf(table, "%.4f %.4f %.3g\n", dam->fluid.particles.x[i][0],
+                dam->fluid.particles.x[i][1], dam->gradients.error[i]);
     output_close(table);
 }
 
@@ -188,10 +163,11 @@ static void write_moment(const struct run *run, const struct sph *sph, struct da
     if (dam->frames < due || dam->steps % STEPS_BETWEEN_READINGS == 0)
         read_gradients(sph, dam);
     if (dam->steps % (5 * STEPS_BETWEEN_READINGS) == 0) {
-        const struct output_field fields[] = {
-            {"velocity", dam->fluid.v[0], 3}, {"gradient_error", dam->gradients.error, 1}, {0}};
+        const struct output_field fields[] = {{"velocity", dam->fluid.particles.v[0], 3},
+                                              {"gradient_error", dam->gradients.error, 1},
+                                              {0}};
         output_particles(run, dam->steps / (5 * STEPS_BETWEEN_READINGS), dam->time,
-                         dam->fluid.count, dam->fluid.x, fields);
+                         dam->fluid.particles.count, dam->fluid.particles.x, fields);
     }
     for (; dam->frames < due; ++dam->frames)
         write_fluid(dam, output_open_frame(run, "fluid", dam->frames));
@@ -200,9 +176,9 @@ static void write_moment(const struct run *run, const struct sph *sph, struct da
 static void set_outcome(const struct run *run, const struct dam *dam)
 {
     int32_t outside = 0;
-    for (int32_t i = 0; i < dam->fluid.count; ++i)
-        outside += is_outside(dam->fluid.x[i]);
-    metrics_set(run->metrics, "particles", dam->fluid.count);
+    for (int32_t i = 0; i < dam->fluid.particles.count; ++i)
+        outside += is_outside(dam->fluid.particles.x[i]);
+    metrics_set(run->metrics, "particles", dam->fluid.particles.count);
     metrics_set(run->metrics, "arrival", dam->arrival);
     metrics_set(run->metrics, "gradient_mean_error",
                 dam->gradients.sum / (double)dam->gradients.count);
@@ -212,9 +188,9 @@ static void set_outcome(const struct run *run, const struct dam *dam)
     metrics_set(run->metrics, "outside", outside);
     metrics_set(run->metrics, "steps", dam->steps);
     metrics_set(run->metrics, "iterations",
-                (double)dam->viscosity.implicit.iterations / dam->steps);
+                (double)dam->fluid.viscosity.implicit.iterations / dam->steps);
     metrics_set(run->metrics, "pressure_iterations",
-                (double)dam->pressure.density_iterations / dam->steps);
+                (double)dam->fluid.pressure.density_iterations / dam->steps);
 }
 
 /* Above the floor, away from the corners, a corrected slope is the normal over the distance,
@@ -222,12 +198,12 @@ static void set_outcome(const struct run *run, const struct dam *dam)
 static double slope_error(const struct dam *dam, double support_radius)
 {
     double worst = 0;
-    for (int32_t i = 0; i < dam->fluid.count; ++i) {
-        const double *x = dam->fluid.x[i];
-        if (x[0] < support_radius || dam->contact.touching[i] < 2)
+    for (int32_t i = 0; i < dam->fluid.particles.count; ++i) {
+        const double *x = dam->fluid.particles.x[i];
+        if (x[0] < support_radius || dam->fluid.contact.touching[i] < 2)
             continue;
         vector off = {0, 1, 0};
-        add_scaled(off, x[1], dam->contact.slope[i]);
+        add_scaled(off, x[1], dam->fluid.contact.slope[i]);
         worst = numbers_larger(worst, sqrt(dot(off, off)));
     }
     return worst;
@@ -235,11 +211,7 @@ static double slope_error(const struct dam *dam, double support_radius)
 
 static void measure_start(const struct run *run, struct dam *dam, double support_radius)
 {
-    pressure_prepare(&dam->pressure, &dam->fluid);
-    operators_update(&dam->operators, &dam->fluid);
-    const struct shear_errors errors = viscosity_shear_errors(&dam->viscosity, &dam->fluid);
-    metrics_set(run->metrics, "shear_error", errors.power);
-    metrics_set(run->metrics, "shear_rate_error", errors.rate);
+    viscous_fluid_measure_shear(&dam->fluid, run->metrics);
     metrics_set(run->metrics, "slope_error", slope_error(dam, support_radius));
 }
 
@@ -251,7 +223,7 @@ static void simulate(const struct run *run)
     struct dam dam;
     dam_init(&dam, run, &sph, spacing);
     measure_start(run, &dam, support_radius);
-    write_wall(run, &dam.wall);
+    write_wall(run, &dam.fluid.wall);
     while (!run->options->brief && dam.time < duration) {
         write_moment(run, &sph, &dam);
         advance(&dam);
