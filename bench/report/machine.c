@@ -2,37 +2,22 @@
 #define _DEFAULT_SOURCE /* gethostname, tm_gmtoff, sysconf */
 #include "machine.h"
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
 
-/* The text after "key   : " on the first line of /proc/cpuinfo that starts with key. */
-static int find_cpu_line(FILE *file, const char *key, char *text, size_t size)
-{
-    char line[256];
-    while (fgets(line, sizeof line, file)) {
-        const char *colon = strchr(line, ':');
-        if (strncmp(line, key, strlen(key)) != 0 || !colon)
-            continue;
-        snprintf(text, size, "%s", colon + 1 + strspn(colon + 1, " \t"));
-        text[strcspn(text, "\n")] = '\0';
-        return 1;
-    }
-    return 0;
-}
-
 const char *machine_cpu(void)
 {
     static char text[128];
+    char line[256];
     FILE *file = fopen("/proc/cpuinfo", "r");
-    const int found = file && find_cpu_line(file, "model name", text, sizeof text);
+    while (file && !*text && fgets(line, sizeof line, file))
+        sscanf(line, "model name : %127[^\n]", text);
     if (file)
         fclose(file);
-    return found ? text : "unknown processor";
+    return *text ? text : "unknown processor";
 }
 
 const char *machine_host(void)
@@ -46,14 +31,13 @@ const char *machine_host(void)
 const char *machine_date(void)
 {
     static char text[64];
+    char clock[32], zone[8]; /* +0000, to become +00:00 */
     const time_t seconds = time(NULL);
     struct tm local;
     localtime_r(&seconds, &local);
-    const size_t length = strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &local);
-    if (length < 5 || length + 2 > sizeof text)
-        return text;
-    memmove(text + length - 1, text + length - 2, 3); /* +0000 becomes +00:00 */
-    text[length - 2] = ':';
+    strftime(clock, sizeof clock, "%Y-%m-%dT%H:%M:%S", &local);
+    strftime(zone, sizeof zone, "%z", &local);
+    snprintf(text, sizeof text, "%s%.3s:%s", clock, zone, zone + 3);
     return text;
 }
 

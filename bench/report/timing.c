@@ -4,6 +4,7 @@
 #include "numbers.h"
 #include "progress.h"
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -44,53 +45,41 @@ static int compare_numbers(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-static double standard_deviation(const double *values, int32_t count, double mean)
-{
-    double sum = 0;
-    for (int32_t k = 0; k < count; ++k)
-        sum += (values[k] - mean) * (values[k] - mean);
-    return count > 1 ? sqrt(sum / (count - 1)) : 0;
-}
-
 double median_of(double *values, int32_t count)
 {
     qsort(values, (size_t)count, sizeof *values, compare_numbers);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-/* Sorts the values. */
-static struct spread spread_of(double *values, int32_t count)
+static struct spread spread_of(const struct samples *samples, bool cpu)
 {
+    const int32_t count = samples->count;
     if (count == 0)
         return (struct spread){NAN, NAN, NAN, NAN, NAN};
-    const double median = median_of(values, count);
-    double sum = 0;
+    double *values = allocate_or_exit((size_t)count, sizeof *values);
+    double sum = 0, squares = 0;
     for (int32_t k = 0; k < count; ++k)
-        sum += values[k];
-    struct spread spread = {
-        .median = median, .mean = sum / count, .min = values[0], .max = values[count - 1]};
-    spread.deviation = standard_deviation(values, count, spread.mean);
-    return spread;
-}
-
-static struct spread spread_of_clock(const struct samples *samples, int cpu)
-{
-    double *values = allocate_or_exit((size_t)samples->count, sizeof *values);
-    for (int32_t k = 0; k < samples->count; ++k)
-        values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
-    const struct spread spread = spread_of(values, samples->count);
+        sum += values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
+    for (int32_t k = 0; k < count; ++k)
+        squares += (values[k] - sum / count) * (values[k] - sum / count);
+    const double median = median_of(values, count);
+    const struct spread spread = {.median = median,
+                                  .mean = sum / count,
+                                  .min = values[0],
+                                  .max = values[count - 1],
+                                  .deviation = count > 1 ? sqrt(squares / (count - 1)) : 0};
     free(values);
     return spread;
 }
 
 struct spread samples_wall(const struct samples *samples)
 {
-    return spread_of_clock(samples, 0);
+    return spread_of(samples, false);
 }
 
 struct spread samples_cpu(const struct samples *samples)
 {
-    return spread_of_clock(samples, 1);
+    return spread_of(samples, true);
 }
 
 double samples_median(const struct samples *samples)

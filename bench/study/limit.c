@@ -103,12 +103,24 @@ static void check_set(struct limit *limit, int set)
         }
 }
 
+/* Those that this processor can run. */
+static void find_sets(struct limit *limit)
+{
+    limit->sets[limit->set_count++] = &limit_set_base;
+#ifdef BENCH_HAVE_X86
+    if (library_runs(SPHG_ISA_X86_V3))
+        limit->sets[limit->set_count++] = &limit_set_v3;
+    if (library_runs(SPHG_ISA_X86_V4))
+        limit->sets[limit->set_count++] = &limit_set_v4;
+#endif
+}
+
 static void open_library_side(struct limit *limit)
 {
     const struct settings *settings = &limit->settings;
     const size_t threads = (size_t)settings->threads;
     scene_run(&limit->scene, WORK_SEARCH);
-    limit->set_count = limit_sets(limit->sets);
+    find_sets(limit);
     for (int set = 0; set < limit->set_count; ++set) {
         limit->packed[set] = allocate_held(threads, sizeof *limit->packed[set]);
         for (size_t thread = 0; thread < threads; ++thread)
@@ -225,7 +237,7 @@ static void report_arrangements(const struct limit *limit, struct report *report
     report_times(report, library);
 }
 
-/* What each set goes through, and which arrangement of its sums is the fastest. */
+/* What each set goes through. */
 static void print_sets(const struct limit *limit)
 {
     for (int set = 0; set < limit->set_count; ++set) {
@@ -237,17 +249,6 @@ static void print_sets(const struct limit *limit)
                set ? "" : "packed", limit->sets[set]->name, packed->pairs,
                packed->data.slots / packed->lanes, packed->kilobytes, worst);
     }
-}
-
-static void print_arrangements(const struct limit *limit)
-{
-    struct table *table = table_create("");
-    for (int set = 0; set < limit->set_count; ++set)
-        for (int work = 0; work < LIMIT_WORKS; ++work)
-            TABLE_ROW(table, cell_text("fastest arrangement, sums", NULL, limit->sets[set]->name),
-                      cell_text("", NULL, work_names[work]),
-                      cell_text("", NULL, arrangements[fastest_of(times_of(limit, set, work, 0))]));
-    table_print(table);
 }
 
 static void report_results(const struct limit *limit)
@@ -267,7 +268,6 @@ static void report_results(const struct limit *limit)
     report_table(report, table_of_probe(limit));
     if (!limit->probe_only) {
         print_times(limit);
-        print_arrangements(limit);
         report_arrangements(limit, report);
     }
     report_write(report);

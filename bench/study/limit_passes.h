@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The pair arithmetic of KGC with the cubic spline, on a few targets whose pairs lie packed in the
  * first-level cache: what an evaluation costs when lists, staging and memory cost nothing. One
- * set of passes per instruction set and vector width. */
+ * set of passes per instruction set. */
 #ifndef SPHGRAD_BENCH_LIMIT_PASSES_H
 #define SPHGRAD_BENCH_LIMIT_PASSES_H
 #include <stdbool.h>
@@ -45,9 +45,6 @@ struct limit_set {
                 bool finished, int32_t targets);
 };
 
-/* The sets that this processor can run, fastest last; the count is returned. */
-enum { LIMIT_SETS_MOST = 4 };
-int limit_sets(const struct limit_set *sets[LIMIT_SETS_MOST]);
-
-extern const struct limit_set limit_set_base, limit_set_v3, limit_set_v4_narrow, limit_set_v4;
+enum { LIMIT_SETS_MOST = 3 };
+extern const struct limit_set limit_set_base, limit_set_v3, limit_set_v4;
 #endif
