@@ -75,7 +75,7 @@ void hold(void *object, void (*release)(void *object))
 void *allocate_lines(size_t count, size_t size)
 {
     enum { CACHE_LINE = 64 };
-    const size_t bytes = (count * size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    const size_t bytes = (count * size / CACHE_LINE + 1) * CACHE_LINE;
     void *memory = required(aligned_alloc(CACHE_LINE, bytes), bytes, 1);
     hold(memory, free);
     return memset(memory, 0, bytes);

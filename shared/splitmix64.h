@@ -20,4 +20,10 @@ static inline double splitmix64_share(uint64_t *state)
 {
     return (double)(splitmix64(state) >> 11) * 0x1p-53;
 }
+
+/* Uniform in [low, high), a multiple of 2^-53 (high - low). */
+static inline double splitmix64_between(uint64_t *state, double low, double high)
+{
+    return low + (high - low) * splitmix64_share(state);
+}
 #endif

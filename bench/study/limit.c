@@ -117,15 +117,15 @@ static void find_sets(struct limit *limit)
 
 static void open_library_side(struct limit *limit)
 {
-    const struct settings *settings = &limit->settings;
-    const size_t threads = (size_t)settings->threads;
+    const struct probe_arrays arrays = probe_arrays(limit->probe);
+    const size_t threads = (size_t)limit->settings.threads;
     scene_run(&limit->scene, WORK_SEARCH);
     find_sets(limit);
     for (int set = 0; set < limit->set_count; ++set) {
         limit->packed[set] = allocate_held(threads, sizeof *limit->packed[set]);
         for (size_t thread = 0; thread < threads; ++thread)
-            limit->packed[set][thread] = packed_create(
-                limit->sets[set], settings->support, settings->jitter, scene_pairs(&limit->scene));
+            limit->packed[set][thread] =
+                packed_create(limit->sets[set], &arrays, probe_count(limit->probe));
         check_set(limit, set);
     }
 }

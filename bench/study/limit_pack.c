@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "limit_pack.h"
-#include "lattice.h"
+#include "numbers.h"
 #include <math.h>
-
-static const double pi = 3.14159265358979323846;
 
 static float *floats(int32_t count)
 {
@@ -18,57 +16,34 @@ static float *number_of(const struct packed *packed, float *array, int32_t targe
     return array + (target / lanes * width + k) * lanes + target % lanes;
 }
 
-/* v = (-y, x, 2z) */
-static void describe(const struct numbers *positions, int32_t particle, double numbers[LIMIT_OWN])
+/* position: x y z V, field: a b c, as the probe has them. */
+static void set_pair(struct packed *packed, int32_t target, int32_t slot, const float position[4],
+                     const float field[4])
 {
-    for (int axis = 0; axis < 3; ++axis)
-        numbers[axis] = numbers_get(positions, particle, axis);
-    numbers[3] = -numbers[1];
-    numbers[4] = numbers[0];
-    numbers[5] = 2 * numbers[2];
-}
-
-static void set_pair(struct packed *packed, int32_t target, int32_t slot, double volume,
-                     const double numbers[LIMIT_OWN])
-{
-    const double components[LIMIT_COMPONENTS] = {numbers[0], numbers[1], numbers[2], volume,
-                                                 numbers[3], numbers[4], numbers[5]};
+    const float components[LIMIT_COMPONENTS] = {position[0], position[1], position[2], position[3],
+                                                field[0],    field[1],    field[2]};
     for (int32_t k = 0; k < LIMIT_COMPONENTS; ++k)
         *number_of(packed, packed->data.pairs, target, LIMIT_COMPONENTS * packed->data.slots,
-                   slot * LIMIT_COMPONENTS + k) = (float)components[k];
-}
-
-static double distance(const double a[3], const double b[3])
-{
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
-                (a[2] - b[2]) * (a[2] - b[2]));
+                   slot * LIMIT_COMPONENTS + k) = components[k];
 }
 
 /* Neighbours beyond the room are left out; those missing sit on the target, without volume. The
  * number packed is returned. */
-static int32_t pack_target(struct packed *packed, const struct numbers *positions, int32_t particle,
-                           int32_t target, double volume)
+static int32_t pack_target(struct packed *packed, const struct probe_arrays *arrays,
+                           int32_t particle, int32_t target)
 {
-    double own[LIMIT_OWN], other[LIMIT_OWN];
-    int32_t count = 0;
-    describe(positions, particle, own);
-    for (int32_t k = 0; k < LIMIT_OWN; ++k)
-        *number_of(packed, packed->data.own, target, LIMIT_OWN, k) = (float)own[k];
-    for (int32_t j = 0; j < positions->count && count < packed->data.slots; ++j) {
-        describe(positions, j, other);
-        if (j != particle && distance(own, other) < 1)
-            set_pair(packed, target, count++, volume, other);
+    const float *x = arrays->positions[particle], *field = arrays->fields[particle];
+    const float nobody[4] = {x[0], x[1], x[2], 0};
+    const int32_t *indices = arrays->indices + arrays->offsets[particle];
+    const int64_t pairs = arrays->offsets[particle + 1] - arrays->offsets[particle];
+    for (int32_t k = 0; k < 3; ++k) {
+        *number_of(packed, packed->data.own, target, LIMIT_OWN, k) = x[k];
+        *number_of(packed, packed->data.own, target, LIMIT_OWN, 3 + k) = field[k];
     }
-    for (int32_t slot = count; slot < packed->data.slots; ++slot)
-        set_pair(packed, target, slot, 0, own);
-    return count;
-}
-
-/* Of the middle of the lattice, where neighbourhoods are full. */
-static int32_t middle_particle(int32_t margin, int32_t side, int32_t target)
-{
-    const int32_t x = margin + target % 4, y = margin + target / 4 % 4, z = margin + target / 16;
-    return (z * side + y) * side + x;
+    for (int32_t slot = 0; slot < packed->data.slots; ++slot)
+        set_pair(packed, target, slot, slot < pairs ? arrays->positions[indices[slot]] : nobody,
+                 slot < pairs ? arrays->fields[indices[slot]] : field);
+    return pairs < packed->data.slots ? (int32_t)pairs : packed->data.slots;
 }
 
 /* ---- The reference --------------------------------------------------------------------------- */
@@ -136,15 +111,11 @@ static void make_reference(struct packed *packed, int32_t target)
 
 /* ---- All of it ------------------------------------------------------------------------------- */
 
-struct packed packed_create(const struct limit_set *set, double support, double jitter,
-                            double mean_pairs)
+struct packed packed_create(const struct limit_set *set, const struct probe_arrays *arrays,
+                            int32_t count)
 {
-    const int32_t margin = (int32_t)ceil(support) + 1, side = 2 * margin + 4;
+    const double mean_pairs = (double)arrays->offsets[count] / count;
     const int32_t slots = (int32_t)ceil(mean_pairs / set->lanes) * set->lanes;
-    const struct lattice lattice = {
-        .dimension = 3, .side = side, .spacing = 1 / support, .jitter = jitter};
-    const double volume = 48 / pi / (support * support * support); /* 6 sigma V / H^3 */
-    struct numbers positions = numbers_create(SPHG_F32, lattice_count(&lattice), 3);
     struct packed packed = {
         .lanes = set->lanes,
         .kilobytes = 4e-3 * (LIMIT_TARGETS * LIMIT_COMPONENTS * slots + slots * set->lanes),
@@ -155,14 +126,13 @@ struct packed packed_create(const struct limit_set *set, double support, double 
                  .weights = floats(slots * LIMIT_LANES_MOST),
                  .sums = floats(LIMIT_SUMS * LIMIT_LANES_MOST),
                  .results = floats(LIMIT_TARGETS * LIMIT_SUMS)}};
-    int32_t total = 0;
-    lattice_fill(&lattice, &positions);
-    for (int32_t target = 0; target < LIMIT_TARGETS; ++target) {
-        total +=
-            pack_target(&packed, &positions, middle_particle(margin, side, target), target, volume);
+    int32_t particle = count / 2;
+    for (int32_t target = 0; target < LIMIT_TARGETS; ++target, particle = (particle + 1) % count) {
+        while ((double)(arrays->offsets[particle + 1] - arrays->offsets[particle]) < mean_pairs)
+            particle = (particle + 1) % count; /* at a surface */
+        packed.pairs += (double)pack_target(&packed, arrays, particle, target) / LIMIT_TARGETS;
         make_reference(&packed, target);
     }
-    packed.pairs = (double)total / LIMIT_TARGETS;
     return packed;
 }
 

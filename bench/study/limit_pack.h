@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A few targets of a jittered lattice and their pairs, packed for limit_passes.h. */
+/* A few targets of the probe and their pairs, packed for limit_passes.h. */
 #ifndef SPHGRAD_BENCH_LIMIT_PACK_H
 #define SPHGRAD_BENCH_LIMIT_PACK_H
 #include "limit_passes.h"
+#include "probe_passes.h"
 
 struct packed {
     struct limit_data data;
@@ -12,9 +13,10 @@ struct packed {
     double reference[LIMIT_TARGETS][LIMIT_SUMS]; /* C, then J, in double from the same floats */
 };
 
-/* support in spacings; room for the mean number of pairs, rounded up to whole vectors. Held. */
-struct packed packed_create(const struct limit_set *set, double support, double jitter,
-                            double mean_pairs);
+/* From the middle on, those with at least the mean number of pairs, for which there is room,
+ * rounded up to whole vectors. Held. */
+struct packed packed_create(const struct limit_set *set, const struct probe_arrays *arrays,
+                            int32_t count);
 
 /* Largest relative difference between finished results and the reference, Frobenius norm. */
 double packed_deviation(const struct packed *packed, enum limit_work work);

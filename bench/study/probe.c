@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "probe.h"
 #include "lattice.h"
-#include "probe_passes.h"
 #include "team.h"
 #include <math.h>
 #include <stdlib.h>
@@ -105,15 +104,20 @@ double probe_pairs(const struct probe *probe)
     return (double)probe->lists.count / probe->count;
 }
 
+struct probe_arrays probe_arrays(const struct probe *probe)
+{
+    return (struct probe_arrays){.positions = (const float(*)[4])probe->positions,
+                                 .fields = (const float(*)[4])probe->fields,
+                                 .offsets = probe->lists.offsets,
+                                 .indices = probe->lists.indices,
+                                 .corrections = probe->corrections,
+                                 .jacobians = probe->jacobians};
+}
+
 static void run_share(void *data, int32_t begin, int32_t end)
 {
     const struct probe *probe = data;
-    const struct probe_arrays arrays = {.positions = (const float(*)[4])probe->positions,
-                                        .fields = (const float(*)[4])probe->fields,
-                                        .offsets = probe->lists.offsets,
-                                        .indices = probe->lists.indices,
-                                        .corrections = probe->corrections,
-                                        .jacobians = probe->jacobians};
+    const struct probe_arrays arrays = probe_arrays(probe);
     probe->pass(&arrays, begin, end, probe->count);
 }
 

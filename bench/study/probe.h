@@ -4,7 +4,7 @@
 #ifndef SPHGRAD_BENCH_PROBE_H
 #define SPHGRAD_BENCH_PROBE_H
 #include "library.h"
-#include <stdbool.h>
+#include "probe_passes.h"
 
 enum probe_work { PROBE_MATRICES, PROBE_GRADIENT, PROBE_WORKS };
 
@@ -14,6 +14,7 @@ struct probe;
 struct probe *probe_create(sphg_context *context, int32_t side, double support, double jitter);
 
 int32_t probe_count(const struct probe *probe);
+struct probe_arrays probe_arrays(const struct probe *probe);
 double probe_pairs(const struct probe *probe); /* a particle */
 void probe_run(struct probe *probe, enum probe_work work, int32_t threads);
 

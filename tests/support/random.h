@@ -32,7 +32,7 @@ static inline uint64_t random_bits(random_state *state)
 /* Uniform in [low, high); a multiple of 2^-53 (high - low). */
 static inline double random_between(random_state *state, double low, double high)
 {
-    return low + (high - low) * splitmix64_share(&state->counter);
+    return splitmix64_between(&state->counter, low, high);
 }
 
 /* Uniform in [0, count). */

@@ -11,6 +11,6 @@ struct random {
 /* Uniform in [low, high). */
 static inline double random_between(struct random *random, double low, double high)
 {
-    return low + (high - low) * splitmix64_share(&random->state);
+    return splitmix64_between(&random->state, low, high);
 }
 #endif
