@@ -2,6 +2,7 @@
 #include "limit_pack.h"
 #include "numbers.h"
 #include <math.h>
+#include <string.h>
 
 static float *floats(int32_t count)
 {
@@ -55,26 +56,19 @@ static double weight(double q)
     return q < 0.5 ? 2 - 3 * q : (1 - q) * (1 - q) / q;
 }
 
-/* Moments and the field's sums over one pair. */
 static void add_reference(const struct packed *packed, int32_t target, int32_t slot,
-                          double moments[3][3], double sums[3][3])
+                          double moments[3][3])
 {
-    double p[LIMIT_COMPONENTS], x[3], field[3];
+    double p[LIMIT_COMPONENTS], x[3];
     for (int32_t k = 0; k < LIMIT_COMPONENTS; ++k)
         p[k] =
             (double)*number_of(packed, packed->data.pairs, target,
                                LIMIT_COMPONENTS * packed->data.slots, slot * LIMIT_COMPONENTS + k);
-    for (int32_t k = 0; k < 3; ++k) {
+    for (int32_t k = 0; k < 3; ++k)
         x[k] = (double)*number_of(packed, packed->data.own, target, LIMIT_OWN, k) - p[k];
-        field[k] =
-            (double)*number_of(packed, packed->data.own, target, LIMIT_OWN, 3 + k) - p[4 + k];
-    }
     const double g = weight(sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])) * p[3];
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) {
-            moments[a][b] += g * x[a] * x[b];
-            sums[a][b] += g * field[a] * x[b];
-        }
+    for (int k = 0; k < 9; ++k)
+        moments[k / 3][k % 3] += g * x[k / 3] * x[k % 3];
 }
 
 /* By cofactors, of which those of rows shifted by one and two carry their signs. */
@@ -91,19 +85,19 @@ static void invert(double a[3][3], double c[3][3])
         c[k / 3][k % 3] /= determinant;
 }
 
+/* The field is linear, and J what it is whatever the pairs. */
 static void make_reference(struct packed *packed, int32_t target)
 {
-    double moments[3][3] = {{0}}, sums[3][3] = {{0}}, c[3][3];
+    static const double gradient[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2};
+    double moments[3][3] = {{0}}, c[3][3];
     double *next = packed->reference[target];
     for (int32_t slot = 0; slot < packed->data.slots; ++slot)
-        add_reference(packed, target, slot, moments, sums);
+        add_reference(packed, target, slot, moments);
     invert(moments, c);
     for (int a = 0; a < 3; ++a)
         for (int b = a; b < 3; ++b)
             *next++ = c[a][b];
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b, ++next)
-            *next = sums[a][0] * c[0][b] + sums[a][1] * c[1][b] + sums[a][2] * c[2][b];
+    memcpy(next, gradient, sizeof gradient);
     for (int k = 0; k < 6; ++k)
         *number_of(packed, packed->data.corrections, target, 6, k) =
             (float)packed->reference[target][k];

@@ -3,78 +3,58 @@
 #include "limit_passes.h"
 #include "vector.inl.h"
 
-/* The pairs of a group, step after step. */
-struct pairs {
-    const float *first;
-    int32_t slots;
-};
-
-struct sums {
-    vec xx, xy, xz, yy, yz, zz;
-    vec ax, ay, az, bx, by, bz, cx, cy, cz;
-};
-
-INLINE vec component(struct pairs pairs, int32_t k, int c)
+/* Components of a pair, and what its offset, weight and field of a target's own come to. */
+INLINE const float *pair_of(const float *pairs, int32_t k)
 {
-    return load(pairs.first + (k * LIMIT_COMPONENTS + c) * LANES);
+    return pairs + k * LIMIT_COMPONENTS * LANES;
 }
 
-INLINE vec weight_of(struct pairs pairs, const vec own[LIMIT_OWN], int32_t k, bool by_newton)
+INLINE vec away(const vec own[LIMIT_OWN], const float *pair, int c)
 {
-    const vec x = own[0] - component(pairs, k, 0), y = own[1] - component(pairs, k, 1),
-              z = own[2] - component(pairs, k, 2);
+    return own[c] - load(pair + (c < 3 ? c : c + 1) * LANES); /* the volume stands between */
+}
+
+INLINE vec weight_of(const float *pair, const vec own[LIMIT_OWN], bool by_newton)
+{
+    const vec x = away(own, pair, 0), y = away(own, pair, 1), z = away(own, pair, 2);
     const vec q2 = x * x + (y * y + (z * z + 1e-12f)); /* the rest keeps the root off 0 */
-    return spline_weight(q2, by_newton) * component(pairs, k, 3);
+    return spline_weight(q2, by_newton) * load(pair + 3 * LANES);
 }
 
 /* g: the pair's weight. */
-INLINE void add_moments(struct sums *sums, struct pairs pairs, const vec own[LIMIT_OWN], int32_t k,
-                        vec g)
+INLINE void add_moments(vec sums[6], const float *pair, const vec own[LIMIT_OWN], vec g)
 {
-    const vec x = own[0] - component(pairs, k, 0), y = own[1] - component(pairs, k, 1),
-              z = own[2] - component(pairs, k, 2);
-    const vec gx = g * x, gy = g * y, gz = g * z;
-    sums->xx += gx * x, sums->xy += gx * y, sums->xz += gx * z;
-    sums->yy += gy * y, sums->yz += gy * z, sums->zz += gz * z;
+    const vec x[3] = {away(own, pair, 0), away(own, pair, 1), away(own, pair, 2)};
+    for (int a = 0, k = 0; a < 3; ++a)
+        for (int b = a; b < 3; ++b, ++k)
+            sums[k] += g * x[a] * x[b];
 }
 
-INLINE void add_field(struct sums *sums, struct pairs pairs, const vec own[LIMIT_OWN], int32_t k,
-                      vec g)
+INLINE void add_field(vec sums[9], const float *pair, const vec own[LIMIT_OWN], vec g)
 {
-    const vec gx = g * (own[0] - component(pairs, k, 0)),
-              gy = g * (own[1] - component(pairs, k, 1)),
-              gz = g * (own[2] - component(pairs, k, 2));
-    const vec a = own[3] - component(pairs, k, 4), b = own[4] - component(pairs, k, 5),
-              c = own[5] - component(pairs, k, 6);
-    sums->ax += a * gx, sums->ay += a * gy, sums->az += a * gz;
-    sums->bx += b * gx, sums->by += b * gy, sums->bz += b * gz;
-    sums->cx += c * gx, sums->cy += c * gy, sums->cz += c * gz;
+    for (int b = 0; b < 3; ++b) {
+        const vec weighted = g * away(own, pair, b);
+        for (int a = 0; a < 3; ++a)
+            sums[3 * a + b] += away(own, pair, 3 + a) * weighted;
+    }
 }
 
 /* Moments and field in loops of their own: 15 sums beside their factors are more than 16
  * registers hold. */
-INLINE struct sums sum_pairs(struct pairs pairs, const vec own[LIMIT_OWN], enum limit_work work,
-                             bool by_newton, float *weights)
+INLINE void sum_pairs(const struct limit_data *data, const float *pairs, int32_t slots,
+                      const vec own[LIMIT_OWN], enum limit_work work, bool by_newton)
 {
-    struct sums sums = {0};
-    for (int32_t k = 0; k < pairs.slots; ++k)
-        store(weights + k * LANES, weight_of(pairs, own, k, by_newton));
-    if (work != LIMIT_GRADIENT)
-        for (int32_t k = 0; k < pairs.slots; ++k)
-            add_moments(&sums, pairs, own, k, load(weights + k * LANES));
-    if (work != LIMIT_MATRICES)
-        for (int32_t k = 0; k < pairs.slots; ++k)
-            add_field(&sums, pairs, own, k, load(weights + k * LANES));
-    return sums;
-}
-
-INLINE void store_sums(float *out, const struct sums *sums, enum limit_work work)
-{
-    const vec all[LIMIT_SUMS] = {sums->xx, sums->xy, sums->xz, sums->yy, sums->yz,
-                                 sums->zz, sums->ax, sums->ay, sums->az, sums->bx,
-                                 sums->by, sums->bz, sums->cx, sums->cy, sums->cz};
-    for (int k = work == LIMIT_GRADIENT ? 6 : 0; k < (work == LIMIT_MATRICES ? 6 : LIMIT_SUMS); ++k)
-        store(out + k * LANES, all[k]);
+    vec moments[6] = {{0}}, field[9] = {{0}};
+    for (int32_t k = 0; k < slots; ++k)
+        store(data->weights + k * LANES, weight_of(pair_of(pairs, k), own, by_newton));
+    for (int32_t k = 0; work != LIMIT_GRADIENT && k < slots; ++k)
+        add_moments(moments, pair_of(pairs, k), own, load(data->weights + k * LANES));
+    for (int32_t k = 0; work != LIMIT_MATRICES && k < slots; ++k)
+        add_field(field, pair_of(pairs, k), own, load(data->weights + k * LANES));
+    for (int k = 0; work != LIMIT_GRADIENT && k < 6; ++k)
+        store(data->sums + k * LANES, moments[k]);
+    for (int k = 0; work != LIMIT_MATRICES && k < 9; ++k)
+        store(data->sums + (6 + k) * LANES, field[k]);
 }
 
 INLINE void finish(const struct limit_data *data, int32_t group, enum limit_work work)
@@ -101,12 +81,11 @@ INLINE void finish(const struct limit_data *data, int32_t group, enum limit_work
 INLINE void run_group(const struct limit_data *data, int32_t slots, int32_t group,
                       enum limit_work work, bool by_newton, bool finished)
 {
-    const struct pairs pairs = {data->pairs + group * slots * LIMIT_COMPONENTS * LANES, slots};
     vec own[LIMIT_OWN];
     for (int k = 0; k < LIMIT_OWN; ++k)
         own[k] = load(data->own + (group * LIMIT_OWN + k) * LANES);
-    const struct sums sums = sum_pairs(pairs, own, work, by_newton, data->weights);
-    store_sums(data->sums, &sums, work);
+    sum_pairs(data, data->pairs + group * slots * LIMIT_COMPONENTS * LANES, slots, own, work,
+              by_newton);
     if (finished)
         finish(data, group, work);
 }
