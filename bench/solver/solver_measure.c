@@ -123,40 +123,26 @@ static void matrix_of(const struct numbers *table, int32_t item, int32_t d, doub
         }
 }
 
-/* sum_k p[r][k] values[k] q[k or c][c or k] */
-static double entry_of(int32_t d, double p[3][3], const double values[3], double q[3][3],
-                       bool transposed, int32_t r, int32_t c)
-{
-    double sum = 0;
-    for (int32_t k = 0; k < d; ++k)
-        sum += p[r][k] * values[k] * (transposed ? q[c][k] : q[k][c]);
-    return sum;
-}
-
-/* |C M - 1|, |Q L Q^T - A| or |U S V^T - A|, the largest entry, over that of A. */
+/* |C M - 1|, |Q L Q^T - A| or |U S V^T - A|, the largest entry, over that of A. M is its own
+ * transpose. */
 static double deviation_of(const struct scene *scene, int k, int32_t item)
 {
     const int32_t d = scene->group->dimension;
     const enum solver_work work = solver_cases[k].work;
-    const bool inverse = work == SOLVER_INVERSION;
-    double a[3][3], p[3][3], q[3][3], values[3] = {1, 1, 1}, worst = 0, largest = 0;
-    const struct numbers first = result_of(scene, work, 0), second = result_of(scene, work, 1),
-                         third = result_of(scene, work, 2);
-    matrix_of(&scene->batches[k], item, d, a);
-    matrix_of(work == SOLVER_EIGEN ? &second : &first, item, d, p);
-    if (inverse)
-        memcpy(q, a, sizeof q);
-    else
-        matrix_of(work == SOLVER_EIGEN ? &second : &third, item, d, q);
-    for (int32_t r = 0; r < d && !inverse; ++r)
-        values[r] = numbers_get(work == SOLVER_EIGEN ? &first : &second, item, r);
+    const bool inverse = work == SOLVER_INVERSION, eigen = work == SOLVER_EIGEN;
+    const struct numbers *matrices = &scene->batches[k];
+    const struct numbers results[3] = {result_of(scene, work, 0), result_of(scene, work, 1),
+                                       result_of(scene, work, 2)};
+    double a[3][3], p[3][3], q[3][3], worst = 0, largest = 0;
+    matrix_of(matrices, item, d, a);
+    matrix_of(&results[eigen], item, d, p);
+    matrix_of(inverse ? matrices : &results[eigen ? 1 : 2], item, d, q);
     for (int32_t r = 0; r < d; ++r)
         for (int32_t c = 0; c < d; ++c) {
-            const double wanted = inverse ? r == c : a[r][c];
-            const double off = fabs(entry_of(d, p, values, q, !inverse, r, c) - wanted);
-            if (!(off < (double)INFINITY))
-                return (double)INFINITY;
-            worst = fmax(worst, off);
+            double off = inverse ? r == c : a[r][c];
+            for (int32_t n = 0; n < d; ++n)
+                off -= p[r][n] * q[c][n] * (inverse ? 1 : numbers_get(&results[!eigen], item, n));
+            worst = numbers_larger(worst, fabs(off));
             largest = fmax(largest, fabs(a[r][c]));
         }
     return worst / largest;
@@ -180,7 +166,8 @@ static void check_case(struct scene *scene, int k, int path)
     result->deviation[path] = 0;
     if (one->spectrum != SOLVER_COPIED && one->share == 0)
         for (int32_t i = 0; i < count && i < SOLVER_SMALL; ++i)
-            result->deviation[path] = fmax(result->deviation[path], deviation_of(scene, k, i));
+            result->deviation[path] =
+                numbers_larger(result->deviation[path], deviation_of(scene, k, i));
 }
 
 /* ---- The whole ------------------------------------------------------------------------------ */
