@@ -2,7 +2,7 @@
 /* The command `fields`: errors of plain and corrected derivatives on a square, Figs. 2 and 4 of
  * Westhofen, Jeske, Bender 2023, doi:10.1145/3606933. */
 #include "commands.h"
-#include "field_study.h"
+#include "fields_measure.h"
 #include "particles/particles.h"
 #include "report/plot.h"
 #include "report/table.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The measurements of frontier. A round goes once through all ways. */
 #include "frontier.h"
-#include "fields/field_study.h"
+#include "fields/fields_measure.h"
 #include "particles/particles.h"
 #include "report/progress.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Order 2 beside order 1, over H and N: time from positions to Jacobians against the error at the
  * boundary and inside, of one field on a cube of ever finer particles. */
-#include "fields/field_study.h"
+#include "fields/fields_measure.h"
 #include "frontier.h"
 #include "report/machine.h"
 #include "report/plot.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "field_study.h"
+#include "fields_measure.h"
 #include "lattice.h"
 #include <math.h>
 
