@@ -34,24 +34,24 @@ SPHGI_TEMPLATE vec square_with_margin(const struct sphgi_find *find, vec reach)
 }
 
 /* Around some targets, and how far the largest of them reaches. */
-struct surroundings {
+struct reached {
     struct box box;
     vec reach;
 };
 
-SPHGI_TEMPLATE struct surroundings surroundings_of(const struct sphgi_find *find,
-                                                   const real *targets, int32_t count)
+SPHGI_TEMPLATE struct reached reached_by(const struct sphgi_find *find, const real *targets,
+                                         int32_t count)
 {
-    struct surroundings s = {.box = bounding_box(find, targets, count)};
+    struct reached s = {.box = bounding_box(find, targets, count)};
     s.reach = splat(s.box.radius) * splat(R(find->stretch));
     s.box.square_reach = square_with_margin(find, s.reach);
     return s;
 }
 
 /* Which of LANES sources may be neighbours. reach: theirs, if that counts */
-SPHGI_TEMPLATE mask near_surroundings(const struct sphgi_find *find, const struct surroundings *s,
-                                      const struct three *at, vec reach, const struct wraps *w,
-                                      bool periodic, bool mutual)
+SPHGI_TEMPLATE mask may_be_reached(const struct sphgi_find *find, const struct reached *s,
+                                   const struct three *at, vec reach, const struct wraps *w,
+                                   bool periodic, bool mutual)
 {
     if (!mutual)
         return near_box(&s->box, at, w, periodic);
@@ -75,7 +75,7 @@ SPHGI_TEMPLATE void pad_candidates(const struct candidates *c, int32_t n)
 
 /* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
 SPHGI_TEMPLATE int32_t pack_run(const struct sphgi_find *find, const struct candidates *c,
-                                const struct surroundings *s, int32_t begin, int32_t end, int32_t n,
+                                const struct reached *s, int32_t begin, int32_t end, int32_t n,
                                 const struct wraps *w, bool periodic, bool mutual)
 {
     const real *rows = (const real *)find->rows + SPHGI_ROW * (ptrdiff_t)begin;
@@ -94,7 +94,7 @@ SPHGI_TEMPLATE int32_t pack_run(const struct sphgi_find *find, const struct cand
         } else {
             at = coordinates_of(rows);
         }
-        near = near_surroundings(find, s, &at, reach, w, periodic, mutual);
+        near = may_be_reached(find, s, &at, reach, w, periodic, mutual);
         const packing moved = packing_of(find, near);
         pack_numbers(c->x + n, at.x, moved);
         pack_numbers(c->y + n, at.y, moved);
@@ -112,7 +112,7 @@ SPHGI_TEMPLATE void pack_as(const struct sphgi_find *find, const struct sphgi_ru
                             struct sphgi_packed *packed, bool periodic, bool mutual)
 {
     const struct wraps w = wraps_of(find->period);
-    const struct surroundings s = surroundings_of(find, targets, count);
+    const struct reached s = reached_by(find, targets, count);
     *packed = (struct sphgi_packed){.most = runs->candidates, .self = -1};
     const struct candidates c = carve_wide(find, packed, mutual);
     int32_t n = 0;
@@ -148,16 +148,16 @@ static void pack_by_radii(const struct sphgi_find *find, const struct sphgi_runs
 
 /* Packs the candidates [begin, end) of the cell behind the n that there are of these targets. */
 SPHGI_TEMPLATE int32_t pack_some(const struct sphgi_find *find, const struct candidates *wide,
-                                 const struct candidates *c, const struct surroundings *s,
-                                 int32_t begin, int32_t end, int32_t n, const struct wraps *w,
-                                 bool periodic, bool mutual)
+                                 const struct candidates *c, const struct reached *s, int32_t begin,
+                                 int32_t end, int32_t n, const struct wraps *w, bool periodic,
+                                 bool mutual)
 {
     mask near = {0};
     int32_t k = begin;
     for (; k < end; k += LANES) {
         const struct three at = {load(wide->x + k), load(wide->y + k), load(wide->z + k)};
         const vec reach = mutual ? load(wide->squares + k) : s->reach;
-        near = near_surroundings(find, s, &at, reach, w, periodic, mutual);
+        near = may_be_reached(find, s, &at, reach, w, periodic, mutual);
         const packing moved = packing_of(find, near);
         pack_numbers(c->x + n, at.x, moved);
         pack_numbers(c->y + n, at.y, moved);
@@ -176,7 +176,7 @@ SPHGI_TEMPLATE struct candidates pick(const struct sphgi_find *find,
                                       bool periodic, bool mutual)
 {
     const struct candidates wide = carve_wide(find, packed, mutual);
-    const struct surroundings s = surroundings_of(find, targets, count);
+    const struct reached s = reached_by(find, targets, count);
     struct candidates c = carve(wide.bits, packed->count, mutual);
     int32_t n = 0;
     c.self = -1;
