@@ -43,9 +43,8 @@ static unsigned group_inside(const struct sphgi_tree *tree, int32_t height, int3
     return items_inside(node->low[0], node->high[0], box);
 }
 
-/* The first leaf that has blocks of [from, end) in the box; a bit for each of them, 0: none is
- * left.
- */
+/* The first leaf that has blocks of [from, end) in the box; a bit for each of them. 0: none is
+ * left, and leaf is not written. */
 static unsigned next_blocks(const struct sphgi_tree *tree, const struct sphgi_blocks *box,
                             int32_t from, int32_t end, int32_t *leaf)
 {
@@ -213,8 +212,10 @@ static bool next_of_part(struct sphgi_walk *walk)
     if (!box_of_part(walk, &box) || !meet(&box, &tree->octave[walk->octave]))
         return false;
     walk->inside = next_blocks(tree, &box, walk->from, tree->first[walk->octave + 1], &walk->leaf);
+    if (!walk->inside)
+        return false;
     walk->from = (walk->leaf + 1) * SPHGI_TREE_WIDTH;
-    return walk->inside;
+    return true;
 }
 
 /* The next block within reach, -1: there is none. */
