@@ -65,30 +65,49 @@ typedef int32_t four_ints __attribute__((vector_size(16), may_alias));
 typedef real four_reals
     __attribute__((vector_size(4 * sizeof(real)), aligned(__alignof__(real)), may_alias));
 
+/* A cutting, an axis a lane. Added to `magic`, a number has its whole part in its lowest bits;
+ * those of larger ones differ further up. */
+struct cutter {
+    four_doubles scale, magic;
+    four_bits nearest;
+    four_ints shift, local_shift, inside;
+};
+
+SPHGI_TEMPLATE struct cutter cutter_of(const struct sphgi_cutting *cutting)
+{
+    const double *inverse = cutting->inverse;
+    const int32_t *s = cutting->shift, *l = cutting->local_shift;
+    struct cutter c = {.scale = {inverse[0], inverse[1], inverse[2], 0},
+                       .shift = {s[0], s[1], s[2], 0},
+                       .local_shift = {l[0], l[1], l[2], 0},
+                       .inside = {(1 << s[0]) - 1, (1 << s[1]) - 1, (1 << s[2]) - 1, 0}};
+    c.magic = (four_doubles){0} + 0x1.8p52;
+    c.nearest = (four_bits)c.magic - SPHGI_CUT_MOST;
+    return c;
+}
+
+SPHGI_TEMPLATE bool are_near(const four_bits *far)
+{
+    const four_bits f = *far;
+    return (f[0] | f[1] | f[2] | f[3]) < 2 * (uint64_t)SPHGI_CUT_MOST;
+}
+
 /* Block and local cell of each row, all axes at once. Products are rounded on their own: the same
  * cell must come out wherever it is computed (raster.c). False: a row is too far away. */
 static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                 int32_t (*block)[4], uint8_t *local)
 {
-    const double *inverse = cutting->inverse;
-    const four_doubles scale = {inverse[0], inverse[1], inverse[2], 0};
-    const int32_t *s = cutting->shift, *l = cutting->local_shift;
-    const four_ints shift = {s[0], s[1], s[2], 0}, local_shift = {l[0], l[1], l[2], 0};
-    const four_ints inside = {(1 << s[0]) - 1, (1 << s[1]) - 1, (1 << s[2]) - 1, 0};
-    const four_doubles magic = (four_doubles){0} + 0x1.8p52;
-    const four_bits nearest = (four_bits)magic - SPHGI_CUT_MOST;
+    const struct cutter c = cutter_of(cutting);
     four_bits far = {0};
     for (int32_t k = 0; k < count; ++k) {
         const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
-        const four_doubles t = __builtin_convertvector(row, four_doubles) * scale;
-        /* the whole number stands in the lowest bits; those of larger ones differ further up */
-        const four_bits bits = (four_bits)(t - 0.5 + magic);
-        far |= bits - nearest;
+        const four_doubles t = __builtin_convertvector(row, four_doubles) * c.scale;
+        const four_bits bits = (four_bits)(t - 0.5 + c.magic);
+        far |= bits - c.nearest;
         const four_ints cell = __builtin_convertvector((four_longs)bits, four_ints);
-        *(four_ints *)block[k] = cell >> shift;
-        const four_ints parts = (cell & inside) << local_shift;
+        *(four_ints *)block[k] = cell >> c.shift;
+        const four_ints parts = (cell & c.inside) << c.local_shift;
         local[k] = (uint8_t)(parts[0] | parts[1] | parts[2]);
     }
-    const uint64_t above = far[0] | far[1] | far[2] | far[3];
-    return above < 2 * (uint64_t)SPHGI_CUT_MOST;
+    return are_near(&far);
 }

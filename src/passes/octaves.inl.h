@@ -24,13 +24,7 @@ SPHGI_TEMPLATE double two_to_the(int32_t exponent)
 static bool cut_octaves(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                         int32_t (*block)[4], uint8_t *local)
 {
-    const double *inverse = cutting->inverse;
-    const four_doubles scale = {inverse[0], inverse[1], inverse[2], 0};
-    const int32_t *s = cutting->shift, *l = cutting->local_shift;
-    const four_ints shift = {s[0], s[1], s[2], 0}, local_shift = {l[0], l[1], l[2], 0};
-    const four_ints inside = {(1 << s[0]) - 1, (1 << s[1]) - 1, (1 << s[2]) - 1, 0};
-    const four_doubles magic = (four_doubles){0} + 0x1.8p52;
-    const four_bits nearest = (four_bits)magic - SPHGI_CUT_MOST;
+    const struct cutter c = cutter_of(cutting);
     const four_longs eighths = {1, 2, 4, 0};
     int64_t top;
     __builtin_memcpy(&top, &cutting->top, sizeof top);
@@ -39,19 +33,18 @@ static bool cut_octaves(const struct sphgi_cutting *cutting, const void *rows, i
         const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
         const int32_t octave = octave_of(top, (double)row[3], cutting->octaves - 1);
         const four_doubles t =
-            __builtin_convertvector(row, four_doubles) * scale * two_to_the(octave);
-        const four_doubles raised = t - 0.5 + magic, whole = raised - magic;
+            __builtin_convertvector(row, four_doubles) * c.scale * two_to_the(octave);
+        const four_doubles raised = t - 0.5 + c.magic, whole = raised - c.magic;
         const four_bits bits = (four_bits)raised;
-        far |= bits - nearest;
+        far |= bits - c.nearest;
         const four_ints cell = __builtin_convertvector((four_longs)bits, four_ints);
-        const four_ints parts = (cell & inside) << local_shift;
+        const four_ints parts = (cell & c.inside) << c.local_shift;
         const four_longs behind = (four_longs)(t - whole >= 0.5) & eighths;
-        four_ints at = cell >> shift;
+        four_ints at = cell >> c.shift;
         at[3] = octave;
         *(four_ints *)block[k] = at;
         local[k] = (uint8_t)((parts[0] | parts[1] | parts[2]) * 8 +
                              (int32_t)(behind[0] | behind[1] | behind[2]));
     }
-    const uint64_t above = far[0] | far[1] | far[2] | far[3];
-    return above < 2 * (uint64_t)SPHGI_CUT_MOST;
+    return are_near(&far);
 }

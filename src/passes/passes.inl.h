@@ -28,6 +28,7 @@
 #endif
 #include "cells.inl.h"
 #include "octaves.inl.h"
+#include "packing.inl.h"
 #include "search.inl.h"
 #include "search_by_radii.inl.h"
 #include "near.inl.h"

@@ -58,19 +58,6 @@ SPHGI_TEMPLATE mask may_be_reached(const struct sphgi_find *find, const struct r
     return within_reach(&s->box, at, square_with_margin(find, vmax(s->reach, reach)), w, periodic);
 }
 
-/* Behind the last candidate: as many as are tested at a time, that are none. */
-SPHGI_TEMPLATE void pad_candidates(const struct candidates *c, int32_t n)
-{
-    const vec none = splat((real)__builtin_nan("")); /* in x alone would do, but for valgrind */
-    for (int l = 0; l < TESTED; l += LANES) {
-        store(c->x + n + l, none);
-        store(c->y + n + l, none);
-        store(c->z + n + l, none);
-        if (c->squares)
-            store(c->squares + n + l, splat(R(0)));
-    }
-}
-
 /* ---- The targets of a cell ------------------------------------------------------------------- */
 
 /* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
@@ -96,9 +83,7 @@ SPHGI_TEMPLATE int32_t pack_run(const struct sphgi_find *find, const struct cand
         }
         near = may_be_reached(find, s, &at, reach, w, periodic, mutual);
         const packing moved = packing_of(find, near);
-        pack_numbers(c->x + n, at.x, moved);
-        pack_numbers(c->y + n, at.y, moved);
-        pack_numbers(c->z + n, at.z, moved);
+        pack_places(c, n, &at, moved);
         if (mutual)
             pack_numbers(c->squares + n, reach, moved);
         number_ids(c->ids + n, SPHGI_ID_STEP * (uint32_t)k, moved);
@@ -159,9 +144,7 @@ SPHGI_TEMPLATE int32_t pack_some(const struct sphgi_find *find, const struct can
         const vec reach = mutual ? load(wide->squares + k) : s->reach;
         near = may_be_reached(find, s, &at, reach, w, periodic, mutual);
         const packing moved = packing_of(find, near);
-        pack_numbers(c->x + n, at.x, moved);
-        pack_numbers(c->y + n, at.y, moved);
-        pack_numbers(c->z + n, at.z, moved);
+        pack_places(c, n, &at, moved);
         if (mutual)
             pack_numbers(c->squares + n, reach * reach, moved);
         pack_ids_of_lanes(c->ids + n, wide->ids + k, moved);

@@ -39,16 +39,9 @@ void sphgi_batch_begin(struct sphgi_worker *w)
     }
 }
 
-/* The sums of this round. */
-static int32_t first_sum(const struct sphgi_worker *w)
+static struct sphgi_sums sums_of_round(const struct sphgi_worker *w)
 {
-    return w->batch.summing & SPHGI_SUM_MOMENTS ? 0 : w->sweep->plan->moment_sums;
-}
-
-static int32_t sums_of_round(const struct sphgi_worker *w)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    return (w->batch.summing & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums) - first_sum(w);
+    return sphgi_sums_of(w->sweep->plan, w->batch.summing);
 }
 
 /* ---- From lists to tiles --------------------------------------------------------------------- */
@@ -68,11 +61,11 @@ static void run_lanes(struct sphgi_worker *w)
 
 static void join(struct sphgi_worker *w)
 {
-    const int32_t chunks = (w->batch.spread_pairs + SPHGI_CHUNK - 1) / SPHGI_CHUNK,
-                  sums = sums_of_round(w);
-    if (w->tile.spread && sums)
-        w->passes->join_lanes(&w->tile, sphgi_max32(chunks, 1), sums,
-                              sphgi_lane(w, w->reduced, first_sum(w)));
+    const int32_t chunks = (w->batch.spread_pairs + SPHGI_CHUNK - 1) / SPHGI_CHUNK;
+    const struct sphgi_sums sums = sums_of_round(w);
+    if (w->tile.spread && sums.count)
+        w->passes->join_lanes(&w->tile, sphgi_max32(chunks, 1), sums.count,
+                              sphgi_lane(w, w->reduced, sums.first));
 }
 
 void sphgi_run_spread(struct sphgi_worker *w, const uint32_t *ids, int32_t count, int32_t stride,
@@ -106,8 +99,9 @@ static void run_long_list(struct sphgi_worker *w)
 
 static void settle(struct sphgi_worker *w)
 {
+    const struct sphgi_sums sums = sums_of_round(w);
     if (w->batch.longest > SPHGI_PLAIN_CHUNKS * SPHGI_CHUNK)
-        w->passes->settle(&w->tile, sums_of_round(w), sphgi_lane(w, w->reduced, first_sum(w)));
+        w->passes->settle(&w->tile, sums.count, sphgi_lane(w, w->reduced, sums.first));
 }
 
 /* One target in all lanes: the matrices of lanes without a target of their own are not decomposed.

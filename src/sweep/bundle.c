@@ -11,19 +11,6 @@
 
 /* ---- Sums of several source sets ------------------------------------------------------------ */
 
-/* Those that this sweep makes: [first, first + count). */
-struct range {
-    int32_t first, count;
-};
-
-static struct range sums_made(const struct sphgi_sweep *sweep)
-{
-    const struct sphgi_plan *plan = sweep->plan;
-    const int32_t first = sweep->steps & SPHGI_SUM_MOMENTS ? 0 : plan->moment_sums;
-    const int32_t end = sweep->steps & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums;
-    return (struct range){first, end - first};
-}
-
 static char *rows_put_away(const struct sphgi_sweep *sweep, int32_t first)
 {
     return sweep->put_away.sums + (size_t)first * sphgi_size_of_type(sweep->plan->type);
@@ -32,7 +19,7 @@ static char *rows_put_away(const struct sphgi_sweep *sweep, int32_t first)
 static void put_sums_away(struct sphgi_worker *w)
 {
     const struct sphgi_sweep *sweep = w->sweep;
-    const struct range sums = sums_made(sweep);
+    const struct sphgi_sums sums = sphgi_sums_of(sweep->plan, sweep->steps);
     w->passes->put_away(w->batch.targets, sums.count, sphgi_lane(w, w->reduced, sums.first),
                         sphgi_targets(w), rows_put_away(sweep, sums.first), sweep->plan->sums,
                         sweep->put_away.marks);
@@ -41,7 +28,7 @@ static void put_sums_away(struct sphgi_worker *w)
 static void add_sums_put_away(struct sphgi_worker *w)
 {
     const struct sphgi_sweep *sweep = w->sweep;
-    const struct range sums = sums_made(sweep);
+    const struct sphgi_sums sums = sphgi_sums_of(sweep->plan, sweep->steps);
     const int32_t *targets = sphgi_targets(w);
     w->passes->add_put_away(w->batch.targets, sums.count, rows_put_away(sweep, sums.first),
                             sweep->plan->sums, targets, sweep->put_away.marks,
@@ -50,8 +37,7 @@ static void add_sums_put_away(struct sphgi_worker *w)
         sweep->put_away.marks[targets[l]] = 0;
 }
 
-/* ---- Results ----------------------------------------------------------------------------------
- */
+/* ---- Results -------------------------------------------------------------------------------- */
 
 static void finish(struct sphgi_worker *w)
 {

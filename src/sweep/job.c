@@ -7,6 +7,13 @@ double sphgi_volume_unit(const struct sphgi_sweep *sweep)
     return sphgi_power(1 / sweep->plan->scheme.radius, sweep->plan->dimension);
 }
 
+struct sphgi_sums sphgi_sums_of(const struct sphgi_plan *plan, unsigned steps)
+{
+    const int32_t first = steps & SPHGI_SUM_MOMENTS ? 0 : plan->moment_sums;
+    const int32_t end = steps & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums;
+    return (struct sphgi_sums){first, end - first};
+}
+
 bool sphgi_is_superset(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;

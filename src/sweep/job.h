@@ -18,6 +18,12 @@ struct sphgi_put_away {
     uint8_t *marks; /* a byte a target; all 0 between calls. NULL: there is only one set */
 };
 
+/* Where the sums of some steps stand among those of the plan. */
+struct sphgi_sums {
+    int32_t first, count;
+};
+struct sphgi_sums sphgi_sums_of(const struct sphgi_plan *plan, unsigned steps);
+
 /* Where pairs go that are wanted one by one (sphg_pair_gradients). */
 struct sphgi_pair_sink {
     const int32_t *row_of_target; /* row of the output */

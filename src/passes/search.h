@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* What a search hands to its passes. */
+#ifndef SPHGI_PASSES_SEARCH_H
+#define SPHGI_PASSES_SEARCH_H
+#include "internal.h"
+
+/* How the cells of an open raster are numbered. Passes cut those from - SPHGI_CUT_MOST up to, and
+ * without, SPHGI_CUT_MOST. */
+#define SPHGI_CUT_MOST (1 << 29)
+struct sphgi_cutting {
+    double inverse[3];      /* 1 / cell width; 0: an axis that is not used */
+    int32_t shift[3];       /* a block is 2^shift cells long */
+    int32_t local_shift[3]; /* where the axis stands in the number of a cell in its block */
+    int32_t octaves;        /* of radii, the largest of which is top; 0: all are the same */
+    double top;
+};
+
+/* Periodic axes, as distances have them: in the type of the positions. */
+struct sphgi_periods {
+    double length[3]; /* 0: open */
+    double limit[3];  /* coordinates beyond it are taken into the box; open: infinite */
+};
+
+/* Runs of rows that hold the candidates of a cell; the first one holds the cell itself, from row
+ * `own` on. */
+enum { SPHGI_RUNS_MOST = 128 };
+struct sphgi_runs {
+    int32_t count, candidates, own;
+    int32_t begin[SPHGI_RUNS_MOST], length[SPHGI_RUNS_MOST];
+};
+
+/* Candidates of targets with radii of their own, packed into the scratch of the search. */
+struct sphgi_packed {
+    int32_t most; /* of the runs they come from */
+    int32_t count;
+    int32_t self; /* of these, the first target, if it is a source; others follow. Else -1 */
+};
+
+/* A search among sources. */
+struct sphgi_find {
+    const void *rows; /* x y z of the sources; SPHGI_LANES_MOST - 1 rows past each run are read */
+    double reach;
+    double stretch;        /* what radii are multiplied with, where particles have their own */
+    bool mutual;           /* the larger one of a pair counts */
+    const int32_t *selves; /* row of each target, if they are sources in another order; or NULL */
+    double slack;          /* rounding of differences between images far apart [L] */
+    double period[3];
+    bool periodic;
+    uint32_t dummy;                  /* id that lists are padded with */
+    void *scratch;                   /* for the candidates, see find.c */
+    const uint64_t *pack_order;      /* [256]: the positions of the set bits, a byte each */
+    const uint8_t (*pack_bytes)[16]; /* [256]: the same for items of two bytes */
+};
+
+#endif
