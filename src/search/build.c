@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "build.h"
 #include "dummy.h"
+#include "extremes.h"
 #include "geometry.h"
 #include "grids.h"
 #include "core/kernel.h"
@@ -24,8 +25,8 @@ struct reading {
     size_t row_size;
     const struct sphgi_periods *periods; /* NULL: all axes are open */
     bool trusted;
-    atomic_int_least64_t bad;        /* first item that is not finite, or INT64_MAX */
-    atomic_int_least64_t largest[3]; /* |coordinate|: bits of numbers >= 0 rise as these do */
+    atomic_int_least64_t bad; /* first item that is not finite, or INT64_MAX */
+    sphgi_extreme largest[3]; /* |coordinate| */
 };
 
 static void take_into_box(struct reading *reading, int32_t begin, int32_t end)
@@ -33,13 +34,8 @@ static void take_into_box(struct reading *reading, int32_t begin, int32_t end)
     double largest[3] = {0};
     reading->passes->take_into_box(reading->periods, end - begin,
                                    reading->rows + (size_t)begin * reading->row_size, largest);
-    for (int32_t a = 0; a < 3; ++a) {
-        int64_t bits;
-        memcpy(&bits, &largest[a], sizeof bits);
-        int_least64_t seen = atomic_load(&reading->largest[a]);
-        while (seen < bits && !atomic_compare_exchange_weak(&reading->largest[a], &seen, bits))
-            ;
-    }
+    for (int32_t a = 0; a < 3; ++a)
+        sphgi_raise(&reading->largest[a], largest[a]);
 }
 
 static void reading_task(void *data, int32_t begin, int32_t end, int32_t worker)
@@ -70,14 +66,10 @@ static sphg_result read_positions(struct sphgi_checker checker, const sphg_view 
                               .trusted = checker.context->config.trusted != 0};
     atomic_store(&reading.bad, INT64_MAX);
     for (int32_t a = 0; a < 3; ++a)
-        atomic_store(&reading.largest[a], 0);
+        sphgi_extreme_set(&reading.largest[a], 0);
     sphgi_parallel_for(checker.context, reading_task, &reading, count, GRAIN);
-    for (int32_t a = 0; a < 3; ++a) {
-        const int64_t bits = atomic_load(&reading.largest[a]);
-        double largest;
-        memcpy(&largest, &bits, sizeof largest);
-        g->largest[a] = largest > g->largest[a] ? largest : g->largest[a];
-    }
+    for (int32_t a = 0; a < 3; ++a)
+        g->largest[a] = fmax(g->largest[a], sphgi_extreme_get(&reading.largest[a]));
     const int64_t bad = atomic_load(&reading.bad);
     if (bad == INT64_MAX)
         return SPHG_OK;
@@ -250,6 +242,7 @@ sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *
 static bool copy_rows(sphg_neighbors *n, const struct sphgi_geometry *g)
 {
     const size_t sources = (size_t)g->source_count, targets = (size_t)g->target_count;
+    n->sources.sorted = n->targets.sorted = false;
     if (!sphgi_reserve(&n->allocator, &n->sources.rows, sources + 1, g->row_size) ||
         (!n->part_of && !sphgi_reserve(&n->allocator, &n->targets.rows, targets + 1, g->row_size)))
         return false;

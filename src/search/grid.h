@@ -15,7 +15,9 @@
  * first particle on. */
 struct sphgi_grid {
     struct sphgi_raster raster;
-    int32_t count; /* particles */
+    sphg_type type; /* of the rows */
+    bool sorted;    /* rows stand in the cells in which they were sorted */
+    int32_t count;  /* particles */
     int32_t block_count;
     int32_t fullest; /* particles in the fullest cell */
     uint32_t slots;
@@ -37,6 +39,13 @@ static inline size_t sphgi_slots_for(size_t blocks)
 /* Bytes of `blocks`, `hash` and, with octaves, `tree` of that many blocks; a grid has at most as
  * many as particles. */
 size_t sphgi_grid_tables(int32_t blocks, bool octaves);
+
+/* Of a grid that was built, rounded up. */
+static inline size_t sphgi_tables_of(const struct sphgi_grid *grid)
+{
+    return sphgi_round_up(sphgi_grid_tables(grid->block_count, grid->raster.octaves > 0),
+                          SPHGI_ALIGNMENT);
+}
 
 /* The tables stand there. */
 void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "grids.h"
 #include "core/parallel.h"
+#include <stdatomic.h>
+#include <string.h>
 
 enum { GRAIN = 4096 }; /* particles */
 
@@ -29,43 +31,140 @@ static bool invert_order(sphg_context *context, const sphg_neighbors *n,
     return true;
 }
 
+/* ---- Particles that have not moved ----------------------------------------------------------- */
+
+struct comparison {
+    const struct sphgi_grid *grid;
+    const char *rows; /* in the order of the host */
+    atomic_bool moved;
+};
+
+static void compare_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    struct comparison *comparison = data;
+    const struct sphgi_grid *grid = comparison->grid;
+    const int32_t *order = grid->order.data;
+    const bool f64 = grid->type == SPHG_F64;
+    const size_t size = SPHGI_ROW * sphgi_size_of_type(grid->type);
+    (void)worker;
+    if (atomic_load(&comparison->moved))
+        return;
+    for (int32_t k = begin; k < end; ++k) {
+        const char *then = (const char *)grid->rows.data + (size_t)k * size;
+        const char *now = comparison->rows + (size_t)order[k] * size;
+        if (f64 ? memcmp(then, now, SPHGI_ROW * sizeof(double))
+                : memcmp(then, now, SPHGI_ROW * sizeof(float))) {
+            atomic_store(&comparison->moved, true);
+            return;
+        }
+    }
+}
+
+/* Whether these particles are sorted already, as those of a wall are from step to step. Where they
+ * have moved, the first one tells. */
+static bool stands(sphg_context *context, struct sphgi_grid *grid,
+                   const struct sphgi_raster *raster, sphg_type type, const char *rows,
+                   int32_t count)
+{
+    if (!grid->sorted || grid->type != type || grid->count != count ||
+        !sphgi_same_raster(&grid->raster, raster))
+        return false;
+    struct comparison comparison = {.grid = grid, .rows = rows};
+    atomic_store(&comparison.moved, false);
+    sphgi_parallel_for(context, compare_task, &comparison, count, GRAIN);
+    grid->raster = *raster;
+    return !atomic_load(&comparison.moved);
+}
+
 /* ---- Grids ----------------------------------------------------------------------------------- */
 
-/* What the tables of the grids can take at most; those of the lists too, which keep a number per
- * group of targets. */
+/* Bytes of tables for so many particles, at most. */
+static size_t most_of(const sphg_neighbors *n, int32_t count)
+{
+    return sphgi_round_up(sphgi_grid_tables(count, n->graded), SPHGI_ALIGNMENT);
+}
+
+/* Those of the lists too, which keep a number per group of targets. */
 static size_t tables_most(const sphg_neighbors *n)
 {
-    size_t bytes = sphgi_grid_tables(n->source_count, n->graded) + SPHGI_ALIGNMENT;
-    if (!n->same)
-        bytes += sphgi_grid_tables(n->target_count, n->graded) + SPHGI_ALIGNMENT;
+    size_t bytes = most_of(n, n->source_count) + (n->same ? 0 : most_of(n, n->target_count));
     if (!n->list_free)
         bytes += (size_t)sphgi_group_count(n->target_count) * sizeof(int64_t) + SPHGI_ALIGNMENT;
     return bytes;
 }
 
-sphg_result sphgi_grids_build(sphg_context *context, sphg_neighbors *n,
-                              const struct sphgi_geometry *g)
+static struct sphgi_raster raster_for(const sphg_neighbors *n, const struct sphgi_geometry *g)
 {
     struct sphgi_raster raster = sphgi_raster_of(n->dimension, n->radius + n->skin, &g->periods,
                                                  g->largest, n->position_type);
     raster.top = n->radius;
     raster.octaves = n->graded ? sphgi_octaves_for(&raster, n->least, g->largest) : 0;
+    return raster;
+}
+
+static void move_tables(struct sphgi_grid *grid, char *to)
+{
+    memmove(to, grid->blocks, sphgi_tables_of(grid));
+    sphgi_grid_use_tables(grid, to);
+}
+
+static sphg_result build_sources(sphg_context *context, sphg_neighbors *n,
+                                 const struct sphgi_raster *raster, const struct sphgi_geometry *g)
+{
+    return sphgi_grid_build(context, &n->sources, &n->allocator, raster, n->position_type,
+                            g->source_rows, n->source_count, n->shared.data);
+}
+
+/* Each grid is built that does not stand already. Tables of targets follow those of the sources,
+ * which may become more or fewer: meanwhile they stand where nobody's reach. */
+static sphg_result build_both(sphg_context *context, sphg_neighbors *n,
+                              const struct sphgi_raster *raster, const struct sphgi_geometry *g)
+{
+    const sphg_type type = n->position_type;
+    char *tables = n->shared.data;
+    const bool targets =
+        stands(context, &n->targets, raster, type, g->target_rows, n->target_count);
+    if (!stands(context, &n->sources, raster, type, g->source_rows, n->source_count)) {
+        if (targets)
+            move_tables(&n->targets, tables + most_of(n, n->source_count));
+        if (build_sources(context, n, raster, g))
+            return SPHG_ERROR_MEMORY;
+    }
+    tables += sphgi_tables_of(&n->sources);
+    if (targets) {
+        move_tables(&n->targets, tables);
+        return SPHG_OK;
+    }
+    if (sphgi_grid_build(context, &n->targets, &n->allocator, raster, type, g->target_rows,
+                         n->target_count, tables))
+        return SPHG_ERROR_MEMORY;
+    return invert_order(context, n, &n->targets, &n->target_place) ? SPHG_OK : SPHG_ERROR_MEMORY;
+}
+
+/* One grid serves both: who searches again for particles of which none has moved is not helped. */
+static sphg_result build_same(sphg_context *context, sphg_neighbors *n,
+                              const struct sphgi_raster *raster, const struct sphgi_geometry *g)
+{
+    n->targets.sorted = false;
+    if (build_sources(context, n, raster, g) ||
+        !invert_order(context, n, &n->sources, &n->target_place))
+        return SPHG_ERROR_MEMORY;
+    return SPHG_OK;
+}
+
+sphg_result sphgi_grids_build(sphg_context *context, sphg_neighbors *n,
+                              const struct sphgi_geometry *g)
+{
+    const struct sphgi_raster raster = raster_for(n, g);
+    const size_t before = n->shared.size;
     if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
         return SPHG_ERROR_MEMORY;
-    char *tables = n->shared.data;
-    sphg_result result =
-        sphgi_grid_build(context, &n->sources, &n->allocator, &raster, n->position_type,
-                         g->source_rows, n->source_count, tables);
-    if (!result && !n->same) {
-        tables +=
-            sphgi_round_up(sphgi_grid_tables(n->sources.block_count, n->graded), SPHGI_ALIGNMENT);
-        result = sphgi_grid_build(context, &n->targets, &n->allocator, &raster, n->position_type,
-                                  g->target_rows, n->target_count, tables);
-    }
-    if (!result && !invert_order(context, n, sphgi_target_grid(n), &n->target_place))
-        result = SPHG_ERROR_MEMORY;
+    if (n->shared.size != before) /* the tables are gone */
+        n->sources.sorted = n->targets.sorted = false;
+    const sphg_result result =
+        n->same ? build_same(context, n, &raster, g) : build_both(context, n, &raster, g);
     if (!result && n->graded && n->part_of && !n->same &&
         !invert_order(context, n, &n->sources, &n->source_place))
-        result = SPHG_ERROR_MEMORY;
+        return SPHG_ERROR_MEMORY;
     return result;
 }

@@ -274,19 +274,13 @@ static void find_groups(struct build *build, int32_t step)
 
 /* ---- Memory --------------------------------------------------------------------------------- */
 
-static size_t tables_of(const struct sphgi_grid *grid)
-{
-    return sphgi_round_up(sphgi_grid_tables(grid->block_count, grid->raster.octaves > 0),
-                          SPHGI_ALIGNMENT);
-}
-
 /* Puts places and ids behind the tables, with room for that many ids: first what the memory holds
  * already, else more. The tables move along. */
 static bool place_lists(sphg_neighbors *n, int64_t ids)
 {
     struct sphgi_buffer *shared = &n->shared;
-    const size_t sources = tables_of(&n->sources);
-    const size_t places = sources + (n->same ? 0 : tables_of(&n->targets));
+    const size_t sources = sphgi_tables_of(&n->sources);
+    const size_t places = sources + (n->same ? 0 : sphgi_tables_of(&n->targets));
     const size_t groups = (size_t)sphgi_group_count(n->target_count);
     const size_t used = places + sphgi_round_up(groups * sizeof(int64_t), SPHGI_ALIGNMENT);
     if (ids > 0 && used + (size_t)ids * sizeof(uint32_t) > shared->size) {
@@ -391,7 +385,7 @@ sphg_result sphgi_lists_build(sphg_context *context, sphg_neighbors *n)
 static bool reserve_tables(sphg_neighbors *n)
 {
     const size_t groups = (size_t)sphgi_group_count(n->target_count);
-    const size_t bytes = tables_of(&n->sources) + tables_of(&n->targets) +
+    const size_t bytes = sphgi_tables_of(&n->sources) + sphgi_tables_of(&n->targets) +
                          groups * sizeof(int64_t) + 2 * SPHGI_ALIGNMENT;
     return sphgi_reserve(&n->allocator, &n->shared, bytes, 1);
 }

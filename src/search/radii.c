@@ -3,6 +3,7 @@
 #include "core/digits.h"
 #include "core/parallel.h"
 #include "core/view.h"
+#include "extremes.h"
 #include <math.h>
 #include <string.h>
 
@@ -24,37 +25,9 @@ static double radius_at(const sphg_view *view, int32_t item)
 
 struct look {
     const sphg_view *view;
-    atomic_int_least64_t bad;            /* first that is no radius, or INT64_MAX */
-    atomic_int_least64_t least, largest; /* bits: those of positive numbers rise as these do */
+    atomic_int_least64_t bad; /* first that is no radius, or INT64_MAX */
+    sphgi_extreme least, largest;
 };
-
-static int64_t bits_of(double x)
-{
-    int64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-
-static double of_bits(int64_t bits)
-{
-    double x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static void lower(atomic_int_least64_t *number, int64_t to)
-{
-    int_least64_t seen = atomic_load(number);
-    while (to < seen && !atomic_compare_exchange_weak(number, &seen, to))
-        ;
-}
-
-static void raise(atomic_int_least64_t *number, int64_t to)
-{
-    int_least64_t seen = atomic_load(number);
-    while (to > seen && !atomic_compare_exchange_weak(number, &seen, to))
-        ;
-}
 
 static void look_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
@@ -71,9 +44,11 @@ static void look_task(void *data, int32_t begin, int32_t end, int32_t worker)
         least = radius < least ? radius : least;
         largest = radius > largest ? radius : largest;
     }
-    lower(&look->bad, bad);
-    lower(&look->least, bits_of(least));
-    raise(&look->largest, bits_of(largest));
+    int_least64_t first = atomic_load(&look->bad);
+    while (bad < first && !atomic_compare_exchange_weak(&look->bad, &first, bad))
+        ;
+    sphgi_lower(&look->least, least);
+    sphgi_raise(&look->largest, largest);
 }
 
 static sphg_result look_at(struct sphgi_checker checker, const sphg_view *view, const char *name,
@@ -81,14 +56,14 @@ static sphg_result look_at(struct sphgi_checker checker, const sphg_view *view, 
 {
     struct look look = {.view = view};
     atomic_store(&look.bad, INT64_MAX);
-    atomic_store(&look.least, bits_of(radii->least));
-    atomic_store(&look.largest, bits_of(radii->largest));
+    sphgi_extreme_set(&look.least, radii->least);
+    sphgi_extreme_set(&look.largest, radii->largest);
     const int32_t items = view->stride ? count : sphgi_min32(count, 1);
     if (sphgi_is_absent(view))
         return SPHG_OK;
     sphgi_parallel_for(checker.context, look_task, &look, items, GRAIN);
-    radii->least = of_bits(atomic_load(&look.least));
-    radii->largest = of_bits(atomic_load(&look.largest));
+    radii->least = sphgi_extreme_get(&look.least);
+    radii->largest = sphgi_extreme_get(&look.largest);
     const int64_t bad = atomic_load(&look.bad);
     if (bad == INT64_MAX)
         return SPHG_OK;

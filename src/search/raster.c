@@ -133,6 +133,21 @@ struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach,
     return raster;
 }
 
+static bool same_axis(const struct sphgi_axis *a, const struct sphgi_axis *b)
+{
+    return a->inverse == b->inverse && a->length == b->length && a->cells == b->cells &&
+           a->shift == b->shift && a->low == b->low && a->high == b->high;
+}
+
+bool sphgi_same_raster(const struct sphgi_raster *a, const struct sphgi_raster *b)
+{
+    bool same = a->dimension == b->dimension && a->periodic == b->periodic &&
+                a->octaves == b->octaves && a->top == b->top;
+    for (int32_t k = 0; k < 3; ++k)
+        same = same && same_axis(&a->axis[k], &b->axis[k]);
+    return same;
+}
+
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_raster *raster)
 {
     struct sphgi_cutting cutting = {.octaves = raster->octaves, .top = raster->top};

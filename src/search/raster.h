@@ -34,6 +34,8 @@ double sphgi_slack_of(const struct sphgi_periods *periods, const double *largest
 struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach,
                                     const struct sphgi_periods *periods, const double *largest,
                                     sphg_type type);
+/* Cells of both are the same, whatever images' distances are rounded by. */
+bool sphgi_same_raster(const struct sphgi_raster *a, const struct sphgi_raster *b);
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_raster *raster);
 /* Cells of octave k are 2^-k as wide. */
 double sphgi_place_on_axis(const struct sphgi_axis *axis, int32_t octave, double x, int64_t *cell);

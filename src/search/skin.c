@@ -85,6 +85,7 @@ static void refresh_rows(sphg_context *context, struct sphgi_grid *grid, const c
 {
     struct refresh refresh = {grid->order.data, rows, grid->rows.data, row_size};
     sphgi_parallel_for(context, refresh_task, &refresh, grid->count, GRAIN);
+    grid->sorted = false;
 }
 
 /* What rounding can take of half the skin. A pair that is decided to be closer than H now was so

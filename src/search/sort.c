@@ -437,6 +437,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                         .rows = rows,
                         .grid = grid};
     sort.chunk_count = sphgi_max32(1, sphgi_min32(context->threads, count / CHUNK_LEAST));
+    grid->sorted = false;
     if (!sphgi_reserve(&context->allocator, &context->sort, carve_sort(&sort, NULL, count), 1) ||
         !sphgi_reserve(allocator, &grid->rows, n + SPHGI_LANES_MOST, row_size) ||
         !sphgi_reserve(allocator, &grid->cell_start, n + 1, sizeof(int32_t)) ||
@@ -444,6 +445,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
         return SPHG_ERROR_MEMORY;
     carve_sort(&sort, context->sort.data, count);
     grid->raster = *raster;
+    grid->type = type;
     grid->count = count;
     sphgi_parallel_for(context, collect_task, &sort, sort.chunk_count, 1);
     number_blocks(&sort, merge_keys(&sort, tables), tables); /* the tables are scratch at first */
@@ -455,5 +457,6 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     grid->fullest = (int32_t)atomic_load(&sort.fullest);
     if (raster->octaves)
         sphgi_tree_build(&grid->tree, grid->blocks, grid->block_count, raster->octaves);
+    grid->sorted = true;
     return SPHG_OK;
 }
