@@ -4,7 +4,7 @@
 #include "support/setup.h"
 #include <string.h>
 
-enum { STEPS = 100, SOURCES_MOST = 400, TARGETS_MOST = 300 };
+enum { STEPS = 80, SOURCES_MOST = 400, TARGETS_MOST = 300 };
 
 static void scatter(const scene *particles, double *x, int count, double side, random_state *random)
 {
@@ -73,7 +73,7 @@ static scene two_sides(const test_case *test, random_state *random)
 /* One object for all builds, now and then one that the targets are part of. */
 static void what_stands_has_the_pairs_of_brute_force(const test_case *test)
 {
-    for (int threads = 1; threads < 4; threads += 2) {
+    for (int threads = 1; threads < 3; ++threads) {
         sphg_context *context = setup_context_of(threads);
         sphg_neighbors *neighbors = brute_force_neighbors(context);
         random_state random = random_seeded(77 + (uint64_t)threads);
