@@ -35,6 +35,7 @@ NAMED = {
     "sphg_same_f32": "One item of floats for all.", "sphg_same_f64": "One item of doubles for all.",
     "sphg_absent": "No view.", "sphg_all": "All particles are sources and targets.",
     "sphg_targets_apart": "Targets that are not sources.",
+    "sphg_targets_of": "The targets of an object that was searched before.",
     "sphg_own_and_ghosts": "The first `own` particles are targets; sources are these and the ghosts behind them.",
     "sphg_range": "The targets [begin, end).", "sphg_masked": "The targets whose byte is not 0.",
     "sphg_listed": "The listed targets; with count = 0 nobody.",

@@ -14,32 +14,30 @@
  *           d dimension, G_ij = grad Phi_j(x_i) shape-function gradient, C_i correction matrix.
  *           j is a neighbour of i when r < H and j is not i itself.
  * Units     [L] length, [a] unit of the field; any consistent system.
- * Structs   zero-initialise ({0}, in C++ {}), then set what you need: zero is the default or,
- *           where there is none, refused. They only grow at the end; the context knows the
- *           header you compiled against. Functions without a context read 1.0's members only.
- * Memory    views are borrowed for the call, lists until the next build (sphg_neighbors_use_lists);
- *           the library owns contexts and neighbours only. Inputs are never written. An output
- *           must not overlap an input or another output (ERROR_ARGUMENT). Once warm, no call
- *           allocates while counts, pairs included, stay within the largest seen, wherever the
- *           particles are by then.
- * Threads   one call at a time per context, any number of contexts at once; what a call takes
- *           as const may be shared by concurrent calls. Same input, same bits: for any number
- *           of threads, any executor, any split into subsets, on all instruction sets with fused
- *           multiply-add (x86-64-v3, v4, AArch64). Children of fork() may use contexts
- *           old and new: on the calling thread alone, or parallel_for, once OpenMP's threads have
- *           worked in the parent. If the parent ran OpenMP by other means, set threads = 1 in
- *           the child.
- * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay
- *           normal numbers; f64 far beyond. The entries of a correction table, and `square`
- *           results (unit 1 / L^2), must be representable as well. Finite input gives NaN or Inf
- *           only where A_j - A_i, a sum, or a ratio of volumes or densities leaves the type (f32:
- *           about 1e38).
- * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an
- *           error, never NaN; each target's `rank` tells how much could be corrected. */
+ * Structs   zero-initialise ({0}, in C++ {}), then set what you need: zero is the default or, where there
+ *           is none, refused. They only grow at the end; the context knows the header you compiled
+ *           against. Functions without a context read 1.0's members only.
+ * Memory    views are borrowed for the call, lists until the next build (sphg_neighbors_use_lists); the
+ *           library owns contexts and neighbours only. Inputs are never written. An output must not
+ *           overlap an input or another output (ERROR_ARGUMENT). Once warm, no call allocates while
+ *           counts, pairs included, stay within the largest seen, wherever the particles are by then.
+ * Threads   one call at a time per context, any number of contexts at once; what a call takes as const
+ *           may be shared by concurrent calls. Same input, same bits: for any number of threads, any
+ *           executor, any split into subsets, on all instruction sets with fused multiply-add (x86-64-v3,
+ *           v4, AArch64). Children of fork() may use contexts old and new: on the calling thread alone,
+ *           or parallel_for, once OpenMP's threads have worked in the parent. If the parent ran OpenMP by
+ *           other means, set threads = 1 in the child.
+ * Range     f32: H from about 1e-12 to 1e12 in 3D (1e-18 to 1e18 in 2D), so that H^d and H^2 stay normal
+ *           numbers; f64 far beyond. The entries of a correction table, and `square` results (unit 1 /
+ *           L^2), must be representable as well. Finite input gives NaN or Inf only where A_j - A_i, a
+ *           sum, or a ratio of volumes or densities leaves the type (f32: about 1e38).
+ * Rank      isolated, collinear, coplanar and coincident particles are ordinary input: never an error,
+ *           never NaN; each target's `rank` tells how much could be corrected. */
 #ifndef SPHGRAD_SPHGRAD_H
 #define SPHGRAD_SPHGRAD_H
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define SPHG_VERSION_MAJOR 0 /* CMakeLists.txt reads the version from these three lines */
 #define SPHG_VERSION_MINOR 1
@@ -135,27 +133,23 @@ static inline sphg_view sphg_view_u8(const uint8_t *first, ptrdiff_t stride)
     sphg_view view = {first, NULL, NULL, stride, SPHG_U8, SPHG_AS_SHAPE};
     return view;
 }
-static inline sphg_view sphg_xyz_f32(const float *x, const float *y, const float *z,
-                                     ptrdiff_t stride)
+static inline sphg_view sphg_xyz_f32(const float *x, const float *y, const float *z, ptrdiff_t stride)
 {
     sphg_view view = {x, y, z, stride, SPHG_F32, SPHG_AS_SHAPE};
     return view;
 }
-static inline sphg_view sphg_xyz_f64(const double *x, const double *y, const double *z,
-                                     ptrdiff_t stride)
+static inline sphg_view sphg_xyz_f64(const double *x, const double *y, const double *z, ptrdiff_t stride)
 {
     sphg_view view = {x, y, z, stride, SPHG_F64, SPHG_AS_SHAPE};
     return view;
 }
 static inline sphg_view sphg_same_f32(const float *first) /* one item for all */
 {
-    sphg_view view = {first, NULL, NULL, 0, SPHG_F32, SPHG_AS_SHAPE};
-    return view;
+    return sphg_view_f32(first, 0);
 }
 static inline sphg_view sphg_same_f64(const double *first)
 {
-    sphg_view view = {first, NULL, NULL, 0, SPHG_F64, SPHG_AS_SHAPE};
-    return view;
+    return sphg_view_f64(first, 0);
 }
 static inline sphg_view sphg_absent(void)
 {
@@ -291,40 +285,40 @@ typedef struct sphg_neighbors sphg_neighbors;
 typedef struct sphg_geometry {
     sphg_view sources;    /* x_j [L], source_count vectors */
     sphg_view targets;    /* x_i [L], target_count vectors. Absent: the targets are the sources'
-                             first target_count particles, "part of" this source set */
+                             first target_count particles, "part of" this source set; or targets_of */
     int32_t source_count; /* ghosts included; 0: sources.x may be NULL, as all views of the set */
     int32_t target_count;
     sphg_type precision; /* of all fields and results; 0: as the positions. F32 beside F64
                             positions: differences are taken before narrowing. Never wider */
-    int32_t list_free;   /* search only; 1: keep no pairs, each operator finds them: for one or
-                            two uses. Without a skin */
-    int32_t keep_weights; /* search only; 1: room for the weight that a scheme gives each pair: the
-                             first sweep fills it, later ones of the same kernel, method and volumes
-                             read it and save the kernel; same bits. 4 bytes a pair (f64: 8). Of use
-                             without skin and periodic axes; classic methods form theirs anew */
+    int32_t list_free;   /* search only; 1: keep no pairs; for one or two uses. Without a skin */
+    int32_t keep_weights; /* search only; 1: room for the weight that a scheme gives each pair: the first
+                             sweep fills it, later ones of the same kernel, method and volumes read it and
+                             save the kernel; same bits. 4 bytes a pair (f64: 8). Of use without skin and
+                             periodic axes; classic methods form theirs anew */
     double skin;         /* [L], search only: find pairs up to H + skin and keep them until a
                             particle has moved skin / 2; results are exact throughout */
-    double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin) up to rounding; positions
-                            anywhere: of fl(fl(x_i - x_j) + k period) the smallest counts, where
-                            fmod(x, period) stands for x if |x| is beyond a period and 2^16 H
-                            (f64: 2^45 H). Skins measure moves to the nearest image */
+    double period[3];    /* [L] per axis; 0: open; else >= 2 (H + skin) up to rounding; positions anywhere:
+                            of fl(fl(x_i - x_j) + k period) the smallest counts, where fmod(x, period)
+                            stands for x if |x| is beyond a period and 2^16 H (f64: 2^45 H). Skins
+                            measure moves to the nearest image */
     sphg_view source_support; /* H_j [L] > 0, search only, of the positions' type; absent: all have the
                                  scheme's radius, which is not read otherwise. H above is then the
                                  largest; other skins are in proportion, growth of H counts as a move */
     sphg_view target_support; /* H_i of targets apart: there if the other is */
     int32_t mutual;           /* 1: j is a neighbour of i where r < max(H_i, H_j), as SYMMETRIC and ADJOINT
                                  need it; 0: where r < H_i. G_ij and units of i have H_i either way */
+    const sphg_neighbors *targets_of; /* search only; instead of targets: the targets, with places and
+                                         radii, are those of this object, searched before with the
+                                         same period. Neither read nor sorted again if without skin
+                                         and of the same H. Alive and not rebuilt as long as in use */
 } sphg_geometry;
 
 /* The usual ways; set precision, list_free, skin and period afterwards. */
 static inline sphg_geometry sphg_targets_apart(sphg_view targets, int32_t target_count,
                                                sphg_view sources, int32_t source_count)
 {
-#ifdef __cplusplus
-    sphg_geometry geometry = sphg_geometry();
-#else
-    sphg_geometry geometry = {0};
-#endif
+    sphg_geometry geometry;
+    memset(&geometry, 0, sizeof geometry);
     geometry.sources = sources;
     geometry.targets = targets;
     geometry.source_count = source_count;
@@ -334,6 +328,13 @@ static inline sphg_geometry sphg_targets_apart(sphg_view targets, int32_t target
 static inline sphg_geometry sphg_all(sphg_view positions, int32_t count) /* over all */
 {
     return sphg_targets_apart(sphg_absent(), count, positions, count);
+}
+static inline sphg_geometry sphg_targets_of(const sphg_neighbors *other, sphg_view sources,
+                                            int32_t source_count)
+{
+    sphg_geometry geometry = sphg_targets_apart(sphg_absent(), 0, sources, source_count);
+    geometry.targets_of = other;
+    return geometry;
 }
 static inline sphg_geometry sphg_own_and_ghosts(sphg_view positions, int32_t own, int32_t ghosts)
 { /* the first `own` are targets; sources are these and the ghosts behind them */

@@ -39,6 +39,9 @@ static sphg_result check_tested(struct sphgi_checker checker, const sphg_neighbo
         return missing;
     if (!n->kind)
         return sphgi_fail(checker.context, SPHG_ERROR_STATE, "%s: neighbors were never built", f);
+    if (!sphgi_has_its_targets(n))
+        return sphgi_fail(checker.context, SPHG_ERROR_STATE,
+                          "%s: neighbors have targets of an object that was built anew since", f);
     if (n->dimension != scheme->dimension)
         return sphgi_fail(checker.context, SPHG_ERROR_SIZE,
                           "%s: neighbors were built in %dD, the scheme is %dD", f,

@@ -3,6 +3,7 @@
 #include "entries.h"
 #include "search/build.h"
 #include "search/radii.h"
+#include "search/targets_of.h"
 #include <string.h>
 
 sphg_neighbors *sphgi_neighbors_make(sphg_context *context)
@@ -48,6 +49,7 @@ void sphg_neighbors_destroy(sphg_neighbors *neighbors)
     if (!neighbors)
         return;
     const struct sphgi_allocator allocator = neighbors->allocator;
+    sphgi_give_up_targets(neighbors);
     const struct buffers buffers = own_buffers(neighbors);
     for (size_t k = 0; k < sizeof buffers.list / sizeof *buffers.list; ++k)
         sphgi_free(&allocator, buffers.list[k]);
@@ -56,18 +58,25 @@ void sphg_neighbors_destroy(sphg_neighbors *neighbors)
     sphgi_release(&allocator, neighbors, sizeof *neighbors);
 }
 
+/* given: the geometry with the targets that it names by another object. */
 static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbors *neighbors,
                                const sphg_scheme *scheme, const sphg_geometry *geometry,
-                               bool searched, struct sphgi_scheme *checked)
+                               bool searched, struct sphgi_scheme *checked, sphg_geometry *given)
 {
-    const bool radii = geometry && sphgi_has_radii(geometry);
     sphg_result result = sphgi_check_pointer(checker, neighbors, "neighbors");
     if (!result)
-        result = radii ? sphgi_check_scheme_beside_radii(checker, scheme, checked)
-                       : sphgi_check_scheme(checker, scheme, checked);
+        result = sphgi_check_pointer(checker, geometry, "geometry");
+    if (result)
+        return result;
+    *given = *geometry;
+    const bool radii = sphgi_has_radii(given) || (given->targets_of && given->targets_of->radii);
+    result = radii ? sphgi_check_scheme_beside_radii(checker, scheme, checked)
+                   : sphgi_check_scheme(checker, scheme, checked);
     if (!result)
-        result = sphgi_check_geometry(checker, geometry, checked, searched);
-    return result || radii ? result : sphgi_check_extent(checker, geometry, checked);
+        result = sphgi_take_targets_of(checker, neighbors, checked, searched, given);
+    if (!result)
+        result = sphgi_check_geometry(checker, given, checked, searched);
+    return result || radii ? result : sphgi_check_extent(checker, given, checked);
 }
 
 sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbors,
@@ -75,12 +84,13 @@ sphg_result sphg_neighbors_search(sphg_context *context, sphg_neighbors *neighbo
 {
     const struct sphgi_checker checker = {context, "sphg_neighbors_search"};
     struct sphgi_scheme checked = {0};
+    sphg_geometry given;
     sphg_result result = sphgi_enter(context);
     if (result)
         return result;
-    result = check_build(checker, neighbors, scheme, geometry, true, &checked);
+    result = check_build(checker, neighbors, scheme, geometry, true, &checked, &given);
     if (!result)
-        result = sphgi_build_by_search(checker, neighbors, &checked, geometry);
+        result = sphgi_build_by_search(checker, neighbors, &checked, &given);
     return sphgi_leave(context, result);
 }
 
@@ -90,14 +100,15 @@ sphg_result sphg_neighbors_would_rebuild(sphg_context *context, const sphg_neigh
 {
     const struct sphgi_checker checker = {context, "sphg_neighbors_would_rebuild"};
     struct sphgi_scheme checked = {0};
+    sphg_geometry given;
     sphg_result result = sphgi_enter(context);
     if (result)
         return result;
-    result = check_build(checker, neighbors, scheme, geometry, true, &checked);
+    result = check_build(checker, neighbors, scheme, geometry, true, &checked, &given);
     if (!result)
         result = sphgi_check_pointer(checker, rebuild, "rebuild");
     if (!result)
-        result = sphgi_would_rebuild(checker, neighbors, &checked, geometry, rebuild);
+        result = sphgi_would_rebuild(checker, neighbors, &checked, &given, rebuild);
     return sphgi_leave(context, result);
 }
 
@@ -107,14 +118,15 @@ sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neig
 {
     const struct sphgi_checker checker = {context, "sphg_neighbors_use_lists"};
     struct sphgi_scheme checked = {0};
+    sphg_geometry given;
     sphg_result result = sphgi_enter(context);
     if (result)
         return result;
-    result = check_build(checker, neighbors, scheme, geometry, false, &checked);
+    result = check_build(checker, neighbors, scheme, geometry, false, &checked, &given);
     if (!result)
-        result = sphgi_check_lists(checker, lists, geometry->target_count);
+        result = sphgi_check_lists(checker, lists, given.target_count);
     if (!result)
-        result = sphgi_build_on_lists(checker, neighbors, &checked, geometry, lists);
+        result = sphgi_build_on_lists(checker, neighbors, &checked, &given, lists);
     return sphgi_leave(context, result);
 }
 
@@ -144,6 +156,8 @@ sphg_result sphg_neighbors_get_info(sphg_context *context, const sphg_neighbors 
         info->bytes = (int64_t)sizeof *n + grid_bytes(&n->sources) + grid_bytes(&n->targets);
         for (size_t k = 0; k < sizeof own.list / sizeof *own.list; ++k)
             info->bytes += (int64_t)own.list[k]->size;
+        if (n->targets_of) /* whose memory it is */
+            info->bytes -= grid_bytes(&n->targets) + (int64_t)n->target_place.size;
     }
     return sphgi_leave(context, result);
 }

@@ -26,6 +26,11 @@ static sphg_result check_set(struct sphgi_plan_builder *builder, int32_t s)
         SPHGI_REFUSE(SPHG_ERROR_ARGUMENT, "%s: sources[%d].neighbors is NULL", f, (int)s);
     if (!n->kind)
         SPHGI_REFUSE(SPHG_ERROR_STATE, "%s: sources[%d].neighbors were never built", f, (int)s);
+    if (!sphgi_has_its_targets(n))
+        SPHGI_REFUSE(
+            SPHG_ERROR_STATE,
+            "%s: sources[%d].neighbors have targets of an object that was built anew since", f,
+            (int)s);
     if (s == 0) {
         plan->type = n->type;
         plan->target_count = n->target_count;

@@ -8,8 +8,10 @@
 #include "core/parallel.h"
 #include "core/view.h"
 #include "lists.h"
+#include "octaves.h"
 #include "radii.h"
 #include "skin.h"
+#include "targets_of.h"
 #include "weights.h"
 #include <math.h>
 #include <string.h>
@@ -83,7 +85,8 @@ static struct sphgi_geometry geometry_of(const sphg_geometry *given,
     struct sphgi_geometry g = {.source_count = given->source_count,
                                .target_count = given->target_count,
                                .dimension = scheme->dimension,
-                               .part_of = !given->targets.x};
+                               .part_of = !given->targets.x,
+                               .targets_of = given->targets_of};
     g.position_type = sphgi_type_of_positions(given);
     g.type = given->precision ? given->precision : g.position_type;
     g.row_size = SPHGI_ROW * sphgi_size_of_type(g.position_type);
@@ -112,12 +115,36 @@ static void take_radii(sphg_context *context, const sphg_geometry *given, struct
 {
     if (!sphgi_is_absent(&given->source_support))
         sphgi_put_radii(context, &given->source_support, g->source_count, g->source_rows);
-    if (!g->part_of && !sphgi_is_absent(&given->target_support))
+    if (!g->part_of && !g->targets_of && !sphgi_is_absent(&given->target_support))
         sphgi_put_radii(context, &given->target_support, g->target_count, g->target_rows);
 }
 
+static struct sphgi_raster raster_for(const struct sphgi_geometry *g,
+                                      const struct sphgi_scheme *scheme, double skin)
+{
+    struct sphgi_raster raster = sphgi_raster_of(g->dimension, scheme->radius + skin, &g->periods,
+                                                 g->largest, g->position_type);
+    raster.top = scheme->radius;
+    raster.octaves = g->graded ? sphgi_octaves_for(&raster, g->least, g->largest) : 0;
+    return raster;
+}
+
+/* Targets of another object: its grid serves as it is, or they are sorted once more. */
+static void find_targets(sphg_context *context, const sphg_geometry *given,
+                         const struct sphgi_scheme *scheme, struct sphgi_geometry *g)
+{
+    const sphg_neighbors *other = given->targets_of;
+    const bool known = sphgi_knows_targets_of(other, given, g);
+    if (known) {
+        g->raster = raster_for(g, scheme, given->skin);
+        g->shares = sphgi_may_share_targets(other, &g->raster);
+    }
+    if (!g->shares)
+        sphgi_copy_targets(context, other, g);
+}
+
 static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
-                                 struct sphgi_geometry *g)
+                                 const struct sphgi_scheme *scheme, struct sphgi_geometry *g)
 {
     sphg_context *context = checker.context;
     const size_t own_targets = g->part_of ? 0 : (size_t)g->target_count;
@@ -128,14 +155,18 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
     g->target_rows = g->source_rows + (size_t)g->source_count * g->row_size;
     sphg_result result = read_positions(checker, &given->sources, "geometry.sources",
                                         g->source_count, g->source_rows, g);
-    if (!result && !g->part_of)
+    if (!result && given->targets_of)
+        find_targets(context, given, scheme, g);
+    else if (!result && !g->part_of)
         result = read_positions(checker, &given->targets, "geometry.targets", g->target_count,
                                 g->target_rows, g);
     if (g->part_of)
         g->target_rows = g->source_rows;
-    if (!result)
-        take_radii(context, given, g);
-    return result;
+    if (result)
+        return result;
+    take_radii(context, given, g);
+    g->raster = raster_for(g, scheme, given->skin);
+    return SPHG_OK;
 }
 
 /* ---- Search ---------------------------------------------------------------------------------- */
@@ -143,6 +174,8 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
 static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_geometry *given,
                   double radius)
 {
+    n->kind = SPHGI_NEVER_BUILT;
+    ++n->builds;
     n->dimension = g->dimension;
     n->position_type = g->position_type;
     n->type = g->type;
@@ -163,7 +196,8 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     n->mutual = g->graded && given->mutual;
     n->least = g->radii ? g->least : radius;
     n->stretch = 1 + given->skin / radius;
-    n->far = fmax(g->largest[0], fmax(g->largest[1], g->largest[2]));
+    memcpy(n->largest, g->largest, sizeof n->largest);
+    sphgi_give_up_targets(n);
     atomic_store(&n->places, 0);
     memset(&n->lists, 0, sizeof n->lists);
 }
@@ -178,7 +212,7 @@ static sphg_result read_question(struct sphgi_checker checker, const sphg_geomet
     g->radii = sphgi_has_radii(given);
     g->least = radii.least;
     g->graded = radii.least < radii.largest;
-    return result ? result : read_geometry(checker, given, g);
+    return result ? result : read_geometry(checker, given, scheme, g);
 }
 
 /* How much of the skin is left; negative or NaN: the pairs that the object holds do not serve. */
@@ -217,7 +251,6 @@ sphg_result sphgi_build_by_search(struct sphgi_checker checker, sphg_neighbors *
         sphgi_skin_keep(checker.context, n, &g, scheme->radius, left);
         return SPHG_OK;
     }
-    n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
     result = sphgi_grids_build(checker.context, n, &g);
     if (!result)
@@ -269,8 +302,7 @@ static bool open_grids(sphg_neighbors *n, const struct sphgi_geometry *g)
     n->sources.block_count = n->targets.block_count = 0;
     n->sources.count = n->source_count;
     n->targets.count = n->target_count;
-    n->sources.raster =
-        sphgi_raster_of(n->dimension, n->radius, &g->periods, g->largest, n->position_type);
+    n->sources.raster = g->raster;
     return number(n, &n->sources.order, n->source_count) &&
            (n->part_of || number(n, &n->targets.order, n->target_count)) &&
            number(n, &n->target_place, n->target_count);
@@ -290,10 +322,9 @@ sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *n
                                  const sphg_lists *lists)
 {
     struct sphgi_geometry g = geometry_of(given, scheme);
-    sphg_result result = read_geometry(checker, given, &g);
+    sphg_result result = read_geometry(checker, given, scheme, &g);
     if (result)
         return result;
-    n->kind = SPHGI_NEVER_BUILT;
     adopt(n, &g, given, scheme->radius);
     n->same = n->part_of;
     if (!copy_rows(n, &g))

@@ -59,8 +59,9 @@ static void widen_by(struct extent *extent, const sphg_neighbors *n, const struc
 static double far_from_octaves(const sphg_neighbors *n, double most)
 {
     const double width = 1 / n->sources.raster.axis[0].inverse;
-    const bool near = n->far * n->sources.raster.axis[0].inverse < SPHGI_CUT_MOST;
-    return near && 0x1p32 * width < most ? -2 * n->far - 64 * width : (double)NAN;
+    const double far = fmax(n->largest[0], fmax(n->largest[1], n->largest[2]));
+    const bool near = far * n->sources.raster.axis[0].inverse < SPHGI_CUT_MOST;
+    return near && 0x1p32 * width < most ? -2 * far - 64 * width : (double)NAN;
 }
 
 /* Below the lowest x by 64 cells, and by as much as that x has digits for; NaN if cells do not tell

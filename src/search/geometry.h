@@ -13,6 +13,9 @@ struct sphgi_geometry {
     double least;       /* radius, if they have */
     struct sphgi_periods periods;
     double largest[3]; /* |coordinate|, of a periodic or graded geometry */
+    struct sphgi_raster raster;
+    const sphg_neighbors *targets_of;
+    bool shares; /* the grid of targets is that of targets_of: there are no target_rows */
     size_t row_size;
     char *source_rows, *target_rows; /* in the order of the host, in context->input */
 };

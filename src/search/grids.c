@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "grids.h"
 #include "core/parallel.h"
+#include "targets_of.h"
 #include <stdatomic.h>
 #include <string.h>
 
@@ -87,19 +88,12 @@ static size_t most_of(const sphg_neighbors *n, int32_t count)
 /* Those of the lists too, which keep a number per group of targets. */
 static size_t tables_most(const sphg_neighbors *n)
 {
-    size_t bytes = most_of(n, n->source_count) + (n->same ? 0 : most_of(n, n->target_count));
+    size_t bytes = most_of(n, n->source_count);
+    if (sphgi_sorts_targets(n))
+        bytes += most_of(n, n->target_count);
     if (!n->list_free)
         bytes += (size_t)sphgi_group_count(n->target_count) * sizeof(int64_t) + SPHGI_ALIGNMENT;
     return bytes;
-}
-
-static struct sphgi_raster raster_for(const sphg_neighbors *n, const struct sphgi_geometry *g)
-{
-    struct sphgi_raster raster = sphgi_raster_of(n->dimension, n->radius + n->skin, &g->periods,
-                                                 g->largest, n->position_type);
-    raster.top = n->radius;
-    raster.octaves = n->graded ? sphgi_octaves_for(&raster, n->least, g->largest) : 0;
-    return raster;
 }
 
 static void move_tables(struct sphgi_grid *grid, char *to)
@@ -122,8 +116,8 @@ static sphg_result build_both(sphg_context *context, sphg_neighbors *n,
 {
     const sphg_type type = n->position_type;
     char *tables = n->shared.data;
-    const bool targets =
-        stands(context, &n->targets, raster, type, g->target_rows, n->target_count);
+    const bool targets = sphgi_sorts_targets(n) && stands(context, &n->targets, raster, type,
+                                                          g->target_rows, n->target_count);
     if (!stands(context, &n->sources, raster, type, g->source_rows, n->source_count)) {
         if (targets)
             move_tables(&n->targets, tables + most_of(n, n->source_count));
@@ -131,10 +125,10 @@ static sphg_result build_both(sphg_context *context, sphg_neighbors *n,
             return SPHG_ERROR_MEMORY;
     }
     tables += sphgi_tables_of(&n->sources);
-    if (targets) {
+    if (targets)
         move_tables(&n->targets, tables);
+    if (targets || n->targets_of)
         return SPHG_OK;
-    }
     if (sphgi_grid_build(context, &n->targets, &n->allocator, raster, type, g->target_rows,
                          n->target_count, tables))
         return SPHG_ERROR_MEMORY;
@@ -155,14 +149,17 @@ static sphg_result build_same(sphg_context *context, sphg_neighbors *n,
 sphg_result sphgi_grids_build(sphg_context *context, sphg_neighbors *n,
                               const struct sphgi_geometry *g)
 {
-    const struct sphgi_raster raster = raster_for(n, g);
     const size_t before = n->shared.size;
+    if (g->shares)
+        sphgi_share_targets(n, g->targets_of);
     if (!sphgi_reserve(&n->allocator, &n->shared, tables_most(n), 1))
         return SPHG_ERROR_MEMORY;
-    if (n->shared.size != before) /* the tables are gone */
-        n->sources.sorted = n->targets.sorted = false;
+    if (n->shared.size != before) { /* the tables are gone */
+        n->sources.sorted = false;
+        n->targets.sorted &= !sphgi_sorts_targets(n);
+    }
     const sphg_result result =
-        n->same ? build_same(context, n, &raster, g) : build_both(context, n, &raster, g);
+        n->same ? build_same(context, n, &g->raster, g) : build_both(context, n, &g->raster, g);
     if (!result && n->graded && n->part_of && !n->same &&
         !invert_order(context, n, &n->sources, &n->source_place))
         return SPHG_ERROR_MEMORY;

@@ -280,7 +280,7 @@ static bool place_lists(sphg_neighbors *n, int64_t ids)
 {
     struct sphgi_buffer *shared = &n->shared;
     const size_t sources = sphgi_tables_of(&n->sources);
-    const size_t places = sources + (n->same ? 0 : sphgi_tables_of(&n->targets));
+    const size_t places = sources + (sphgi_sorts_targets(n) ? sphgi_tables_of(&n->targets) : 0);
     const size_t groups = (size_t)sphgi_group_count(n->target_count);
     const size_t used = places + sphgi_round_up(groups * sizeof(int64_t), SPHGI_ALIGNMENT);
     if (ids > 0 && used + (size_t)ids * sizeof(uint32_t) > shared->size) {
@@ -293,7 +293,7 @@ static bool place_lists(sphg_neighbors *n, int64_t ids)
     }
     char *base = shared->data;
     sphgi_grid_use_tables(&n->sources, base);
-    if (!n->same)
+    if (sphgi_sorts_targets(n))
         sphgi_grid_use_tables(&n->targets, base + sources);
     n->found.groups = (int64_t *)(void *)(base + places);
     n->found.ids = (uint32_t *)(void *)(base + used);

@@ -50,13 +50,16 @@ struct sphg_neighbors {
     bool mutual;    /* the larger one of a pair counts */
     double least;   /* radius */
     double stretch; /* 1 + skin / radius at the last search: lists hold so many times each radius */
-    double far;     /* largest |coordinate|, if graded */
+    double largest[3]; /* |coordinate| at the last search, if periodic or graded */
     bool periodic, list_free, keeps_weights;
     bool part_of; /* targets are the first sources */
     bool same;    /* ... and all of them: one grid serves both */
     int32_t source_count, target_count;
 
-    struct sphgi_grid sources, targets; /* targets: unused if same */
+    struct sphgi_grid sources, targets;      /* targets: unused if same */
+    const struct sphg_neighbors *targets_of; /* whose grid of targets `targets` and `target_place`
+                                                are; NULL: the object's own */
+    uint64_t builds, builds_of_targets; /* its own, and those of targets_of when it was built */
     bool dummy_is_far;                  /* farther from all targets than pairs reach, else NaN */
     struct sphgi_buffer target_place;   /* int32_t: place of each target in grid order */
     struct sphgi_buffer source_place;   /* the same of sources: radii, for targets among them */
@@ -75,6 +78,18 @@ struct sphg_neighbors {
 static inline const struct sphgi_grid *sphgi_target_grid(const sphg_neighbors *neighbors)
 {
     return neighbors->same ? &neighbors->sources : &neighbors->targets;
+}
+
+/* Targets that are other particles than the sources, and were sorted by this object. */
+static inline bool sphgi_sorts_targets(const sphg_neighbors *neighbors)
+{
+    return !neighbors->same && !neighbors->targets_of;
+}
+
+/* Whether the object whose grid the targets stand in, if it is another one, is as it was. */
+static inline bool sphgi_has_its_targets(const sphg_neighbors *neighbors)
+{
+    return !neighbors->targets_of || neighbors->targets_of->builds == neighbors->builds_of_targets;
 }
 
 /* With a skin a source may come farther than the margin of a small target. */

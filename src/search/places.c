@@ -84,7 +84,8 @@ static const char *row_of_target(const sphg_neighbors *n, int32_t target)
 int32_t sphgi_first_elsewhere(sphg_context *context, const sphg_neighbors *a,
                               const sphg_neighbors *b)
 {
-    if (a == b || sum_of_places(context, a) == sum_of_places(context, b))
+    const bool same = sphgi_target_grid(a)->rows.data == sphgi_target_grid(b)->rows.data;
+    if (same || sum_of_places(context, a) == sum_of_places(context, b))
         return -1;
     for (int32_t k = 0; k < a->target_count; ++k)
         for (int32_t axis = 0; axis < a->dimension; ++axis)

@@ -27,7 +27,8 @@ class Geometry(c.Structure):
     _fields_ = [("sources", View), ("targets", View), ("source_count", c.c_int32),
                 ("target_count", c.c_int32), ("precision", c.c_int), ("list_free", c.c_int32),
                 ("keep_weights", c.c_int32), ("skin", c.c_double), ("period", c.c_double * 3),
-                ("source_support", View), ("target_support", View), ("mutual", c.c_int32)]
+                ("source_support", View), ("target_support", View), ("mutual", c.c_int32),
+                ("targets_of", c.c_void_p)]
 
 
 class Sources(c.Structure):

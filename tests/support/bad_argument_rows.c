@@ -161,7 +161,7 @@ static int spoil_shape(valid_call *own, int number, trial *made)
         ROW("geometry.skin", LENGTH, geometry.skin),                                               \
         ROW("geometry.period", LENGTH, geometry.period[1]), FREE("geometry.list_free"),            \
         FREE("geometry.keep_weights"), FREE("geometry.source_support"),                            \
-        FREE("geometry.target_support"), FREE("geometry.mutual")
+        FREE("geometry.target_support"), FREE("geometry.mutual"), FREE("geometry.targets_of")
 #define SOURCES                                                                                    \
     ROW("sources", POINTER, sources_given), ROW("sources.neighbors", BUILT, sources[0].neighbors), \
         ROW("sources.neighbors", INDICES, sources[0].neighbors),                                   \

@@ -123,10 +123,12 @@ template <class Errors> class basic_neighbors
         made.target_support =
             check.take(where.target_support, targets, SPHG_SCALAR, d, "target_support");
         made.source_count = check.count(count, "positions");
-        made.target_count = check.count(apart           ? targets
-                                        : where.own < 0 ? count
-                                                        : where.own,
-                                        "targets");
+        made.targets_of = where.targets_of;
+        if (!where.targets_of)
+            made.target_count = check.count(apart           ? targets
+                                            : where.own < 0 ? count
+                                                            : where.own,
+                                            "targets");
         return made;
     }
 

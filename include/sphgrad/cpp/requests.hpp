@@ -27,6 +27,7 @@ struct geometry {
     std::int64_t own = -1; /* targets that are part of the sources; -1: all, or `targets` */
     sphg_geometry options = {};
     input source_support, target_support;
+    const sphg_neighbors *targets_of = nullptr;
 };
 inline geometry all(input positions)
 {
@@ -38,6 +39,13 @@ inline geometry own_and_ghosts(input positions, std::int64_t own)
 {
     geometry made = all(positions);
     made.own = own;
+    return made;
+}
+/* Targets of neighbours that were searched before: alive, and not searched again, while in use. */
+template <class Neighbors> geometry targets_of(const Neighbors &other, input sources)
+{
+    geometry made = all(sources);
+    made.targets_of = other.get();
     return made;
 }
 inline geometry targets_apart(input targets, input sources)

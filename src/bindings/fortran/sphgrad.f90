@@ -156,6 +156,7 @@ module sphgrad
     real(c_double) :: period(3) = 0
     type(sphg_view) :: source_support, target_support
     integer(c_int32_t) :: mutual = 0
+    type(c_ptr) :: targets_of = c_null_ptr
   end type sphg_geometry
 
   type, bind(c), public :: sphg_lists
@@ -527,7 +528,7 @@ module sphgrad
   ! view cannot express, such as every second number of a packed tensor, gets the type -1, which every call
   ! refuses.
   public :: sphg_view_of, sphg_matrices_of, sphg_full_of, sphg_columns_of, sphg_same, sphg_absent
-  public :: sphg_all, sphg_own_and_ghosts, sphg_targets_apart, sphg_range, sphg_masked, sphg_listed
+  public :: sphg_all, sphg_own_and_ghosts, sphg_targets_apart, sphg_targets_of, sphg_range, sphg_masked, sphg_listed
   public :: sphg_message, sphg_result_text
 
   interface sphg_view_of
@@ -592,6 +593,15 @@ contains
     geometry%target_count = int(target_count, c_int32_t)
     geometry%source_count = int(source_count, c_int32_t)
   end function sphg_targets_apart
+
+  pure function sphg_targets_of(other, sources, source_count) result(geometry)
+    type(c_ptr), intent(in) :: other
+    type(sphg_view), intent(in) :: sources
+    integer, intent(in) :: source_count
+    type(sphg_geometry) :: geometry
+    geometry = sphg_targets_apart(sphg_absent(), 0, sources, source_count)
+    geometry%targets_of = other
+  end function sphg_targets_of
 
   pure function sphg_all(positions, count) result(geometry)
     type(sphg_view), intent(in) :: positions

@@ -250,6 +250,11 @@ static void geometries()
     field.gradient = there;
     context.evaluate(scheme, {{sphgrad::sources(apart, sphgrad::same(1.0))}, {field}});
     CHECK(near(there[0][0][1], -1));
+    sphgrad::neighbors same_targets(context);
+    same_targets.search(scheme, sphgrad::targets_of(apart, x));
+    there[0] = mat{};
+    context.evaluate(scheme, {{sphgrad::sources(same_targets, sphgrad::same(1.0))}, {field}});
+    CHECK(near(there[0][0][1], -1));
 
     const sphg_scheme flat = sphgrad::scheme(2.2, SPHG_MLS, 2);
     std::vector<std::array<double, 2>> plane;

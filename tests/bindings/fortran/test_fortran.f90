@@ -189,7 +189,7 @@ contains
     type(sphg_context_info) :: context_info
     type(sphg_neighbors_info) :: info
     real(c_double), target :: j(3, 3, n), lambda(n), places(3, 1), there(3, 1), slope(3, 3, 1)
-    type(c_ptr) :: other
+    type(c_ptr) :: other, third
     integer(c_int32_t) :: rebuild
     at_sources(1) = sphg_view_of(v)
     fields(1)%shape = SPHG_VECTOR
@@ -216,6 +216,13 @@ contains
     request%lambda_min = sphg_absent()
     call good(sphg_evaluate(context, scheme, request))
     call expect(exact(slope), "targets apart")
+    call good(sphg_neighbors_create(context, third))
+    call good(sphg_neighbors_search(context, third, scheme, sphg_targets_of(other, sphg_view_of(x), n)))
+    sets(1)%neighbors = third
+    slope = 0
+    call good(sphg_evaluate(context, scheme, request))
+    call expect(exact(slope), "targets of")
+    call sphg_neighbors_destroy(third)
     geometry = sphg_own_and_ghosts(sphg_view_of(x), 200, 16)
     geometry%period(1) = 6
     geometry%skin = 0.1d0

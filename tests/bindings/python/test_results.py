@@ -196,6 +196,28 @@ class Sets(Case):
         self.close(sg.jacobian(apart, [v[:cut], v[cut:]]), sg.jacobian(together, v, 1), 1000)
         self.assertEqual(sg.jacobian(together, v, 1).shape, (cut, 3, 3))
 
+    def test_targets_of_other_neighbours(self):
+        x = cloud()
+        v, cut = waves(x), 80
+        own, wall = np.ascontiguousarray(x[:cut]), np.ascontiguousarray(x[cut:])
+        fluid = sg.Neighbors(own, H)
+        handed = sg.Neighbors(wall, H, targets=own)
+        beside = sg.Neighbors(wall, H, targets=fluid)
+        self.assertEqual((beside.target_count, beside.part_of), (cut, False))
+        self.assertLess(beside.info.bytes, handed.info.bytes)
+        results = [sg.jacobian([sg.Sources(fluid, 1), sg.Sources(n, 1)], [v[:cut], v[cut:]])
+                   for n in (handed, beside)]
+        np.testing.assert_array_equal(*results)
+        fluid.search(own + 0.01)
+        with self.assertRaisesRegex(sg.Error, "built anew"):
+            sg.gradient(beside, v[cut:, 0].copy(), 1, at_targets=v[:cut, 0].copy())
+        beside.search(wall, targets=fluid)
+        fluid.close()
+        with self.assertRaisesRegex(ValueError, "closed"):
+            sg.gradient(beside, v[cut:, 0].copy(), 1, at_targets=v[:cut, 0].copy())
+        beside.search(wall, targets=own)
+        self.assertTrue(np.isfinite(sg.jacobian([sg.Sources(beside, 1)], [v[cut:]], at_targets=v[:cut])).all())
+
     def test_walls_may_mirror(self):
         x = cloud()
         own, wall = np.ascontiguousarray(x[:80]), np.ascontiguousarray(x[80:])

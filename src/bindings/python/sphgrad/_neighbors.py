@@ -56,7 +56,8 @@ class Neighbors:
     of the positions. `scheme` is a Scheme or the support radius.
 
     own       the first so many particles are targets, the others ghosts; None: all
-    targets   other places to sum at, apart from the sources
+    targets   other places to sum at, apart from the sources; or Neighbors whose targets they are, which
+              must be searched before, and not again while these are in use
     period    per axis, 0 for an open one; or one number for all
     skin      find pairs up to H + skin and keep them until a particle has moved skin / 2
     support   a radius per particle, of the positions' type, or one number; the scheme's is not read
@@ -90,6 +91,7 @@ class Neighbors:
         self.target_count = self.source_count = 0
         self.part_of = None  # whether the targets are the first of the sources
         self._borrowed = None
+        self._targets_of = None  # lives as long as its targets are in use
         try:
             self._build(positions, own, targets, lists)
         except BaseException:
@@ -105,6 +107,8 @@ class Neighbors:
     def _pointer(self):
         if self._destroy is None or not self._destroy.alive:
             raise ValueError("the neighbours are closed")
+        if self._targets_of is not None:
+            self._targets_of._pointer  # raises if these are closed
         return self._pointer_value
 
     def search(self, positions, *, own=None, targets=None, scheme=None, support=None,
@@ -148,9 +152,12 @@ class Neighbors:
         geometry.sources = borrowed.input(positions, len(positions), (dimension,), positions.dtype,
                                           "positions", _c.Shape.VECTOR, same=False)
         geometry.targets = absent()
-        if targets is not None:
-            if own is not None:
-                raise ValueError("own and targets exclude each other")
+        if targets is not None and own is not None:
+            raise ValueError("own and targets exclude each other")
+        if isinstance(targets, Neighbors):
+            geometry.targets_of = targets._pointer
+            geometry.target_count = targets.target_count
+        elif targets is not None:
             targets = _positions(targets, "targets")
             geometry.targets = borrowed.input(targets, len(targets), (dimension,), positions.dtype,
                                               "targets", _c.Shape.VECTOR, same=False)
@@ -203,6 +210,7 @@ class Neighbors:
         c_scheme = scheme._c_scheme(positions.shape[1])
         c_lists = None if lists is None else self._lists(lists, geometry, borrowed)
         with self.context._calls() as context:
+            self._targets_of = None  # a build needs those of the last one no more
             pointer = self._pointer
             if c_lists is None:
                 status = _c.functions.sphg_neighbors_search(context, pointer, c.byref(c_scheme),
@@ -214,6 +222,7 @@ class Neighbors:
             self._scheme, self.dtype, self.dimension = scheme, dtype, positions.shape[1]
             self.target_count, self.source_count = geometry.target_count, geometry.source_count
             self.part_of = targets is None
+            self._targets_of = targets if isinstance(targets, Neighbors) else None
             self._borrowed = borrowed if c_lists is not None and not c_lists.copy else None
 
     @property
