@@ -3,6 +3,7 @@
 #include "core/overlap.h"
 #include "entries.h"
 #include "core/parallel.h"
+#include "pair_order.h"
 #include "plan/make.h"
 #include "sweep/selection.h"
 #include "sweep/sweep.h"
@@ -10,100 +11,7 @@
 #include "sweep/worker.h"
 #include <string.h>
 
-enum { SORT_GRAIN = 256, LIST_GRAIN = 32 /* groups */, INSERTION_MOST = 128 };
-
-/* ---- Rows in ascending order ---------------------------------------------------------------- */
-
-struct sorting {
-    const int64_t *offsets;
-    int32_t *indices;
-    struct sphgi_columns gradient;
-    size_t number_size;
-};
-
-static void swap_pairs(const struct sorting *s, int64_t a, int64_t b)
-{
-    const int32_t index = s->indices[a];
-    s->indices[a] = s->indices[b];
-    s->indices[b] = index;
-    for (int32_t c = 0; c < s->gradient.count; ++c) {
-        char *x = (char *)(uintptr_t)(s->gradient.at[c] + a * s->gradient.stride);
-        char *y = (char *)(uintptr_t)(s->gradient.at[c] + b * s->gradient.stride);
-        char held[sizeof(double)];
-        memcpy(held, x, s->number_size);
-        memcpy(x, y, s->number_size);
-        memcpy(y, held, s->number_size);
-    }
-}
-
-static void sift_down(const struct sorting *s, int64_t first, int64_t root, int64_t count)
-{
-    while (2 * root + 1 < count) {
-        int64_t child = 2 * root + 1;
-        if (child + 1 < count && s->indices[first + child] < s->indices[first + child + 1])
-            ++child;
-        if (s->indices[first + root] >= s->indices[first + child])
-            return;
-        swap_pairs(s, first + root, first + child);
-        root = child;
-    }
-}
-
-/* Item k becomes what item `place` (the lower half of keys[k]) was. */
-static inline void permute(char *first, ptrdiff_t stride, size_t size, const uint64_t *keys,
-                           int64_t count)
-{
-    char held[INSERTION_MOST * sizeof(double)];
-    for (int64_t k = 0; k < count; ++k)
-        memcpy(held + (size_t)k * size, first + k * stride, size);
-    for (int64_t k = 0; k < count; ++k)
-        memcpy(first + k * stride, held + (size_t)(uint32_t)keys[k] * size, size);
-}
-
-/* Keys are sorted alone, index before place; each gradient then moves once. */
-static void sort_short_row(const struct sorting *s, int64_t first, int64_t count)
-{
-    uint64_t keys[INSERTION_MOST];
-    for (int64_t k = 0; k < count; ++k) {
-        const uint64_t key = (uint64_t)(uint32_t)s->indices[first + k] << 32 | (uint64_t)k;
-        int64_t at = k;
-        for (; at > 0 && keys[at - 1] > key; --at)
-            keys[at] = keys[at - 1];
-        keys[at] = key;
-    }
-    for (int64_t k = 0; k < count; ++k)
-        s->indices[first + k] = (int32_t)(keys[k] >> 32);
-    for (int32_t c = 0; c < s->gradient.count; ++c) {
-        const ptrdiff_t stride = s->gradient.stride;
-        char *column = (char *)(uintptr_t)(s->gradient.at[c] + first * stride);
-        if (s->number_size == sizeof(double)) /* constant sizes: no calls for eight bytes */
-            permute(column, stride, sizeof(double), keys, count);
-        else
-            permute(column, stride, sizeof(float), keys, count);
-    }
-}
-
-static void sort_row(const struct sorting *s, int64_t first, int64_t count)
-{
-    if (count <= INSERTION_MOST) {
-        sort_short_row(s, first, count);
-        return;
-    }
-    for (int64_t root = count / 2; root-- > 0;)
-        sift_down(s, first, root, count);
-    for (int64_t end = count - 1; end > 0; --end) {
-        swap_pairs(s, first, first + end);
-        sift_down(s, first, 0, end);
-    }
-}
-
-static void sort_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    const struct sorting *s = data;
-    (void)worker;
-    for (int32_t row = begin; row < end; ++row)
-        sort_row(s, s->offsets[row], s->offsets[row + 1] - s->offsets[row]);
-}
+enum { LIST_GRAIN = 32 /* groups */ };
 
 /* ---- Export --------------------------------------------------------------------------------- */
 
@@ -331,10 +239,10 @@ static sphg_result fill_pairs(struct exporting *e)
         write_lists(e);
     else
         result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
-    struct sorting sorting = {e->offsets, sink.indices, e->gradient,
-                              sphgi_size_of_type(e->plan->type)};
+    const struct sphgi_pair_order order = {e->offsets, sink.indices, e->gradient,
+                                           sphgi_size_of_type(e->plan->type)};
     if (!result && !e->pairs->any_order)
-        sphgi_parallel_for(context, sort_task, &sorting, e->rows, SORT_GRAIN);
+        sphgi_sort_pairs(context, &order, e->rows);
     return result;
 }
 
