@@ -4,6 +4,7 @@
 #include "support/brute_force.h"
 #include "support/comparison.h"
 #include <math.h>
+#include <string.h>
 
 enum { PROBES = 40 };
 
@@ -167,6 +168,146 @@ static void pairs_in_any_order_are_those_in_order(const test_case *test)
     TEST_REQUIRE(moved > 0, "the library's order is that of the host");
 }
 
+/* ---- Blocks ---------------------------------------------------------------------------------- */
+
+/* What is exported in blocks, beside the same pairs one after the other. */
+typedef struct blocks {
+    int block;
+    rows listed;
+    int32_t *lengths;
+    setup_array gradient;
+} blocks;
+
+static blocks blocks_of(const targets *own, const sphg_subset *subset, int block, int any_order,
+                        int with_indices)
+{
+    const comparison *on = &own->on;
+    const int d = on->points.dimension;
+    sphg_sources sources = comparison_sources(on);
+    sources.neighbors = own->neighbors;
+    blocks found = {
+        block, {own->count, test_memory(((size_t)own->count + 1) * 8), NULL}, NULL, {0}};
+    const sphg_view table = comparison_table_view(on, &own->table);
+    sphg_pairs pairs = {.offsets = found.listed.offsets, .any_order = any_order, .block = block};
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
+    found.listed.indices = test_memory((size_t)pairs.count * sizeof(int32_t));
+    found.lengths = test_memory((size_t)own->count * sizeof(int32_t));
+    found.gradient = setup_output(test_field_type(on->test), (int)pairs.count, d);
+    pairs.indices = with_indices ? found.listed.indices : NULL;
+    pairs.lengths = found.lengths;
+    pairs.gradient = setup_view(&found.gradient);
+    pairs.capacity = pairs.count - 1;
+    assert_int_equal(sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs),
+                     SPHG_ERROR_CAPACITY);
+    assert_true(setup_is_canary(&found.gradient, 0));
+    pairs.capacity = pairs.count;
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, subset, table, &pairs));
+    return found;
+}
+
+static double in_block(const blocks *found, int64_t place, int component)
+{
+    const int d = found->gradient.width;
+    const int64_t number = place / found->block * found->block * d +
+                           (int64_t)component * found->block + place % found->block;
+    return setup_get(&found->gradient, (int)(number / d), (int)(number % d));
+}
+
+/* Row by row the same, and behind each row what adds nothing. */
+static void require_blocks(const blocks *found, const pair_rows *expected, int count,
+                           int with_indices)
+{
+    int64_t next = 0;
+    for (int i = 0; i < count; ++i) {
+        const int64_t first = expected->listed.offsets[i], at = found->listed.offsets[i];
+        const int64_t length = expected->listed.offsets[i + 1] - first;
+        assert_int_equal(at, next);
+        assert_int_equal(found->lengths[i], length);
+        next = at + (length + found->block - 1) / found->block * found->block;
+        for (int64_t k = 0; at + k < next; ++k) {
+            const int64_t same = first + (k < length ? k : length - 1);
+            if (with_indices)
+                assert_int_equal(found->listed.indices[at + k], expected->listed.indices[same]);
+            for (int c = 0; c < found->gradient.width; ++c)
+                TEST_REQUIRE(in_block(found, at + k, c) ==
+                                 (k < length ? setup_get(&expected->gradient, (int)same, c) : 0),
+                             "row %d, place %d, component %d", i, (int)k, c);
+        }
+    }
+    assert_int_equal(found->listed.offsets[count], next);
+}
+
+static void blocks_hold_the_pairs_in_their_order(const test_case *test)
+{
+    for (int are_sources = 0; are_sources < 2; ++are_sources) {
+        const targets own = targets_of(test, are_sources);
+        for (int block = 4; block <= 16; block *= 2)
+            for (int any_order = 0; any_order < 2; ++any_order) {
+                const pair_rows expected = pairs_in_order(&own, NULL, 1, any_order);
+                const int with_indices = block != 8 || any_order;
+                const blocks found = blocks_of(&own, NULL, block, any_order, with_indices);
+                require_blocks(&found, &expected, own.count, with_indices);
+            }
+        const sphg_subset few = sphg_range(own.count / 4, own.count / 2);
+        const pair_rows expected = pairs_of(&own, &few, 1);
+        const blocks found = blocks_of(&own, &few, 8, 0, 1);
+        require_blocks(&found, &expected, few.end - few.begin, 1);
+    }
+}
+
+/* Rows so long that they come in pieces, and are sorted by another way. */
+static void blocks_hold_long_rows(const test_case *test)
+{
+    random_state random = random_seeded(96);
+    const cloud points = cloud_random(test->dimension, 700, 1, &random);
+    targets own = {.on = comparison_of(test, "crowd", points, 1.2), .are_sources = 1};
+    own.neighbors = own.on.neighbors;
+    own.count = points.count;
+    own.table = table_of(&own);
+    const sphg_subset few = sphg_range(0, 40);
+    const pair_rows expected = pairs_of(&own, &few, 1);
+    assert_true(expected.listed.offsets[1] > 200);
+    const blocks found = blocks_of(&own, &few, 8, 0, 1);
+    require_blocks(&found, &expected, 40, 1);
+}
+
+static void refuse_pairs(const targets *own, sphg_pairs pairs, const char *words)
+{
+    const comparison *on = &own->on;
+    const sphg_sources sources = comparison_sources(on);
+    const sphg_view table = comparison_table_view(on, &own->table);
+    const sphg_result result =
+        sphg_pair_gradients(on->context, &on->scheme, &sources, NULL, table, &pairs);
+    const char *message = sphg_last_message(on->context);
+    TEST_REQUIRE(result == SPHG_ERROR_ARGUMENT, "%s", sphg_result_string(result));
+    TEST_REQUIRE(strstr(message, words), "%s", message);
+}
+
+static void what_is_no_block_is_refused(const test_case *test)
+{
+    const targets own = targets_of(test, 1);
+    const int refused[] = {-8, 1, 2, 3, 7, 12, 32};
+    for (size_t k = 0; k < sizeof refused / sizeof *refused; ++k)
+        refuse_pairs(&own, (sphg_pairs){.block = refused[k]}, "must be 0, 4, 8 or 16");
+    const setup_array wide = setup_output(test_field_type(test), 9000, 4);
+    sphg_pairs pairs = {.block = 8, .capacity = 9000, .gradient = setup_view(&wide)};
+    refuse_pairs(&own, pairs, "must be one array of stride");
+    const setup_array whole = setup_output(test_field_type(test), 9000, test->dimension);
+    const setup_array apart = setup_output(test_field_type(test), 9000, 1);
+    pairs.gradient = setup_view(&whole);
+    pairs.gradient.y = apart.data;
+    pairs.gradient.z = test->dimension == 3 ? wide.data : NULL;
+    refuse_pairs(&own, pairs, "must be one array of stride");
+    pairs.gradient.y = pairs.gradient.z = NULL;
+    pairs.indices = whole.data;
+    refuse_pairs(&own, pairs, "overlap");
+    pairs.indices = NULL;
+    pairs.lengths = whole.data;
+    refuse_pairs(&own, pairs, "pairs.lengths");
+}
+
 static void masked_targets_have_the_pairs_they_have_among_all(const test_case *test)
 {
     for (int are_sources = 0; are_sources < 2; ++are_sources) {
@@ -204,6 +345,12 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(masked_targets_have_the_pairs_they_have_among_all, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(blocks_hold_the_pairs_in_their_order, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_CMLS), 0),
+    TEST_ENTRY(blocks_hold_long_rows, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_CMLS), 0),
+    TEST_ENTRY(what_is_no_block_is_refused, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC), 0),
     TEST_ENTRY(single_pairs_have_as_many_components_as_the_scheme, 0, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
 };

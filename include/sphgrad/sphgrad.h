@@ -397,8 +397,7 @@ SPHG_API sphg_result sphg_neighbors_would_rebuild(sphg_context *context, const s
  * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY, with copy INDEX (build
  * again). Cost: O(n), with copy O(n + pairs). */
 SPHG_API sphg_result sphg_neighbors_use_lists(sphg_context *context, sphg_neighbors *neighbors,
-                                              const sphg_scheme *scheme,
-                                              const sphg_geometry *geometry,
+                                              const sphg_scheme *scheme, const sphg_geometry *geometry,
                                               const sphg_lists *lists);
 
 /* What the object holds; counts are 0 before the first build. Errors: ARGUMENT, BUSY. Cost: O(1). */
@@ -422,16 +421,16 @@ typedef struct sphg_list_fault {
     double distance;        /* [L] r of the pair; 0 for lengths and indices */
 } sphg_list_fault;
 
-/* For hosts under development: are all pairs with r < H there, once and from both ends? Searches
- * the positions of the last build again, with the scheme's H, and compares, lists of the library
- * too. Further pairs are no fault. fault may be NULL; the message says the same.
+/* For hosts under development: are all pairs with r < H there, once and from both ends? Searches the
+ * positions of the last build again, with the scheme's H, and compares, lists of the library too. Further
+ * pairs are no fault. fault may be NULL; the message says the same.
  * Errors: ARGUMENT, SIZE, STATE, BUSY; LISTS (fault written); MEMORY, INDEX (fault written, too).
  * Cost: some dozens of searches; memory as the pairs exported. */
 SPHG_API sphg_result sphg_neighbors_check(sphg_context *context, const sphg_scheme *scheme,
                                           const sphg_neighbors *neighbors, sphg_list_fault *fault);
 
-/* order[k]: the k-th source on the library's path through space, source_count items. Sort your
- * particles by it now and then: operators are fastest on data in this order.
+/* order[k]: the k-th source on the library's path through space, source_count items. Sort your particles
+ * by it now and then: operators are fastest on data in this order.
  * Errors: ARGUMENT, STATE, BUSY; with lists of yours MEMORY. Cost: a copy; with lists a sort. */
 SPHG_API sphg_result sphg_neighbors_get_order(sphg_context *context,
                                               const sphg_neighbors *neighbors, int32_t *order);
@@ -621,16 +620,18 @@ typedef struct sphg_pairs {
     int32_t *indices;   /* j, ascending within a row, unless any_order */
     sphg_view gradient; /* G_ij [1/L], a vector per pair */
     int64_t capacity;   /* pairs that indices and gradient can hold */
-    int64_t count;      /* out: pairs there are */
-    int32_t any_order;  /* 1: rows keep the order that the library sums in, the same each time;
-                           nothing is sorted */
+    int64_t count;      /* out: pairs there are; with `block` places */
+    int32_t any_order;  /* 1: rows keep the order that the library sums in, the same each time */
+    int32_t block;      /* 4, 8, 16: rows begin at multiples of it, filled up with the last j and G_ij = 0;
+                           `gradient`, without gaps, has so many x, then y, then z. 0: pair after pair */
+    int32_t *lengths;   /* pairs of each row, less what fills it up */
 } sphg_pairs;
 
-/* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: all of them (one call
- * with offsets alone for the count, then the rest), or in blocks of targets that stay in the cache.
- * C_i: target_correction, else sources->correction if the targets are part of that set, else
- * computed; volume and C are read for `gradient` only. Classic methods: a target that is part of
- * the sources stands among its own pairs, since G_ii is not 0.
+/* The selected targets' pairs with r < H as CSR, with their G_ij if wanted: all of them (one call with
+ * offsets alone for the count, then the rest), or so few targets at a time that they stay in the cache.
+ * C_i: target_correction, else sources->correction if the targets are part of that set, else computed;
+ * volume and C are read for `gradient` only. Classic methods: a target that is part of the sources stands
+ * among its own pairs, since G_ii is not 0.
  * Errors: as sphg_evaluate; CAPACITY: nothing written but count. */
 SPHG_API sphg_result sphg_pair_gradients(sphg_context *context, const sphg_scheme *scheme,
                                          const sphg_sources *sources, const sphg_subset *subset,

@@ -10,13 +10,13 @@ static void swap_pairs(const struct sphgi_pair_order *s, int64_t a, int64_t b)
     const int32_t index = s->indices[a];
     s->indices[a] = s->indices[b];
     s->indices[b] = index;
-    for (int32_t c = 0; c < s->gradient.count; ++c) {
-        char *x = (char *)(uintptr_t)(s->gradient.at[c] + a * s->gradient.stride);
-        char *y = (char *)(uintptr_t)(s->gradient.at[c] + b * s->gradient.stride);
+    for (int32_t c = 0; c < s->gradient.columns.count; ++c) {
+        char *x = sphgi_pair_number(&s->gradient, c, a);
+        char *y = sphgi_pair_number(&s->gradient, c, b);
         char held[sizeof(double)];
-        memcpy(held, x, s->number_size);
-        memcpy(x, y, s->number_size);
-        memcpy(y, held, s->number_size);
+        memcpy(held, x, s->gradient.size);
+        memcpy(x, y, s->gradient.size);
+        memcpy(y, held, s->gradient.size);
     }
 }
 
@@ -44,6 +44,20 @@ static inline void permute(char *first, ptrdiff_t stride, size_t size, const uin
         memcpy(first + k * stride, held + (size_t)(uint32_t)keys[k] * size, size);
 }
 
+/* The same in blocks. */
+static void permute_blocks(const struct sphgi_pair_order *s, int32_t component, int64_t first,
+                           const uint64_t *keys, int64_t count)
+{
+    const size_t size = s->gradient.size;
+    char held[INSERTION_MOST * sizeof(double)];
+    for (int64_t k = 0; k < count; ++k)
+        memcpy(held + (size_t)k * size, sphgi_pair_number(&s->gradient, component, first + k),
+               size);
+    for (int64_t k = 0; k < count; ++k)
+        memcpy(sphgi_pair_number(&s->gradient, component, first + k),
+               held + (size_t)(uint32_t)keys[k] * size, size);
+}
+
 /* Keys are sorted alone, index before place; each gradient then moves once. */
 static void sort_short_row(const struct sphgi_pair_order *s, int64_t first, int64_t count)
 {
@@ -57,13 +71,15 @@ static void sort_short_row(const struct sphgi_pair_order *s, int64_t first, int6
     }
     for (int64_t k = 0; k < count; ++k)
         s->indices[first + k] = (int32_t)(keys[k] >> 32);
-    for (int32_t c = 0; c < s->gradient.count; ++c) {
-        const ptrdiff_t stride = s->gradient.stride;
-        char *column = (char *)(uintptr_t)(s->gradient.at[c] + first * stride);
-        if (s->number_size == sizeof(double)) /* constant sizes: no calls for eight bytes */
-            permute(column, stride, sizeof(double), keys, count);
+    for (int32_t c = 0; c < s->gradient.columns.count; ++c) {
+        if (s->gradient.block)
+            permute_blocks(s, c, first, keys, count);
+        else if (s->gradient.size == sizeof(double)) /* constant sizes: no calls for eight bytes */
+            permute(sphgi_pair_number(&s->gradient, c, first), s->gradient.columns.stride,
+                    sizeof(double), keys, count);
         else
-            permute(column, stride, sizeof(float), keys, count);
+            permute(sphgi_pair_number(&s->gradient, c, first), s->gradient.columns.stride,
+                    sizeof(float), keys, count);
     }
 }
 
@@ -81,15 +97,30 @@ static void sort_row(const struct sphgi_pair_order *s, int64_t first, int64_t co
     }
 }
 
-static void sort_task(void *data, int32_t begin, int32_t end, int32_t worker)
+/* What stands behind the last pair of a row is read along with it, and adds nothing. */
+static void fill_up(const struct sphgi_pair_order *s, int64_t first, int64_t count, int64_t places)
+{
+    for (int64_t k = count; k < places; ++k) {
+        s->indices[first + k] = s->indices[first + count - 1];
+        for (int32_t c = 0; c < s->gradient.columns.count; ++c)
+            memset(sphgi_pair_number(&s->gradient, c, first + k), 0, s->gradient.size);
+    }
+}
+
+static void order_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct sphgi_pair_order *s = data;
     (void)worker;
-    for (int32_t row = begin; row < end; ++row)
-        sort_row(s, s->offsets[row], s->offsets[row + 1] - s->offsets[row]);
+    for (int32_t row = begin; row < end; ++row) {
+        const int64_t first = s->offsets[row], places = s->offsets[row + 1] - first;
+        const int64_t count = s->lengths ? s->lengths[row] : places;
+        if (s->sorted)
+            sort_row(s, first, count);
+        fill_up(s, first, count, places);
+    }
 }
 
-void sphgi_sort_pairs(sphg_context *context, const struct sphgi_pair_order *order, int32_t rows)
+void sphgi_order_pairs(sphg_context *context, const struct sphgi_pair_order *order, int32_t rows)
 {
-    sphgi_parallel_for(context, sort_task, (void *)(uintptr_t)order, rows, GRAIN);
+    sphgi_parallel_for(context, order_task, (void *)(uintptr_t)order, rows, GRAIN);
 }

@@ -20,10 +20,11 @@ struct exporting {
     const struct sphgi_plan *plan;
     const sphg_subset *subset;
     sphg_pairs *pairs;
-    struct sphgi_columns gradient;
+    struct sphgi_pair_numbers gradient;
     int32_t rows;
     int32_t *row_of_target;
     int64_t *offsets; /* rows + 1: first counts, then offsets */
+    int32_t *lengths; /* NULL where nobody asks for them and no block is filled up */
 };
 
 static struct sphgi_extent array_extent(const char *name, const void *array, int64_t count,
@@ -44,7 +45,7 @@ static sphg_result check_pair_overlap(const struct exporting *e)
     const size_t size = sphgi_size_of_type(plan->type);
     const int64_t rows = (int64_t)plan->target_count + 1;
     struct sphgi_extent gradient = array_extent("pairs.gradient", NULL, pairs->capacity, size);
-    gradient.columns = e->gradient;
+    gradient.columns = e->gradient.columns;
     const struct sphgi_extent extents[] = {
         {"sources[0].volume", plan->sets[0].volume, plan->sets[0].neighbors->source_count, size,
          false},
@@ -52,9 +53,29 @@ static sphg_result check_pair_overlap(const struct exporting *e)
                         false),
         gradient,
         array_extent("pairs.indices", pairs->indices, pairs->capacity, sizeof *pairs->indices),
-        array_extent("pairs.offsets", pairs->offsets, e->subset ? 1 : rows,
-                     sizeof *pairs->offsets)};
-    return sphgi_check_overlap(e->checker, extents, 5);
+        array_extent("pairs.offsets", pairs->offsets, e->subset ? 1 : rows, sizeof *pairs->offsets),
+        array_extent("pairs.lengths", pairs->lengths, e->subset ? 1 : plan->target_count,
+                     sizeof *pairs->lengths)};
+    return sphgi_check_overlap(e->checker, extents, 6);
+}
+
+static sphg_result check_block(const struct exporting *e)
+{
+    const struct sphgi_checker checker = e->checker;
+    const sphg_pairs *pairs = e->pairs;
+    const sphg_view *g = &pairs->gradient;
+    const int32_t block = pairs->block;
+    const size_t pair = (size_t)e->plan->dimension * sphgi_size_of_type(e->plan->type);
+    if (block != 0 && block != 4 && block != 8 && block != 16)
+        return sphgi_fail(checker.context, SPHG_ERROR_ARGUMENT,
+                          "%s: pairs.block is %d, must be 0, 4, 8 or 16", checker.function,
+                          (int)block);
+    if (block && g->x && (g->y || g->z || g->stride != (ptrdiff_t)pair))
+        return sphgi_fail(
+            checker.context, SPHG_ERROR_ARGUMENT,
+            "%s: pairs.gradient must be one array of stride %d where pairs.block is %d",
+            checker.function, (int)pair, (int)block);
+    return SPHG_OK;
 }
 
 static sphg_result check_pairs(struct exporting *e)
@@ -71,10 +92,15 @@ static sphg_result check_pairs(struct exporting *e)
                                             .dimension = e->plan->dimension,
                                             .count = (int32_t)most,
                                             .use = SPHGI_OUTPUT};
-    const sphg_result result = sphgi_check_view(checker, &pairs->gradient, &expected);
+    sphg_result result = sphgi_check_view(checker, &pairs->gradient, &expected);
+    if (!result)
+        result = check_block(e);
     if (result)
         return result;
-    e->gradient = sphgi_columns_of(&pairs->gradient, SPHG_VECTOR, e->plan->dimension);
+    e->gradient = (struct sphgi_pair_numbers){
+        .columns = sphgi_columns_of(&pairs->gradient, SPHG_VECTOR, e->plan->dimension),
+        .size = sphgi_size_of_type(e->plan->type),
+        .block = pairs->block};
     return check_pair_overlap(e);
 }
 
@@ -119,12 +145,15 @@ static sphg_result count_pairs(struct exporting *e)
 {
     sphg_context *context = e->checker.context;
     const size_t targets = (size_t)e->plan->target_count;
+    const bool lengths = e->pairs->lengths || e->pairs->block;
     const size_t map_size = sphgi_round_up(targets * sizeof(int32_t) + 1, SPHGI_ALIGNMENT);
     if (!sphgi_reserve(&context->allocator, &context->sums,
-                       map_size + (targets + 1) * sizeof(int64_t), 1))
+                       (lengths ? 2 : 1) * map_size + (targets + 1) * sizeof(int64_t), 1))
         return sphgi_fail_memory(context, e->checker.function);
+    char *memory = context->sums.data;
     e->row_of_target = context->sums.data;
-    e->offsets = (int64_t *)(void *)((char *)context->sums.data + map_size);
+    e->lengths = lengths ? (int32_t *)(void *)(memory + map_size) : NULL;
+    e->offsets = (int64_t *)(void *)(memory + (lengths ? 2 : 1) * map_size);
     e->rows = sphgi_selected_rows(e->subset, e->plan->target_count, e->row_of_target);
     sphg_result result = SPHG_OK;
     if (are_lengths_counts(e))
@@ -132,8 +161,12 @@ static sphg_result count_pairs(struct exporting *e)
     else
         result = count_by_sweep(e);
     e->offsets[0] = 0;
-    for (int32_t k = 0; k < e->rows && !result; ++k)
-        e->offsets[k + 1] += e->offsets[k];
+    for (int32_t k = 0; k < e->rows && !result; ++k) {
+        const int64_t count = e->offsets[k + 1];
+        if (e->lengths)
+            e->lengths[k] = (int32_t)count;
+        e->offsets[k + 1] = e->offsets[k] + sphgi_in_blocks(count, e->pairs->block);
+    }
     return result;
 }
 
@@ -235,14 +268,15 @@ static sphg_result fill_pairs(struct exporting *e)
         sink.indices = context->coefficients.data;
     }
     sphg_result result = SPHG_OK;
-    if (!sink.gradient.count && are_lengths_counts(e) && are_all_kept(e->plan->sets[0].neighbors))
+    if (!sink.gradient.columns.count && are_lengths_counts(e) &&
+        are_all_kept(e->plan->sets[0].neighbors))
         write_lists(e);
     else
         result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
-    const struct sphgi_pair_order order = {e->offsets, sink.indices, e->gradient,
-                                           sphgi_size_of_type(e->plan->type)};
-    if (!result && !e->pairs->any_order)
-        sphgi_sort_pairs(context, &order, e->rows);
+    const struct sphgi_pair_order order = {e->offsets, e->lengths, sink.indices, e->gradient,
+                                           !e->pairs->any_order};
+    if (!result && (order.sorted || e->pairs->block))
+        sphgi_order_pairs(context, &order, e->rows);
     return result;
 }
 
@@ -255,7 +289,7 @@ static sphg_result export_pairs(struct exporting *e)
     if (result)
         return result;
     pairs->count = e->offsets[e->rows];
-    const bool arrays = pairs->indices || e->gradient.count;
+    const bool arrays = pairs->indices || e->gradient.columns.count;
     if (arrays && pairs->count > pairs->capacity)
         return sphgi_fail(e->checker.context, SPHG_ERROR_CAPACITY,
                           "%s: pairs.capacity is %lld, there are %lld pairs", e->checker.function,
@@ -264,6 +298,8 @@ static sphg_result export_pairs(struct exporting *e)
         result = fill_pairs(e);
     if (!result && pairs->offsets)
         memcpy(pairs->offsets, e->offsets, ((size_t)e->rows + 1) * sizeof *pairs->offsets);
+    if (!result && pairs->lengths)
+        memcpy(pairs->lengths, e->lengths, (size_t)e->rows * sizeof *pairs->lengths);
     return result;
 }
 

@@ -67,11 +67,11 @@ static void write_self(struct sphgi_worker *w, int32_t lane)
     const int64_t place = pairs->offsets[pairs->row_of_target[target]] + w->bundle.written[lane];
     const size_t size = sphgi_size_of_type(plan->type);
     pairs->indices[place] = target;
-    if (!pairs->gradient.count)
+    if (!pairs->gradient.columns.count)
         return;
     sphgi_self_gradient(w, w->extra);
     for (int32_t a = 0; a < d; ++a)
-        memcpy((char *)(uintptr_t)(pairs->gradient.at[a] + place * pairs->gradient.stride),
+        memcpy(sphgi_pair_number(&pairs->gradient, a, place),
                sphgi_lane(w, w->extra, a) + (size_t)lane * size, size);
 }
 

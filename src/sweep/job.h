@@ -3,6 +3,7 @@
 #ifndef SPHGI_JOB_H
 #define SPHGI_JOB_H
 #include "search/weights.h"
+#include "pair_numbers.h"
 #include "plan/plan.h"
 
 /* What one sweep over one source set does. */
@@ -30,7 +31,7 @@ struct sphgi_pair_sink {
     int64_t *counts;              /* first round: pairs per row */
     const int64_t *offsets;       /* second round */
     int32_t *indices;
-    struct sphgi_columns gradient; /* count 0: not wanted */
+    struct sphgi_pair_numbers gradient;
 };
 
 /* A sweep, the same for all its workers. */
@@ -46,7 +47,7 @@ struct sphgi_sweep {
     const char *packed_rows;      /* plan->row_count arrays of as many rows each */
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
-    struct sphgi_kept_weights kept;           /* s_ij that this sweep reads and writes */
+    struct sphgi_kept_weights kept; /* s_ij that this sweep reads and writes */
     struct sphgi_put_away put_away;
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */

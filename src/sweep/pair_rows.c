@@ -33,10 +33,32 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
             *(type *)(void *)z = number[SPHGI_GZ * SPHGI_TILE];                                    \
     }
 
+/* The same into blocks. */
+#define COPY_TO_BLOCKS(type)                                                                       \
+    for (int32_t k = 0; k < count; ++k) {                                                          \
+        const type *number = (const type *)from + at[k];                                           \
+        type *x = (type *)(void *)sphgi_pair_number(to, 0, place + k);                             \
+        x[0] = number[SPHGI_GX * SPHGI_TILE];                                                      \
+        x[to->block] = number[SPHGI_GY * SPHGI_TILE];                                              \
+        if (to->columns.count == 3)                                                                \
+            x[2 * to->block] = number[SPHGI_GZ * SPHGI_TILE];                                      \
+    }
+
+static void copy_to_blocks(const struct sphgi_worker *w, const int32_t *at, int32_t count,
+                           int64_t place)
+{
+    const struct sphgi_pair_numbers *to = &w->sweep->pairs->gradient;
+    const void *from = w->tile.arrays;
+    if (to->size == sizeof(double))
+        COPY_TO_BLOCKS(double)
+    else
+        COPY_TO_BLOCKS(float)
+}
+
 static void copy_gradients(const struct sphgi_worker *w, const int32_t *at, int32_t count,
                            int64_t place)
 {
-    const struct sphgi_columns *to = &w->sweep->pairs->gradient;
+    const struct sphgi_columns *to = &w->sweep->pairs->gradient.columns;
     const void *from = w->tile.arrays;
     const ptrdiff_t stride = to->stride, first = (ptrdiff_t)place * stride;
     const bool three = to->count == 3;
@@ -49,6 +71,7 @@ static void copy_gradients(const struct sphgi_worker *w, const int32_t *at, int3
 }
 
 #undef COPY_NUMBERS
+#undef COPY_TO_BLOCKS
 
 void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
 {
@@ -69,6 +92,8 @@ void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
     else
         for (int32_t k = 0; k < count; ++k)
             to[k] = (int32_t)(ids[k] / SPHGI_ID_STEP);
-    if (pairs->gradient.count)
+    if (pairs->gradient.block)
+        copy_to_blocks(w, at, count, place);
+    else if (pairs->gradient.columns.count)
         copy_gradients(w, at, count, place);
 }

@@ -168,15 +168,15 @@ static void sum_fields(struct sphgi_worker *w)
 static void write_pairs(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    if (w->sweep->pairs->gradient.count && plan->quadratic)
+    if (w->sweep->pairs->gradient.columns.count && plan->quadratic)
         w->passes->quadratic_gradients(&w->tile, plan->dimension, sphgi_lane(w, w->coefficients, 0),
                                        w->inverse_h);
-    else if (w->sweep->pairs->gradient.count)
+    else if (w->sweep->pairs->gradient.columns.count)
         w->passes->pair_gradients(
             &w->tile, plan->dimension, vectors_of(w),
             plan->classic || !plan->corrects ? NULL : sphgi_lane(w, w->coefficients, 0),
             sphgi_common(w, w->inverse_h));
-    if (w->sweep->pairs->gradient.count && plan->graded)
+    if (w->sweep->pairs->gradient.columns.count && plan->graded)
         w->passes->scale_pairs(&w->tile, SPHGI_GX, plan->dimension,
                                sphgi_lane(w, w->radii.inverse, 0));
     const int32_t lanes = w->tile.spread ? w->passes->lanes : w->batch.targets;

@@ -427,6 +427,8 @@ static const argument of_pair_gradients[] = {
     ROW("pairs", POINTER, pairs_given),
     SPECIAL("pairs.capacity", spoil_capacity),
     FREE("pairs.any_order"),
+    FREE("pairs.block"),
+    FREE("pairs.lengths"),
     VIEW("pairs.gradient", pairs.gradient, OUTPUT | VECTOR),
     FREE("pairs.offsets"),
     FREE("pairs.indices"),

@@ -227,7 +227,8 @@ module sphgrad
     type(c_ptr) :: offsets = c_null_ptr, indices = c_null_ptr
     type(sphg_view) :: gradient
     integer(c_int64_t) :: capacity = 0, count = 0
-    integer(c_int32_t) :: any_order = 0
+    integer(c_int32_t) :: any_order = 0, block = 0
+    type(c_ptr) :: lengths = c_null_ptr
   end type sphg_pairs
 
   type, bind(c), public :: sphg_inversion

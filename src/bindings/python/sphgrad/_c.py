@@ -186,7 +186,8 @@ class Request(c.Structure):
 
 class Pairs(c.Structure):
     _fields_ = [("offsets", c.c_void_p), ("indices", c.c_void_p), ("gradient", View),
-                ("capacity", c.c_int64), ("count", c.c_int64), ("any_order", c.c_int32)]
+                ("capacity", c.c_int64), ("count", c.c_int64), ("any_order", c.c_int32),
+                ("block", c.c_int32), ("lengths", c.c_void_p)]
 
 
 class Inversion(c.Structure):
