@@ -27,15 +27,17 @@ static const struct export
 {
     const char *name;
     bool indices, gradients, any_order;
-    int32_t block; /* so many targets in one call; 0: all of them */
+    int32_t targets; /* so many in one call; 0: all of them */
+    int32_t block;   /* sphg_pairs.block */
 }
-exports[] = {{"lengths alone", false, false, false, 0},
-             {"indices, sorted", true, false, false, 0},
-             {"indices, any order", true, false, true, 0},
-             {"indices and gradients, sorted", true, true, false, 0},
-             {"indices and gradients, any order", true, true, true, 0},
-             {"the same, sorted, 256 targets a call", true, true, false, 256},
-             {"the same, any order, 256 targets a call", true, true, true, 256}};
+exports[] = {{"lengths alone", false, false, false, 0, 0},
+             {"indices, sorted", true, false, false, 0, 0},
+             {"indices, any order", true, false, true, 0, 0},
+             {"indices and gradients, sorted", true, true, false, 0, 0},
+             {"indices and gradients, any order", true, true, true, 0, 0},
+             {"the same, blocks of 8, any order", true, true, true, 0, 8},
+             {"the same, sorted, 256 targets a call", true, true, false, 256, 0},
+             {"the same, any order, 256 targets a call", true, true, true, 256, 0}};
 
 enum { EXPORTS = sizeof exports / sizeof exports[0], SUMS = SUPPLIES * WORKS };
 
@@ -73,22 +75,23 @@ static void use_lists(struct lists *lists, enum supply supply)
                                            &scene->geometry, &host));
 }
 
-static int32_t block_of(const struct lists *lists, const struct export *one)
+static int32_t targets_of(const struct lists *lists, const struct export *one)
 {
-    return one->block ? one->block : lists->scenes[0].count;
+    return one->targets ? one->targets : lists->scenes[0].count;
 }
 
-/* All pairs that are asked for, block after block: a block's arrays are written over by the next.
- */
+/* All pairs that are asked for, call after call: the arrays of one are written over by the next. */
 static void export_pairs(struct lists *lists, const struct export *one)
 {
     const struct scene *scene = &lists->scenes[SUPPLY_KEPT];
-    const int32_t count = scene->count, block = block_of(lists, one);
+    const int32_t count = scene->count, targets = targets_of(lists, one);
     sphg_sources sources = scene_sources(scene);
     sources.correction = scene_corrections(scene);
-    for (int32_t begin = 0; begin < count; begin += block) {
-        const sphg_subset subset = sphg_range(begin, begin + block < count ? begin + block : count);
-        sphg_pairs pairs = {.offsets = lists->out.offsets, .any_order = one->any_order};
+    for (int32_t begin = 0; begin < count; begin += targets) {
+        const int32_t end = begin + targets < count ? begin + targets : count;
+        const sphg_subset subset = sphg_range(begin, end);
+        sphg_pairs pairs = {
+            .offsets = lists->out.offsets, .any_order = one->any_order, .block = one->block};
         if (one->indices) {
             pairs.indices = lists->out.indices;
             pairs.capacity = lists->out.capacity;
@@ -116,12 +119,20 @@ static double run(void *data, int32_t item)
 
 /* ---- Errors ---------------------------------------------------------------------------------- */
 
-/* J_i = sum_j (v_j - v_i) G_ij over the pairs of the last call, the last `block` targets. */
+/* Component c of G_ij in place p. */
+static double gradient_at(const struct lists *lists, int32_t block, int64_t p, int32_t c)
+{
+    const int64_t in = p % (block ? block : 1),
+                  number = (p - in) * 3 + (block ? block * c : c) + in;
+    return numbers_get(&lists->gradients, (int32_t)(number / 3), (int32_t)(number % 3));
+}
+
+/* J_i = sum_j (v_j - v_i) G_ij over the pairs of the last call, its last targets. */
 static double exported_error(const struct lists *lists, const struct export *one)
 {
     const struct numbers *field = &lists->scenes[0].field;
-    const int32_t count = field->count, block = block_of(lists, one);
-    const int32_t begin = (count - 1) / block * block;
+    const int32_t count = field->count, targets = targets_of(lists, one);
+    const int32_t begin = (count - 1) / targets * targets;
     struct numbers jacobian = numbers_create(SPHG_F64, 1, 9);
     double *sums = jacobian.data, most = 0;
     for (int32_t i = begin; i < count; ++i) {
@@ -131,7 +142,7 @@ static double exported_error(const struct lists *lists, const struct export *one
             for (int32_t k = 0; k < 9; ++k)
                 sums[k] += (numbers_get(field, lists->out.indices[p], k / 3) -
                             numbers_get(field, i, k / 3)) *
-                           numbers_get(&lists->gradients, (int32_t)p, k % 3);
+                           gradient_at(lists, one->block, p, k % 3);
         most = numbers_larger(most, linear_field_error(&jacobian, 0));
     }
     return most;
@@ -160,16 +171,16 @@ static struct lists open_scenes(const struct settings *settings)
     scene_run(&lists.scenes[SUPPLY_KEPT], WORK_SEARCH);
     lists.host = library_lists(scene.context, &scene.scheme, lists.scenes[SUPPLY_KEPT].neighbors,
                                scene.count);
-    if (lists.host.count > INT32_MAX)
+    if (lists.host.count > INT32_MAX - 8 * (int64_t)scene.count)
         command_line_refuse("--particles: more pairs than fit into an index");
     for (size_t i = 0; i < count; ++i) {
         lists.rows[i] = lists.host.indices + lists.host.offsets[i];
         lists.lengths[i] = (int32_t)(lists.host.offsets[i + 1] - lists.host.offsets[i]);
     }
-    const size_t pairs = (size_t)lists.host.count;
+    const size_t pairs = (size_t)lists.host.count + 8 * count; /* in blocks, too */
     lists.out = (sphg_pairs){.offsets = allocate_held(count + 1, sizeof *lists.out.offsets),
                              .indices = allocate_held(pairs, sizeof *lists.out.indices),
-                             .capacity = lists.host.count};
+                             .capacity = (int64_t)pairs};
     lists.gradients = numbers_create(scene.field.type, (int32_t)pairs, 3);
     return lists;
 }

@@ -19,6 +19,13 @@ enum skip_neighbors {
     NEIGHBOR_KINDS
 };
 
+/* A second source set: three layers around the cube. */
+enum skip_wall {
+    WALL_NONE,
+    WALL_APART,     /* searched with the particles handed over as targets */
+    WALL_TARGETS_OF /* ... with those of the particles' own neighbours */
+};
+
 /* An evaluation. */
 struct skip_ask {
     int outputs;
@@ -31,6 +38,7 @@ struct skip_ask {
     bool one_by_one; /* a call for each of them */
     double share;    /* of active targets; 0: all */
     bool clustered;  /* in the middle, else scattered */
+    enum skip_wall wall;
 };
 
 struct skip_row {
@@ -45,7 +53,7 @@ struct skip_result {
     int64_t differences; /* targets whose bits differ */
 };
 
-enum { SKIP_ROWS = 27 };
+enum { SKIP_ROWS = 29 };
 extern const struct skip_row skip_rows[SKIP_ROWS];
 
 struct skip {

@@ -17,6 +17,7 @@
     }
 #define EVERYTHING        ASKS(ASK_MATRICES | ASK_JACOBIAN | ASK_DIVERGENCE | ASK_CURL)
 #define ANEW              JACOBIAN(.neighbors = NEIGHBORS_REBUILT)
+#define BESIDE(kind)      JACOBIAN(.neighbors = NEIGHBORS_REBUILT, .moved = true, .wall = (kind))
 #define SCATTERED(active) JACOBIAN(.share = (active))
 #define CLUSTERED(active) JACOBIAN(.share = (active), .clustered = true)
 
@@ -54,10 +55,13 @@ const struct skip_row skip_rows[SKIP_ROWS] = {
     {"reuse", "moved within the skin of 0.1 H", anew, false,
      JACOBIAN(.neighbors = NEIGHBORS_SKINNED, .moved = true),
      JACOBIAN(.neighbors = NEIGHBORS_REBUILT, .moved = true)},
+    {"reuse", "a wall, targets_of", "targets handed over", false, BESIDE(WALL_TARGETS_OF),
+     BESIDE(WALL_APART)},
     {"reuse", "list-free, for one use", anew, false, JACOBIAN(.neighbors = NEIGHBORS_LIST_FREE),
      ANEW},
     {"problem", "2D, as many particles and pairs", "Jacobian in 3D", false,
      JACOBIAN(.neighbors = NEIGHBORS_PLANE), JACOBIAN()},
+    {"problem", "no wall", "beside a wall", false, BESIDE(WALL_NONE), BESIDE(WALL_TARGETS_OF)},
     {"problem", "matrices that need no SVD", "all decomposed", false, ASKS(ASK_MATRICES),
      ASKS(ASK_MATRICES, .decomposed = true)},
     {"problem", "one volume for all", "an array of volumes", false, JACOBIAN(.one_volume = true),
@@ -65,7 +69,8 @@ const struct skip_row skip_rows[SKIP_ROWS] = {
 
 bool skip_is_compared(const struct skip_row *row)
 {
-    return row->part.neighbors != NEIGHBORS_PLANE && !row->full.decomposed;
+    return row->part.neighbors != NEIGHBORS_PLANE && !row->full.decomposed &&
+           !row->part.wall == !row->full.wall;
 }
 
 enum { FIELDS = 4, TABLES_MOST = FIELDS + 3 };
@@ -83,6 +88,7 @@ struct pattern {
 struct bench {
     struct skip *skip;
     struct scene scenes[NEIGHBOR_KINDS];
+    struct scene wall;
     struct numbers moved; /* positions, less than half a skin away */
     struct numbers fields[FIELDS], matrices;
     struct outputs outputs[2]; /* of the full evaluation, and of the part that is measured */
@@ -114,6 +120,18 @@ static struct scene scene_of(struct bench *bench, const struct skip_ask *ask)
     return scene;
 }
 
+/* Of a scene whose own neighbours are found. */
+static void search_wall(const struct scene *wall, const struct scene *scene, enum skip_wall how)
+{
+    struct scene beside = *wall;
+    const sphg_view sources = numbers_view(&wall->positions);
+    beside.geometry =
+        how == WALL_TARGETS_OF
+            ? sphg_targets_of(scene->neighbors, sources, wall->count)
+            : sphg_targets_apart(scene->geometry.sources, scene->count, sources, wall->count);
+    scene_run(&beside, WORK_SEARCH);
+}
+
 static void evaluate(struct bench *bench, const struct skip_row *row, int part)
 {
     const struct skip_ask *ask = part ? &row->part : &row->full;
@@ -123,17 +141,20 @@ static void evaluate(struct bench *bench, const struct skip_row *row, int part)
     const bool plane = ask->neighbors == NEIGHBORS_PLANE;
     const sphg_subset subset = row->listed ? sphg_listed(pattern->indices, pattern->count)
                                            : sphg_masked(pattern->mask, scene.count);
-    sphg_sources sources = scene_sources(&scene);
-    sphg_view views[FIELDS];
+    sphg_sources sources[] = {scene_sources(&scene), scene_sources(&bench->wall)};
+    sphg_view views[FIELDS][2];
     sphg_field fields[FIELDS];
-    sources.same_volumes = ask->neighbors == NEIGHBORS_WEIGHTED;
+    sources[0].same_volumes = ask->neighbors == NEIGHBORS_WEIGHTED;
     if (ask->by_table)
-        sources.correction = numbers_view(&bench->matrices);
+        sources[0].correction = numbers_view(&bench->matrices);
+    if (ask->wall)
+        search_wall(&bench->wall, &scene, ask->wall);
     for (int f = 0; f < FIELDS; ++f) {
-        views[f] = numbers_view(plane ? &scene.field : &bench->fields[f]);
+        views[f][0] = numbers_view(plane ? &scene.field : &bench->fields[f]);
+        views[f][1] = numbers_view(&bench->wall.field);
         fields[f] = (sphg_field){
             .shape = SPHG_VECTOR,
-            .at_sources = &views[f],
+            .at_sources = views[f],
             .gradient = if_asked(ask->outputs & ASK_JACOBIAN,
                                  plane ? &scene.jacobians : &outputs->jacobians[f]),
             .divergence = if_asked(ask->outputs & ASK_DIVERGENCE, &outputs->divergence),
@@ -143,8 +164,8 @@ static void evaluate(struct bench *bench, const struct skip_row *row, int part)
     const int calls = ask->one_by_one ? count : 1;
     for (int f = 0; f < calls; ++f) {
         const sphg_request request = {
-            .sources = &sources,
-            .set_count = 1,
+            .sources = sources,
+            .set_count = ask->wall ? 2 : 1,
             .subset = ask->share > 0 ? &subset : NULL,
             .fields = count > 0 ? fields + f : NULL,
             .field_count = count / calls,
@@ -272,6 +293,26 @@ static struct outputs create_outputs(int32_t count)
     return outputs;
 }
 
+/* So many layers around a cube of so many particles a side. */
+static struct scene wall_around(const struct scene *cube, int32_t side)
+{
+    enum { LAYERS = 3 };
+    const int32_t all = side + 2 * LAYERS, inner = side * side * side;
+    struct numbers positions = numbers_create(SPHG_F32, all * all * all - inner, 3);
+    for (int32_t k = 0, at = 0; k < all * all * all; ++k) {
+        const int32_t place[3] = {k % all - LAYERS, k / all % all - LAYERS, k / all / all - LAYERS};
+        bool inside = true;
+        for (int32_t axis = 0; axis < 3; ++axis)
+            inside = inside && place[axis] >= 0 && place[axis] < side;
+        for (int32_t axis = 0; axis < 3 && !inside; ++axis)
+            numbers_set(&positions, at, axis, place[axis] * lattice_spacing);
+        at += !inside;
+    }
+    struct numbers volume = numbers_create(SPHG_F32, 1, 1);
+    numbers_set(&volume, 0, 0, lattice_spacing * lattice_spacing * lattice_spacing);
+    return scene_open(cube->context, &cube->scheme, positions, volume);
+}
+
 /* All kinds of neighbours of one cube; and a square whose radius reaches as many particles. */
 static void open_scenes(struct bench *bench, const struct settings *settings, double skin)
 {
@@ -284,6 +325,7 @@ static void open_scenes(struct bench *bench, const struct settings *settings, do
     scenes[NEIGHBORS_LIST_FREE].geometry.list_free = 1;
     scenes[NEIGHBORS_SKINNED].geometry.skin = skin;
     scene_run(&scenes[NEIGHBORS_KEPT], WORK_SEARCH);
+    bench->wall = wall_around(&scenes[0], settings_side(settings->particles, 3));
     in_plane.support = sqrt((scene_pairs(&scenes[0]) + 1) / 3.14159265358979323846);
     scenes[NEIGHBORS_PLANE] = scene_of_lattice(scenes[0].context, &in_plane, 2);
     for (int k = 1; k < NEIGHBOR_KINDS; ++k)

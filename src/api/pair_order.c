@@ -97,30 +97,19 @@ static void sort_row(const struct sphgi_pair_order *s, int64_t first, int64_t co
     }
 }
 
-/* What stands behind the last pair of a row is read along with it, and adds nothing. */
-static void fill_up(const struct sphgi_pair_order *s, int64_t first, int64_t count, int64_t places)
-{
-    for (int64_t k = count; k < places; ++k) {
-        s->indices[first + k] = s->indices[first + count - 1];
-        for (int32_t c = 0; c < s->gradient.columns.count; ++c)
-            memset(sphgi_pair_number(&s->gradient, c, first + k), 0, s->gradient.size);
-    }
-}
-
-static void order_task(void *data, int32_t begin, int32_t end, int32_t worker)
+static void sort_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct sphgi_pair_order *s = data;
     (void)worker;
     for (int32_t row = begin; row < end; ++row) {
-        const int64_t first = s->offsets[row], places = s->offsets[row + 1] - first;
-        const int64_t count = s->lengths ? s->lengths[row] : places;
-        if (s->sorted)
-            sort_row(s, first, count);
-        fill_up(s, first, count, places);
+        const int64_t first = s->offsets[row];
+        const int64_t count = s->lengths ? s->lengths[row] : s->offsets[row + 1] - first;
+        sort_row(s, first, count);
+        sphgi_fill_up_row(&s->gradient, s->indices, first, count);
     }
 }
 
-void sphgi_order_pairs(sphg_context *context, const struct sphgi_pair_order *order, int32_t rows)
+void sphgi_sort_pairs(sphg_context *context, const struct sphgi_pair_order *order, int32_t rows)
 {
-    sphgi_parallel_for(context, order_task, (void *)(uintptr_t)order, rows, GRAIN);
+    sphgi_parallel_for(context, sort_task, (void *)(uintptr_t)order, rows, GRAIN);
 }

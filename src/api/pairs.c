@@ -190,6 +190,7 @@ static void write_row(const struct exporting *e, const sphg_neighbors *n, int32_
         row[k] = order[*ids / SPHGI_ID_STEP];
     if (self_pairs(e))
         row[count] = target;
+    sphgi_fill_up_row(&e->gradient, row, 0, count + self_pairs(e));
 }
 
 /* Targets [first, last) of a group. */
@@ -273,10 +274,9 @@ static sphg_result fill_pairs(struct exporting *e)
         write_lists(e);
     else
         result = sphgi_sweep_run(e->checker, e->plan, e->subset, &sink);
-    const struct sphgi_pair_order order = {e->offsets, e->lengths, sink.indices, e->gradient,
-                                           !e->pairs->any_order};
-    if (!result && (order.sorted || e->pairs->block))
-        sphgi_order_pairs(context, &order, e->rows);
+    const struct sphgi_pair_order order = {e->offsets, e->lengths, sink.indices, e->gradient};
+    if (!result && !e->pairs->any_order)
+        sphgi_sort_pairs(context, &order, e->rows);
     return result;
 }
 

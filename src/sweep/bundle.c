@@ -84,8 +84,12 @@ static void finish_pairs(struct sphgi_worker *w)
                 write_self(w, l);
             ++w->bundle.written[l];
         }
+        const int32_t row = pairs->row_of_target[w->bundle.target[l]];
         if (!pairs->offsets)
-            pairs->counts[pairs->row_of_target[w->bundle.target[l]]] = w->bundle.written[l];
+            pairs->counts[row] = w->bundle.written[l];
+        else
+            sphgi_fill_up_row(&pairs->gradient, pairs->indices, pairs->offsets[row],
+                              w->bundle.written[l]);
     }
 }
 

@@ -30,4 +30,9 @@ static inline char *sphgi_pair_number(const struct sphgi_pair_numbers *numbers, 
     return (char *)(uintptr_t)(columns->at[0] + at * (int64_t)numbers->size);
 }
 
+/* What stands behind the `count` pairs of a row, from place `first` on, is read along with them,
+ * and adds nothing. */
+void sphgi_fill_up_row(const struct sphgi_pair_numbers *gradient, int32_t *indices, int64_t first,
+                       int64_t count);
+
 #endif

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "pair_rows.h"
+#include <string.h>
 
 /* Where the pairs of a lane stand in the arrays, and their ids: what is no pair has the dummy's.
  * Returns how many. */
@@ -33,15 +34,18 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
             *(type *)(void *)z = number[SPHGI_GZ * SPHGI_TILE];                                    \
     }
 
-/* The same into blocks. */
+/* The same into blocks, as far as each of them goes. */
 #define COPY_TO_BLOCKS(type)                                                                       \
-    for (int32_t k = 0; k < count; ++k) {                                                          \
-        const type *number = (const type *)from + at[k];                                           \
+    for (int32_t k = 0, end; k < count; k = end) {                                                 \
         type *x = (type *)(void *)sphgi_pair_number(to, 0, place + k);                             \
-        x[0] = number[SPHGI_GX * SPHGI_TILE];                                                      \
-        x[to->block] = number[SPHGI_GY * SPHGI_TILE];                                              \
-        if (to->columns.count == 3)                                                                \
-            x[2 * to->block] = number[SPHGI_GZ * SPHGI_TILE];                                      \
+        end = sphgi_min32(count, k + block - (int32_t)((place + k) & (block - 1)));                \
+        for (; k < end; ++k, ++x) {                                                                \
+            const type *number = (const type *)from + at[k];                                       \
+            x[0] = number[SPHGI_GX * SPHGI_TILE];                                                  \
+            x[block] = number[SPHGI_GY * SPHGI_TILE];                                              \
+            if (three)                                                                             \
+                x[2 * block] = number[SPHGI_GZ * SPHGI_TILE];                                      \
+        }                                                                                          \
     }
 
 static void copy_to_blocks(const struct sphgi_worker *w, const int32_t *at, int32_t count,
@@ -49,6 +53,8 @@ static void copy_to_blocks(const struct sphgi_worker *w, const int32_t *at, int3
 {
     const struct sphgi_pair_numbers *to = &w->sweep->pairs->gradient;
     const void *from = w->tile.arrays;
+    const int32_t block = to->block;
+    const bool three = to->columns.count == 3;
     if (to->size == sizeof(double))
         COPY_TO_BLOCKS(double)
     else
@@ -96,4 +102,15 @@ void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
         copy_to_blocks(w, at, count, place);
     else if (pairs->gradient.columns.count)
         copy_gradients(w, at, count, place);
+}
+
+void sphgi_fill_up_row(const struct sphgi_pair_numbers *gradient, int32_t *indices, int64_t first,
+                       int64_t count)
+{
+    const int64_t places = sphgi_in_blocks(count, gradient->block);
+    for (int64_t k = count; k < places; ++k) {
+        indices[first + k] = indices[first + count - 1];
+        for (int32_t c = 0; c < gradient->columns.count; ++c)
+            memset(sphgi_pair_number(gradient, c, first + k), 0, gradient->size);
+    }
 }

@@ -31,6 +31,7 @@ measure() {
     takes_at_most 0.25 'active/1 % clustered, list'
     takes_at_most 0.85 'reuse/neighbours kept'
     takes_at_most 0.85 'reuse/neighbours and matrices kept'
+    takes_at_most 1 'reuse/a wall, targets_of'
     takes_at_most 0.95 'problem/2D, as many particles and pairs'
     takes_at_most 0.9 'problem/matrices that need no SVD'
     takes_at_most 1.15 'problem/one volume for all'
