@@ -2,61 +2,94 @@
 /* Classic MLS and RKPM: the full derivative of the interpolant (theory.md, section 4), with
  * xi_j = -x_ij / H, p_j = (1, xi_j). Weights: S = w, D = w'/r, both times V_j if `weighted`. */
 
-/* Order of the sums: w, w x, w xx, d x, d xx, d xxx with x = x_ij / H; xx stands for the upper
- * triangle row by row, xxx likewise. */
-SPHGI_TEMPLATE void classic_orders(const struct sphgi_tile *tile, real *sums, bool weighted,
-                                   bool three, int32_t part)
+/* Sums over products of the offsets, x = x_ij / H, s their weight: s (if `whole`), s x, s xx, the
+ * upper triangle row by row. */
+SPHGI_TEMPLATE void classic_products(vec s, const vec *x, vec *sum, bool whole, bool three)
 {
-    const int32_t d = three ? 3 : 2, pairs = three ? 6 : 3, triples = three ? 10 : 4;
-    const int32_t first = part == 0 ? 0 : part == 1 ? 1 + d + pairs : 1 + 2 * d + 2 * pairs;
-    const int32_t n = part == 0 ? 1 + d + pairs : part == 1 ? d + pairs : triples;
+    const int32_t d = three ? 3 : 2;
+    int32_t at = 0;
+    vec sx[3];
+    if (whole)
+        sum[at++] += s;
+    for (int32_t a = 0; a < d; ++a) {
+        sx[a] = s * x[a];
+        sum[at++] += sx[a];
+    }
+    for (int32_t a = 0; a < d; ++a)
+        for (int32_t b = a; b < d; ++b, ++at)
+            sum[at] = plus(sum[at], sx[a], x[b]);
+}
+
+SPHGI_TEMPLATE void classic_moments_as(const struct sphgi_tile *tile, void *sums, bool weighted,
+                                       bool three)
+{
+    const int32_t d = three ? 3 : 2, n = three ? 10 : 6;
     vec sum[10];
     clear(sum, n);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec s = from(tile, part == 0 ? SPHGI_S : SPHGI_D, k), x[3], sx[3];
+        vec s = from(tile, SPHGI_S, k), x[3];
         if (weighted)
             s *= from(tile, SPHGI_V, k);
-        for (int32_t a = 0; a < d; ++a) {
-            x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
-            sx[a] = s * x[a];
-        }
-        int32_t at = 0;
-        if (part == 0)
-            sum[at++] += s;
-        for (int32_t a = 0; part < 2 && a < d; ++a)
-            sum[at++] += sx[a];
         for (int32_t a = 0; a < d; ++a)
-            for (int32_t b = a; b < d; ++b) {
-                if (part < 2) {
-                    sum[at] = plus(sum[at], sx[a], x[b]);
-                    ++at;
-                }
-                for (int32_t c = b; part == 2 && c < d; ++c, ++at)
-                    sum[at] = plus(sum[at], sx[a] * x[b], x[c]);
-            }
+            x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+        classic_products(s, x, sum, true, three);
     }
-    end_tile(tile, sum, n, sums + first * SPHGI_WIDTH);
+    end_tile(tile, sum, n, sums);
 }
 
-SPHGI_TEMPLATE void classic_sums_as(const struct sphgi_tile *tile, void *sums, bool weighted,
-                                    bool three)
-{
-    /* Three loops: 29 sums do not fit the registers, 10 do. */
-    classic_orders(tile, sums, weighted, three, 0);
-    classic_orders(tile, sums, weighted, three, 1);
-    classic_orders(tile, sums, weighted, three, 2);
-}
-
+/* w, w x, w xx */
 static void sum_classic(const struct sphgi_tile *tile, int32_t dimension, bool weighted, void *sums)
 {
     if (dimension == 3 && weighted)
-        classic_sums_as(tile, sums, true, true);
+        classic_moments_as(tile, sums, true, true);
     else if (dimension == 3)
-        classic_sums_as(tile, sums, false, true);
+        classic_moments_as(tile, sums, false, true);
     else if (weighted)
-        classic_sums_as(tile, sums, true, false);
+        classic_moments_as(tile, sums, true, false);
     else
-        classic_sums_as(tile, sums, false, false);
+        classic_moments_as(tile, sums, false, false);
+}
+
+/* p.y of a pair, or p.z_k */
+SPHGI_TEMPLATE vec classic_polynomial(const vec *y, const vec *x, bool three)
+{
+    vec polynomial = y[0];
+    for (int32_t a = 0; a < (three ? 3 : 2); ++a)
+        polynomial = minus(polynomial, y[1 + a], x[a]);
+    return polynomial;
+}
+
+SPHGI_TEMPLATE void classic_slopes_as(const struct sphgi_tile *tile, const real *solution,
+                                      void *sums, bool weighted, bool three)
+{
+    const int32_t d = three ? 3 : 2, n = three ? 9 : 5;
+    vec y[4], sum[9];
+    for (int32_t k = 0; k <= d; ++k)
+        y[k] = load(solution + k * SPHGI_WIDTH);
+    clear(sum, n);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec s = from(tile, SPHGI_D, k), x[3];
+        if (weighted)
+            s *= from(tile, SPHGI_V, k);
+        for (int32_t a = 0; a < d; ++a)
+            x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+        classic_products(s * classic_polynomial(y, x, three), x, sum, false, three);
+    }
+    end_tile(tile, sum, n, sums);
+}
+
+/* s x, s xx with s = d S0 (p.y): B_k y is made of them. */
+static void sum_classic_slopes(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
+                               const void *solution, void *sums)
+{
+    if (dimension == 3 && weighted)
+        classic_slopes_as(tile, solution, sums, true, true);
+    else if (dimension == 3)
+        classic_slopes_as(tile, solution, sums, false, true);
+    else if (weighted)
+        classic_slopes_as(tile, solution, sums, true, false);
+    else
+        classic_slopes_as(tile, solution, sums, false, false);
 }
 
 /* G_ij = D x (p.y) + S (p.z_k), PHI = S (p.y) from the coefficients [y0 y | z_x0 z_x | ..][target].
@@ -78,11 +111,8 @@ SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_tile *tile, const real
             slope *= v;
         }
         vec polynomial[4]; /* p.y, p.z_x, p.z_y, p.z_z */
-        for (int32_t m = 0; m < width; ++m) {
-            polynomial[m] = c[m * width];
-            for (int32_t a = 0; a < d; ++a)
-                polynomial[m] = minus(polynomial[m], c[m * width + 1 + a], x[a]);
-        }
+        for (int32_t m = 0; m < width; ++m)
+            polynomial[m] = classic_polynomial(c + m * width, x, three);
         const vec slope_y = slope * polynomial[0];
         real *g = array_of(tile->arrays, SPHGI_GX) + k;
         for (int32_t a = 0; a < d; ++a)

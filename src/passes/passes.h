@@ -332,6 +332,9 @@ struct sphgi_passes {
     void (*sum_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);
     void (*sum_classic)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                         void *sums);
+    /* What follows once y is known; solution: as solve_classic leaves it. */
+    void (*sum_classic_slopes)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
+                               const void *solution, void *sums);
     /* Moments of second, third and fourth order; offsets in units of H, as for the classic ones. */
     void (*sum_quadratic_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);
     /* What sum_field gives over s_ij x_ij, and the same over products of the offsets. */
@@ -383,9 +386,13 @@ struct sphgi_passes {
     void (*decompose)(int32_t width, const struct sphgi_threshold *threshold, const void *moments,
                       const void *scale, void *correction, void *lambda_min,
                       struct sphgi_verdict *verdict);
-    void (*invert_classic)(int32_t width, const struct sphgi_threshold *threshold, double mu2,
-                           const void *sums, const void *self, void *coefficients, void *lambda_min,
-                           struct sphgi_verdict *verdict);
+    /* Classic corrections: sums of sum_classic in, what is known before the slopes out (S0 y, C,
+     * the mean of xi, 1 / S0: no more numbers than a correction has); and this with the sums of
+     * sum_classic_slopes becomes the correction, in its place. */
+    void (*solve_classic)(int32_t width, const struct sphgi_threshold *threshold, double mu2,
+                          const void *sums, const void *self, void *solution, void *lambda_min,
+                          struct sphgi_verdict *verdict);
+    void (*finish_classic)(int32_t width, int32_t dimension, const void *sums, void *coefficients);
     /* The linear correction, where `coefficients` begin, becomes the whole one. kept: as decompose
      * leaves it, elsewhere 1. directions: of curvature that are resolved, all of them where
      * quadratic fields are exact; written for `lanes`. borrowing NULL: without all that. */

@@ -144,6 +144,14 @@ SPHGI_TEMPLATE void solve_for_pairs(const vec *m2, vec m3[3][PAIRS_MOST], vec k[
     }
 }
 
+/* Index of x_a x_b x_c among the moments of third order. */
+SPHGI_TEMPLATE int triple_index(int a, int b, int c, int d)
+{
+    static const int three[27] = {0, 1, 2, 1, 3, 4, 2, 4, 5, 1, 3, 4, 3, 6,
+                                  7, 4, 7, 8, 2, 4, 5, 4, 7, 8, 5, 8, 9};
+    return d == 3 ? three[9 * a + 3 * b + c] : a + b + c;
+}
+
 SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sums, vec factor,
                               struct block *b, bool three)
 {

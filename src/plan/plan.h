@@ -99,6 +99,8 @@ struct sphgi_plan {
     int32_t sums;
     int32_t moment_sums; /* all that corrections need: they stand first */
     int32_t moment_sum, volume_sum;
+    int32_t slope_sum; /* classic: first of those that follow once y is known; they stand last of
+                          what corrections need */
     int32_t vector_sum[2]; /* of adjoint and symmetric: sum G_ij, sum rho_j G_ij */
     int32_t target_lanes;  /* numbers of all A_i */
 };

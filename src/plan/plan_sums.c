@@ -11,11 +11,13 @@ static void decide_sums(struct sphgi_plan *plan)
 {
     const int32_t d = plan->dimension;
     if (plan->computes)
-        plan->sums += plan->classic     ? (d == 3 ? 29 : 15)
+        plan->sums += plan->classic     ? 1 + d + d * (d + 1) / 2
                       : plan->quadratic ? sphgi_quadratic_moments(d)
                                         : d * (d + 1) / 2;
     plan->volume_sum = plan->sums;
     plan->sums += plan->mean_volume ? 2 : 0;
+    plan->slope_sum = plan->sums;
+    plan->sums += plan->classic && plan->computes ? d + d * (d + 1) / 2 : 0;
     plan->moment_sums = plan->sums;
     for (int32_t k = 0; k < 2; ++k) {
         plan->vector_sum[k] = plan->sums;

@@ -30,7 +30,7 @@ void sphgi_batch_begin(struct sphgi_worker *w)
     if (w->sweep->pairs)
         memset(w->bundle.written + w->batch.first, 0,
                (size_t)w->batch.targets * sizeof w->bundle.written[0]);
-    w->batch.summing = w->sweep->steps & (SPHGI_SUM_MOMENTS | SPHGI_SUM_FIELDS);
+    w->batch.summing = w->sweep->steps & SPHGI_SUMS;
     if (w->coefficients_first) {
         if (w->batch.summing & SPHGI_SUM_MOMENTS)
             w->batch.summing = SPHGI_SUM_MOMENTS;
@@ -116,26 +116,44 @@ static void repeat_coefficients(struct sphgi_worker *w)
     }
 }
 
-/* All pairs were added once: is another round over them needed? Classic, corrections and fields in
- * one sweep: the first round gives the coefficients. If one tile held everything, it is still
- * there. */
+/* Corrections that later rounds need. Those of several source sets wait for the sums of all. */
+static void finish_round(struct sphgi_worker *w)
+{
+    if (w->batch.summing == SPHGI_SUM_MOMENTS)
+        sphgi_finish_moments(w);
+    else if (w->batch.summing == SPHGI_SUM_SLOPES)
+        sphgi_finish_slopes(w);
+    if (w->tile.spread && w->batch.summing != SPHGI_SUM_FIELDS)
+        repeat_coefficients(w);
+}
+
+/* The step after this round's; 0: there is none. */
+static unsigned next_step(const struct sphgi_worker *w)
+{
+    const unsigned left = w->sweep->steps & SPHGI_SUMS & ~(2 * w->batch.summing - 1);
+    return left & -left;
+}
+
+/* All pairs were added once: is another round over them needed? Moments, slopes and fields of one
+ * sweep are summed one after the other where each needs what the one before gave. If one tile held
+ * everything, it is still there. */
 bool sphgi_batch_again(struct sphgi_worker *w)
 {
     settle(w);
-    if (!w->coefficients_first || !(w->sweep->steps & SPHGI_SUM_MOMENTS) ||
-        w->batch.summing != SPHGI_SUM_MOMENTS)
-        return false;
-    sphgi_finish_corrections(w);
-    if (w->tile.spread)
-        repeat_coefficients(w);
-    w->batch.summing = SPHGI_SUM_FIELDS;
-    const bool held = w->batch.tiles == 1;
-    w->batch.tiles = 0;
-    if (!held)
-        return true;
-    sphgi_evaluate_tile(w);
-    join(w);
-    settle(w);
+    while (w->coefficients_first && (w->sweep->steps & SPHGI_SUM_MOMENTS)) {
+        finish_round(w);
+        const unsigned next = next_step(w);
+        if (!next)
+            break;
+        w->batch.summing = next;
+        if (w->batch.tiles != 1) {
+            w->batch.tiles = 0;
+            return true;
+        }
+        sphgi_evaluate_tile(w);
+        join(w);
+        settle(w);
+    }
     return false;
 }
 

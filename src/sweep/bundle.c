@@ -43,15 +43,16 @@ static void finish(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const unsigned steps = w->sweep->steps;
-    const bool done = w->coefficients_first; /* corrections, before the fields */
+    const bool done = w->coefficients_first; /* corrections, or the half of them that slopes need */
     if (w->sweep->put_away.marks)
         add_sums_put_away(w);
     if (!done && (steps & SPHGI_SUM_MOMENTS) && plan->computes)
-        sphgi_finish_corrections(w);
+        sphgi_finish_moments(w);
     else if (!done && plan->corrects)
         sphgi_load_corrections(w);
-    if (w->sweep->coefficients &&
-        (steps & SPHGI_SUM_MOMENTS)) /* for a sweep that needs them first */
+    if (w->sweep->coefficients && (steps & SPHGI_SUM_SLOPES))
+        sphgi_finish_slopes(w);
+    if (w->sweep->coefficients && !(steps & SPHGI_SUM_FIELDS)) /* for the sweep that comes next */
         w->passes->store_lanes(w->batch.targets, w->sweep->coefficients, sphgi_targets(w),
                                w->coefficients, false);
     if (steps & SPHGI_SUM_FIELDS)

@@ -41,7 +41,7 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
 static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *verdict)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    sphgi_store_table(w);
+    sphgi_tally_verdict(w->tally, verdict, plan->dimension);
     if (plan->lambda_min.count)
         w->passes->store_lanes(w->batch.targets, &plan->lambda_min, sphgi_targets(w), w->lambda_min,
                                false);
@@ -51,22 +51,44 @@ static void store_verdict(struct sphgi_worker *w, const struct sphgi_verdict *ve
         *(uint8_t *)(uintptr_t)(plan->rank.at[0] + sphgi_targets(w)[l] * plan->rank.stride) =
             plan->quadratic ? sphgi_quadratic_rank(w, l, rank) : rank;
     }
+}
+
+static void store_corrections(struct sphgi_worker *w)
+{
+    sphgi_round_as_table(w, w->coefficients, w->sweep->plan->correction.count > 0);
+    sphgi_store_table(w);
     sphgi_store_borrows(w);
 }
 
-void sphgi_finish_corrections(struct sphgi_worker *w)
+/* y is known, z_k are not. */
+static void solve_classic(struct sphgi_worker *w, struct sphgi_verdict *verdict)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
+    sphgi_self_weight(w, w->self);
+    w->passes->solve_classic(
+        w->batch.width, &w->threshold, sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
+        sphgi_lane(w, w->reduced, plan->moment_sum), w->self, sphgi_lane(w, w->coefficients, 0),
+        plan->lambda_min.count ? w->lambda_min : NULL, verdict);
+}
+
+void sphgi_finish_moments(struct sphgi_worker *w)
+{
     struct sphgi_verdict verdict = {.count = w->batch.targets};
-    if (plan->classic) {
-        sphgi_self_weight(w, w->self);
-        w->passes->invert_classic(
-            w->batch.width, &w->threshold, sphgi_kernel_mu2(plan->scheme.kernel, plan->dimension),
-            sphgi_lane(w, w->reduced, plan->moment_sum), w->self, sphgi_lane(w, w->coefficients, 0),
-            plan->lambda_min.count ? w->lambda_min : NULL, &verdict);
-    } else
+    if (w->sweep->plan->classic) {
+        solve_classic(w, &verdict);
+        store_verdict(w, &verdict);
+    } else {
         invert_linearised(w, &verdict);
-    sphgi_round_as_table(w, w->coefficients, plan->correction.count > 0);
-    sphgi_tally_verdict(w->tally, &verdict, plan->dimension);
-    store_verdict(w, &verdict);
+        store_verdict(w, &verdict);
+        store_corrections(w);
+    }
+}
+
+void sphgi_finish_slopes(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    w->passes->finish_classic(w->batch.width, plan->dimension,
+                              sphgi_lane(w, w->reduced, plan->slope_sum),
+                              sphgi_lane(w, w->coefficients, 0));
+    store_corrections(w);
 }

@@ -4,7 +4,10 @@
 #define SPHGI_CORRECTIONS_H
 #include "worker.h"
 
-/* worker->coefficients from the sums; writes what is wanted of them. */
-void sphgi_finish_corrections(struct sphgi_worker *worker);
+/* worker->coefficients from the sums; writes what is wanted of them. Those of classic methods come
+ * in two halves: moments give what their slopes need, and whoever asks how sound they are is told.
+ */
+void sphgi_finish_moments(struct sphgi_worker *worker);
+void sphgi_finish_slopes(struct sphgi_worker *worker);
 
 #endif

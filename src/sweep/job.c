@@ -9,8 +9,12 @@ double sphgi_volume_unit(const struct sphgi_sweep *sweep)
 
 struct sphgi_sums sphgi_sums_of(const struct sphgi_plan *plan, unsigned steps)
 {
-    const int32_t first = steps & SPHGI_SUM_MOMENTS ? 0 : plan->moment_sums;
-    const int32_t end = steps & SPHGI_SUM_FIELDS ? plan->sums : plan->moment_sums;
+    const int32_t first = steps & SPHGI_SUM_MOMENTS  ? 0
+                          : steps & SPHGI_SUM_SLOPES ? plan->slope_sum
+                                                     : plan->moment_sums;
+    const int32_t end = steps & SPHGI_SUM_FIELDS   ? plan->sums
+                        : steps & SPHGI_SUM_SLOPES ? plan->moment_sums
+                                                   : plan->slope_sum;
     return (struct sphgi_sums){first, end - first};
 }
 

@@ -9,8 +9,10 @@
 /* What one sweep over one source set does. */
 enum sphgi_step {
     SPHGI_SUM_MOMENTS = 1,
-    SPHGI_SUM_FIELDS = 2,
-    SPHGI_FINISH = 4 /* write results, else put the sums away for the sweep that does */
+    SPHGI_SUM_SLOPES = 2, /* classic: of the weights times p.y, which the moments give */
+    SPHGI_SUM_FIELDS = 4,
+    SPHGI_SUMS = SPHGI_SUM_MOMENTS | SPHGI_SUM_SLOPES | SPHGI_SUM_FIELDS,
+    SPHGI_FINISH = 8 /* write results, else put the sums away for the sweep that does */
 };
 
 /* Sums of several source sets: those of the sets before, of targets that have pairs there. */

@@ -184,8 +184,9 @@ static void write_pairs(struct sphgi_worker *w)
         sphgi_write_lane(w, l, w->batch.first + (w->tile.spread ? 0 : l));
 }
 
-static void weigh(struct sphgi_worker *w, int32_t count)
+void sphgi_weigh_tile(struct sphgi_worker *w)
 {
+    const int32_t count = w->tile.steps * w->passes->lanes;
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
     if (w->factors_at_once)
@@ -207,7 +208,6 @@ void sphgi_evaluate_tile(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
     const struct sphgi_tile *tile = &w->tile;
-    weigh(w, tile->steps * p->lanes);
     char *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
     if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->classic)
         p->sum_classic(tile, plan->dimension, plan->weighted, moments);
@@ -215,9 +215,12 @@ void sphgi_evaluate_tile(struct sphgi_worker *w)
         p->sum_quadratic_moments(tile, plan->dimension, moments);
     else if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->computes)
         p->sum_moments(tile, plan->dimension, moments);
+    if (w->batch.summing & SPHGI_SUM_SLOPES)
+        p->sum_classic_slopes(tile, plan->dimension, plan->weighted,
+                              sphgi_lane(w, w->coefficients, 0),
+                              sphgi_lane(w, w->reduced, plan->slope_sum));
     if (w->batch.summing & SPHGI_SUM_FIELDS)
         sum_fields(w);
     if ((w->batch.summing & SPHGI_SUM_FIELDS) && w->sweep->pairs)
         write_pairs(w);
-    ++w->batch.tiles;
 }

@@ -4,8 +4,10 @@
 #define SPHGI_SUMS_H
 #include "worker.h"
 
-/* Weighs the gathered pairs and adds them to the sums of this round, or hands them on one by one.
- */
+/* The weights of the gathered pairs, once a tile. */
+void sphgi_weigh_tile(struct sphgi_worker *worker);
+
+/* Adds the pairs to the sums of this round, or hands them on one by one. */
 void sphgi_evaluate_tile(struct sphgi_worker *worker);
 
 #endif

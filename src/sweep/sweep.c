@@ -132,9 +132,10 @@ static sphg_result sweep_sets(struct sphgi_task *task, struct sphgi_selection *s
     return result ? result : sweep_set(task, selection, tally);
 }
 
-/* Classic gradients and diffusion of several sets: all moments first. */
-static sphg_result sweep_twice(struct sphgi_task *task, struct sphgi_selection *selection,
-                               struct sphgi_tally *tally)
+/* Classic methods and diffusion of several sets: one step after the other, each over all sets, with
+ * a table of what the later ones need of the earlier. */
+static sphg_result sweep_by_steps(struct sphgi_task *task, struct sphgi_selection *selection,
+                                  unsigned steps, struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
     sphg_context *context = sweep->context;
@@ -146,9 +147,9 @@ static sphg_result sweep_twice(struct sphgi_task *task, struct sphgi_selection *
     const struct sphgi_columns table =
         sphgi_dense_columns(context->coefficients.data, width, width, plan->type);
     sweep->coefficients = &table;
-    sphg_result result = sweep_sets(task, selection, SPHGI_SUM_MOMENTS, tally);
-    if (!result)
-        result = sweep_sets(task, selection, SPHGI_SUM_FIELDS, tally);
+    sphg_result result = SPHG_OK;
+    for (unsigned left = steps; left && !result; left &= left - 1)
+        result = sweep_sets(task, selection, left & -left, tally);
     sweep->coefficients = NULL;
     return result;
 }
@@ -183,13 +184,14 @@ static sphg_result sweep_all(struct sphgi_task *task, struct sphgi_selection *se
     struct sphgi_sweep *sweep = &task->sweep;
     const struct sphgi_plan *plan = sweep->plan;
     const unsigned moments = plan->computes ? SPHGI_SUM_MOMENTS : 0u;
+    const unsigned slopes = plan->computes && plan->classic ? SPHGI_SUM_SLOPES : 0u;
     const unsigned fields = plan->field_count || sweep->pairs ? SPHGI_SUM_FIELDS : 0u;
-    const bool twice =
-        plan->set_count > 1 && (plan->classic || plan->diffuses) && moments && fields;
+    const unsigned steps = moments | slopes | fields;
+    const bool apart = plan->set_count > 1 && (slopes || (plan->diffuses && moments && fields));
     if (!open_put_away(sweep))
         return SPHG_ERROR_MEMORY;
-    const sphg_result result = twice ? sweep_twice(task, selection, tally)
-                                     : sweep_sets(task, selection, moments | fields, tally);
+    const sphg_result result = apart ? sweep_by_steps(task, selection, steps, tally)
+                                     : sweep_sets(task, selection, steps, tally);
     close_put_away(sweep, result || tally->bad_target >= 0);
     return result;
 }

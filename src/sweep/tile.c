@@ -75,5 +75,7 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
     sphgi_scale_volumes(w);
+    sphgi_weigh_tile(w);
     sphgi_evaluate_tile(w);
+    ++w->batch.tiles;
 }

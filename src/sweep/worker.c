@@ -87,12 +87,14 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
 static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
+    if (sweep->steps & SPHGI_SUM_SLOPES)
+        return true;
     return (plan->classic || plan->diffuses || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) &&
            plan->corrects;
 }
 
 /* Linearised methods sum in the units of the positions, classic ones and order 2 in units of H:
- * their sums hold third and fourth powers of the offsets. */
+ * their sums mix powers of the offsets. */
 static void open_scheme(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;

@@ -90,7 +90,8 @@ struct sphgi_worker {
     double factor_of_h;                     /* w_scale, times H */
     struct sphgi_share share[SPHGI_SHARES]; /* of the table of corrections */
     bool factors_at_once;    /* s_ij come with the pairs, for nobody asks for distances */
-    bool coefficients_first; /* they must be known before fields can be summed */
+    bool coefficients_first; /* they must be known before all that this sweep sums can be: it comes
+                                in rounds, or they are there */
 
     struct sphgi_source_rows rows;
     struct sphgi_bundle bundle;
