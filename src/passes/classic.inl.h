@@ -92,32 +92,39 @@ static void sum_classic_slopes(const struct sphgi_tile *tile, int32_t dimension,
         classic_slopes_as(tile, solution, sums, false, false);
 }
 
-/* G_ij = D x (p.y) + S (p.z_k), PHI = S (p.y) from the coefficients [y0 y | z_x0 z_x | ..][target].
- */
+/* G_ij = D x (p.y) + S (p.z_k) from the coefficients [y0 y | z_x0 z_x | ..], and PHI = S (p.y). */
+SPHGI_TEMPLATE void classic_vector(const struct sphgi_tile *tile, int32_t k, const vec *c,
+                                   bool weighted, bool three, vec *g, vec *phi)
+{
+    const int32_t d = three ? 3 : 2, width = d + 1;
+    vec x[3], s = from(tile, SPHGI_S, k), slope = from(tile, SPHGI_D, k);
+    for (int32_t a = 0; a < d; ++a)
+        x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+    if (weighted) {
+        const vec v = from(tile, SPHGI_V, k);
+        s *= v;
+        slope *= v;
+    }
+    const vec y = classic_polynomial(c, x, three), slope_y = slope * y;
+    for (int32_t a = 0; a < d; ++a)
+        g[a] = plus(slope_y * x[a], s, classic_polynomial(c + (a + 1) * width, x, three));
+    *phi = s * y;
+}
+
 SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_tile *tile, const real *coefficients,
                                        bool weighted, bool three)
 {
-    const int32_t d = three ? 3 : 2, width = d + 1;
+    const int32_t d = three ? 3 : 2;
     vec c[16];
-    for (int32_t k = 0; k < width * width; ++k)
+    for (int32_t k = 0; k < (d + 1) * (d + 1); ++k)
         c[k] = load(coefficients + k * SPHGI_WIDTH);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], s = from(tile, SPHGI_S, k), slope = from(tile, SPHGI_D, k);
+        vec g[3], phi;
+        classic_vector(tile, k, c, weighted, three, g, &phi);
+        real *at = array_of(tile->arrays, SPHGI_GX) + k;
         for (int32_t a = 0; a < d; ++a)
-            x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
-        if (weighted) {
-            const vec v = from(tile, SPHGI_V, k);
-            s *= v;
-            slope *= v;
-        }
-        vec polynomial[4]; /* p.y, p.z_x, p.z_y, p.z_z */
-        for (int32_t m = 0; m < width; ++m)
-            polynomial[m] = classic_polynomial(c + m * width, x, three);
-        const vec slope_y = slope * polynomial[0];
-        real *g = array_of(tile->arrays, SPHGI_GX) + k;
-        for (int32_t a = 0; a < d; ++a)
-            store(g + a * SPHGI_TILE, plus(slope_y * x[a], s, polynomial[1 + a]));
-        store(array_of(tile->arrays, SPHGI_PHI) + k, s * polynomial[0]);
+            store(at + a * SPHGI_TILE, g[a]);
+        store(array_of(tile->arrays, SPHGI_PHI) + k, phi);
     }
 }
 
@@ -132,6 +139,58 @@ static void classic_vectors(const struct sphgi_tile *tile, int32_t dimension, bo
         classic_vectors_as(tile, coefficients, true, false);
     else
         classic_vectors_as(tile, coefficients, false, false);
+}
+
+/* sum_field over G_ij that nobody else needs. */
+SPHGI_TEMPLATE void classic_field_as(const struct sphgi_tile *tile, const real *coefficients,
+                                     const real *rows, const real *at_target, real *sums,
+                                     int32_t count, bool weighted, bool three)
+{
+    const int32_t d = three ? 3 : 2;
+    vec c[16], own[4], sum[12];
+    for (int32_t k = 0; k < (d + 1) * (d + 1); ++k)
+        c[k] = load(coefficients + k * SPHGI_WIDTH);
+    for (int32_t a = 0; a < count; ++a)
+        own[a] = load(at_target + a * SPHGI_WIDTH);
+    clear(sum, count * d);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec g[3], phi;
+        classic_vector(tile, k, c, weighted, three, g, &phi);
+        const struct four row = gather_rows(rows, ids_at(tile, k));
+        const vec at_source[4] = {row.x, row.y, row.z, row.w};
+        for (int32_t a = 0; a < count; ++a)
+            for (int32_t b = 0; b < d; ++b)
+                sum[a * d + b] = plus(sum[a * d + b], at_source[a] - own[a], g[b]);
+    }
+    end_tile(tile, sum, count * d, sums);
+}
+
+SPHGI_TEMPLATE void classic_field_of(const struct sphgi_tile *tile, const void *coefficients,
+                                     const void *rows, int32_t count, const void *at_target,
+                                     void *sums, bool weighted, bool three)
+{
+    if (count == 1)
+        classic_field_as(tile, coefficients, rows, at_target, sums, 1, weighted, three);
+    else if (count == 2)
+        classic_field_as(tile, coefficients, rows, at_target, sums, 2, weighted, three);
+    else if (count == 3)
+        classic_field_as(tile, coefficients, rows, at_target, sums, 3, weighted, three);
+    else
+        classic_field_as(tile, coefficients, rows, at_target, sums, 4, weighted, three);
+}
+
+static void sum_classic_field(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
+                              const void *coefficients, const void *rows, int32_t count,
+                              const void *at_target, void *sums)
+{
+    if (dimension == 3 && weighted)
+        classic_field_of(tile, coefficients, rows, count, at_target, sums, true, true);
+    else if (dimension == 3)
+        classic_field_of(tile, coefficients, rows, count, at_target, sums, false, true);
+    else if (weighted)
+        classic_field_of(tile, coefficients, rows, count, at_target, sums, true, false);
+    else
+        classic_field_of(tile, coefficients, rows, count, at_target, sums, false, false);
 }
 
 /* T = - weight G_ji with j's coefficients in rows (y_j, z_x,j, ...: one row each): the offset seen

@@ -347,6 +347,10 @@ struct sphgi_passes {
     void (*sum_lent)(const struct sphgi_tile *tile, const void *rows, int32_t count, void *sums);
     void (*sum_field)(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_vectors vectors,
                       const void *rows, int32_t count, const void *at_target, void *sums);
+    /* The same over classic G_ij, in one loop with what forms them. */
+    void (*sum_classic_field)(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
+                              const void *coefficients, const void *rows, int32_t count,
+                              const void *at_target, void *sums);
     /* The same, contracted: (A_j - A_i) . g, of tensors row by row. rows: of each stream */
     void (*sum_divergence)(const struct sphgi_tile *tile, int32_t dimension, sphg_shape shape,
                            enum sphgi_vectors vectors, const void *const *rows,

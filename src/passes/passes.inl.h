@@ -104,6 +104,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_quadratic_vectors = sum_quadratic_vectors,
     .sum_lent = sum_lent,
     .sum_field = sum_field,
+    .sum_classic_field = sum_classic_field,
     .sum_divergence = sum_divergence,
     .sum_squares = sum_squares,
     .sum_value = sum_value,

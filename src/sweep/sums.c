@@ -136,10 +136,27 @@ static void turn_to_other_side(struct sphgi_worker *w)
     sphgi_weigh_other_side(w);
 }
 
+/* One gradient of few components, and nothing else: G_ij need not be put into the tile. */
+static bool is_one_gradient(const struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_field_plan *field = plan->fields;
+    return plan->field_count == 1 && !w->sweep->pairs && field->one_sided && field->sums_gradient &&
+           field->streams == 1 && !field->square.count && field->value_sum < 0;
+}
+
 static void sum_fields(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     sphgi_load_targets(w);
+    if (plan->classic && plan->corrects && is_one_gradient(w)) {
+        const struct sphgi_field_plan *field = plan->fields;
+        w->passes->sum_classic_field(&w->tile, plan->dimension, plan->weighted,
+                                     sphgi_lane(w, w->coefficients, 0), w->rows.at[field->row],
+                                     field->components, subtracted(w, field),
+                                     sphgi_lane(w, w->reduced, field->sum));
+        return;
+    }
     if (plan->classic && plan->corrects)
         w->passes->classic_vectors(&w->tile, plan->dimension, plan->weighted,
                                    sphgi_lane(w, w->coefficients, 0));
