@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* More sources around a target than are searched at once, and many times the pairs that are summed
- * at once: kept or found on the way, with corrections of the same sweep or of a table. */
+ * at once: kept or found on the way, with corrections of the same sweep or of a table. And lists of
+ * every length up to that, of which pairs are read from memory once or in several rounds. */
 #include "support/setup.h"
 #include <math.h>
 
@@ -146,10 +147,105 @@ static void gradient_at_members_of_a_crowd_is_exact(const test_case *test)
     require_exact(&on, neighbors_of(&on, 0, 1), 0, "members, list-free");
 }
 
+/* ---- From a few pairs to some dozen times those that are summed at once ---------------------- */
+
+enum { MEMBERS = 641 }; /* the last of them has the lanes to itself */
+
+typedef struct bunch {
+    const test_case *test;
+    sphg_context *context;
+    sphg_scheme scheme;
+    sphg_sources sources;
+    setup_array volume, numbers;
+} bunch;
+
+/* Found on the way, they all have the first one's volume. */
+static bunch bunch_of(const test_case *test, double reach, int list_free)
+{
+    bunch made = {.test = test, .context = setup_context()};
+    random_state random = random_seeded(983);
+    cloud points = cloud_random(test->dimension, MEMBERS, 1, &random);
+    const setup_array positions = setup_positions(test, &points);
+    const sphg_type type = test_field_type(test);
+    sphg_geometry geometry = setup_geometry(test, &points, &positions);
+    geometry.list_free = list_free;
+    made.scheme = setup_scheme(test, reach);
+    made.volume = setup_numbers(type, MEMBERS, 1, cloud_volumes(&points, 0.2, &random));
+    made.numbers = setup_numbers(type, MEMBERS, 1, cloud_numbers(&points, -1, 1, &random));
+    made.sources = (sphg_sources){.neighbors = setup_search(made.context, &made.scheme, &geometry),
+                                  .volume = setup_view(&made.volume)};
+    if (list_free)
+        made.sources.volume.stride = 0;
+    return made;
+}
+
+/* Gradients of some targets; a table comes into the sources, or goes where `correction` stands. */
+static setup_array gradients_of(const bunch *on, const sphg_subset *subset, sphg_view correction)
+{
+    const setup_array found = setup_output(test_field_type(on->test), MEMBERS, on->test->dimension);
+    const sphg_view numbers = setup_view(&on->numbers);
+    const sphg_field field = {
+        .shape = SPHG_SCALAR, .at_sources = &numbers, .gradient = setup_view(&found)};
+    const sphg_request request = {.sources = &on->sources,
+                                  .fields = &field,
+                                  .set_count = 1,
+                                  .field_count = 1,
+                                  .subset = subset,
+                                  .correction = correction};
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static setup_array pairs_of(const bunch *on)
+{
+    const int d = on->test->dimension;
+    sphg_pairs found = {.offsets = test_memory((MEMBERS + 1) * sizeof(int64_t)), .any_order = 1};
+    SETUP_OK(on->context, sphg_pair_gradients(on->context, &on->scheme, &on->sources, NULL,
+                                              sphg_absent(), &found));
+    const setup_array gradients = setup_output(test_field_type(on->test), (int)found.count, d);
+    found.indices = test_memory((size_t)found.count * sizeof(int32_t));
+    found.gradient = setup_view(&gradients);
+    found.capacity = found.count;
+    SETUP_OK(on->context, sphg_pair_gradients(on->context, &on->scheme, &on->sources, NULL,
+                                              sphg_absent(), &found));
+    return gradients;
+}
+
+/* Each target alone, whose list is then spread over a vector. */
+static void require_same_alone(const bunch *on, const setup_array *all)
+{
+    for (int i = 0; i < MEMBERS; i += 197) {
+        const sphg_subset one = {i, i + 1, NULL, NULL};
+        const setup_array alone = gradients_of(on, &one, sphg_absent());
+        for (int c = 0; c < on->test->dimension; ++c)
+            assert_true(setup_get(&alone, i, c) == setup_get(all, i, c));
+    }
+}
+
+static void lists_of_any_length_give_the_bits_of_a_table(const test_case *test)
+{
+    static const double reach[] = {.4, .7, 2};
+    for (size_t k = 0; k < sizeof reach / sizeof reach[0]; ++k) {
+        bunch on = bunch_of(test, reach[k], k % 2);
+        const setup_array table =
+            setup_output(test_field_type(test), MEMBERS, sphg_correction_width(&on.scheme));
+        const setup_array fused = gradients_of(&on, NULL, setup_view(&table));
+        const setup_array pairs = pairs_of(&on);
+        require_same_alone(&on, &fused);
+        on.sources.correction = setup_view(&table);
+        const setup_array given = gradients_of(&on, NULL, sphg_absent());
+        const setup_array given_pairs = pairs_of(&on);
+        TEST_REQUIRE(setup_same_bits(&fused, &given), "H = %g", reach[k]);
+        TEST_REQUIRE(setup_same_bits(&pairs, &given_pairs), "pairs, H = %g", reach[k]);
+    }
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(gradient_at_targets_in_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
     TEST_ENTRY(gradient_at_members_of_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
+    TEST_ENTRY(lists_of_any_length_give_the_bits_of_a_table, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
 };
 TEST_MAIN(entries)

@@ -2,6 +2,7 @@
 #include "batch.h"
 #include "core/view.h"
 #include "corrections.h"
+#include "held.h"
 #include "lane_radii.h"
 #include "own.h"
 #include "sums.h"
@@ -134,25 +135,33 @@ static unsigned next_step(const struct sphgi_worker *w)
     return left & -left;
 }
 
+/* A round over tiles that are still there. */
+static void sum_held(struct sphgi_worker *w)
+{
+    for (int32_t k = 0; k < w->batch.tiles; ++k) {
+        sphgi_take_tile(w, k);
+        sphgi_evaluate_tile(w);
+        join(w);
+    }
+    settle(w);
+}
+
 /* All pairs were added once: is another round over them needed? Moments, slopes and fields of one
- * sweep are summed one after the other where each needs what the one before gave. If one tile held
- * everything, it is still there. */
+ * sweep are summed one after the other where each needs what the one before gave. */
 bool sphgi_batch_again(struct sphgi_worker *w)
 {
     settle(w);
-    while (w->coefficients_first && (w->sweep->steps & SPHGI_SUM_MOMENTS)) {
+    while (w->held.room) {
         finish_round(w);
         const unsigned next = next_step(w);
         if (!next)
             break;
         w->batch.summing = next;
-        if (w->batch.tiles != 1) {
+        if (!sphgi_are_held(w)) {
             w->batch.tiles = 0;
             return true;
         }
-        sphgi_evaluate_tile(w);
-        join(w);
-        settle(w);
+        sum_held(w);
     }
     return false;
 }

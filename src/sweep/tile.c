@@ -2,6 +2,7 @@
 #include "tile.h"
 #include "clean.h"
 #include "core/view.h"
+#include "held.h"
 #include "lane_radii.h"
 #include "sums.h"
 
@@ -65,6 +66,7 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
     if (!ready || w->sweep->pairs)
         for (int32_t l = 0; l < w->passes->lanes; ++l)
             w->batch.pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
+    sphgi_place_tile(w);
     if (ready)
         w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
     else
@@ -76,6 +78,6 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
     sphgi_scale_volumes(w);
     sphgi_weigh_tile(w);
+    sphgi_hold_tile(w);
     sphgi_evaluate_tile(w);
-    ++w->batch.tiles;
 }

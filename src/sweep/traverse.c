@@ -2,6 +2,7 @@
 #include "traverse.h"
 #include "batch.h"
 #include "bundle.h"
+#include "held.h"
 #include "own.h"
 #include "pieces.h"
 #include "waiting.h"
@@ -13,6 +14,7 @@
 static void open(struct sphgi_worker *w, const struct sphgi_task *task, int32_t number)
 {
     sphgi_worker_open(w, &task->sweep, number);
+    sphgi_held_open(w);
     sphgi_find_targets_in_rows(w);
 }
 

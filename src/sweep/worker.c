@@ -20,6 +20,27 @@ static void *place(char *base, size_t offset)
     return base ? base + offset : NULL;
 }
 
+/* Classic gradients, L_ij of diffusion, and gradients pair by pair, need the target's coefficients
+ * before they can be formed; other sums are multiplied with them at the end. */
+static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    if (sweep->steps & SPHGI_SUM_SLOPES)
+        return true;
+    return (plan->classic || plan->diffuses || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) &&
+           plan->corrects;
+}
+
+bool sphgi_is_summed_in_rounds(const struct sphgi_sweep *sweep)
+{
+    return (sweep->steps & SPHGI_SUM_MOMENTS) && needs_coefficients_first(sweep);
+}
+
+int32_t sphgi_tiles_of(const struct sphgi_sweep *sweep)
+{
+    return sweep->packed && sphgi_is_summed_in_rounds(sweep) ? SPHGI_TILES_HELD : 1;
+}
+
 /* Carves the memory of one worker; base NULL: only measures. */
 static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, char *base)
 {
@@ -28,6 +49,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     const size_t size = sphgi_size_of_type(plan->type);
     const size_t position = sphgi_size_of_type(n->position_type);
     const size_t local = sweep->packed ? 0 : SPHGI_TILE + 1;
+    const size_t tiles = (size_t)sphgi_tiles_of(sweep);
     const size_t arrays = (size_t)plan->row_count, row = SPHGI_ROW * size;
     const size_t numbers = plan->quadratic ? (size_t)sphgi_plan_width(plan) : 16;
     const size_t lending = plan->lends ? SPHGI_WIDTH : 0;
@@ -37,8 +59,8 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(rows.at, arrays + 1, sizeof(void *));
     CARVE(rows.positions, local, SPHGI_ROW * position);
     CARVE(rows.numbers, local * arrays, row);
-    CARVE(tile.arrays, SPHGI_ARRAYS * SPHGI_TILE, size);
-    CARVE(tile.own_ids, SPHGI_TILE, sizeof(uint32_t));
+    CARVE(held.arrays, tiles * SPHGI_ARRAYS * SPHGI_TILE, size);
+    CARVE(held.own_ids, tiles * SPHGI_TILE, sizeof(uint32_t));
     CARVE(rows.clean_ids, SPHGI_TILE, sizeof(uint32_t));
     CARVE(rows.own_items, SPHGI_TILE, sizeof(uint32_t));
     CARVE(waiting.ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_WAITING_IDS,
@@ -80,17 +102,6 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
 {
     struct sphgi_worker measured;
     return carve(&measured, sweep, NULL);
-}
-
-/* Classic gradients, L_ij of diffusion, and gradients pair by pair, need the target's coefficients
- * before they can be formed; other sums are multiplied with them at the end. */
-static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
-{
-    const struct sphgi_plan *plan = sweep->plan;
-    if (sweep->steps & SPHGI_SUM_SLOPES)
-        return true;
-    return (plan->classic || plan->diffuses || sweep->pairs) && (sweep->steps & SPHGI_SUM_FIELDS) &&
-           plan->corrects;
 }
 
 /* Linearised methods sum in the units of the positions, classic ones and order 2 in units of H:
@@ -142,9 +153,6 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     sphgi_shares_of(sweep->plan, w->share);
     w->coefficients_first = needs_coefficients_first(sweep);
     w->tile.section = (ptrdiff_t)sweep->plan->sums * SPHGI_WIDTH;
-    const size_t volumes = SPHGI_V * SPHGI_TILE * sphgi_size_of_type(sweep->plan->type);
-    if (!sweep->volumes)
-        w->passes->fill(SPHGI_TILE, sweep->volume, (char *)w->tile.arrays + volumes);
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     w->factors_at_once = sphgi_forms_factors_alone(sweep);
 }

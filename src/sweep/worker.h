@@ -21,13 +21,27 @@ struct sphgi_bundle {
 struct sphgi_batch {
     int32_t first, width, targets; /* the first of them, how many, and how many have a target */
     struct sphgi_lane_lists lists;
-    int32_t longest;                 /* pairs of a list */
-    unsigned summing;                /* SPHGI_SUM_..., of this round over the pairs */
-    int32_t tiles;                   /* evaluated in this round */
+    int32_t longest;  /* pairs of a list */
+    unsigned summing; /* SPHGI_SUM_..., of this round over the pairs */
+    int32_t tiles;    /* made ready since the lists were walked from their beginning */
     int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
     int32_t spread_pairs;            /* of a tile that holds one list */
     char *kept;                      /* s_ij that stay between sweeps; NULL: none */
     bool kept_stand;                 /* they were written by a sweep before */
+};
+
+/* Tiles that stay until the next round. */
+enum { SPHGI_TILES_HELD = 8 };
+struct sphgi_held_tile {
+    struct sphgi_tile tile;
+    int32_t spread_pairs;
+    int32_t pairs[SPHGI_LANES_MOST];
+};
+struct sphgi_held {
+    int32_t room;      /* for so many of them; 0: there is one round */
+    char *arrays;      /* of all ... */
+    uint32_t *own_ids; /* ... and their ids */
+    struct sphgi_held_tile tile[SPHGI_TILES_HELD];
 };
 
 /* Ids that wait until the lanes are full: lists of targets that follow one another, or the pairs of
@@ -98,6 +112,7 @@ struct sphgi_worker {
     struct sphgi_batch batch;
     struct sphgi_waiting waiting;
     struct sphgi_tile tile;
+    struct sphgi_held held;
     struct sphgi_own own;
     struct sphgi_lane_radii radii;
     struct sphgi_curvature curvature;
@@ -112,6 +127,12 @@ struct sphgi_worker {
 
 enum { SPHGI_HESSIANS = 54 };         /* numbers of all of a tensor's components */
 enum { SPHGI_WAITING_IDS = 1 << 15 }; /* of lists that wait until the lanes are full */
+
+/* Corrections come in the same sweep before other sums that need them: its pairs are summed in
+ * rounds. */
+bool sphgi_is_summed_in_rounds(const struct sphgi_sweep *sweep);
+/* There is memory for so many tiles. Copied rows are those of one. */
+int32_t sphgi_tiles_of(const struct sphgi_sweep *sweep);
 
 /* Bytes of memory of one worker; 0 on overflow. */
 size_t sphgi_worker_size(const struct sphgi_sweep *sweep);
