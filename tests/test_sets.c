@@ -300,6 +300,119 @@ static void masked_targets_of_two_sets_have_the_bits_of_all(const test_case *tes
                          "target %d, number %d", i, c);
 }
 
+/* ---- Targets far from a wall -------------------------------------------------------------------
+ */
+
+typedef struct findings {
+    setup_array table, gradient, rank, lambda_min;
+    sphg_stats stats;
+} findings;
+
+static findings findings_of(const comparison *on, const sphg_sources *sources, int32_t sets,
+                            const sphg_view *at_sources)
+{
+    const sphg_type type = test_field_type(on->test);
+    const int n = on->points.count, d = on->points.dimension;
+    findings found = {.table = setup_output(type, n, sphg_correction_width(&on->scheme)),
+                      .gradient = setup_output(type, n, d * d),
+                      .rank = setup_output(SPHG_U8, n, 1),
+                      .lambda_min = setup_output(type, n, 1)};
+    const sphg_field asked = {
+        .shape = SPHG_VECTOR, .at_sources = at_sources, .gradient = setup_view(&found.gradient)};
+    const sphg_request request = {.sources = sources,
+                                  .fields = &asked,
+                                  .set_count = sets,
+                                  .field_count = 1,
+                                  .correction = setup_view(&found.table),
+                                  .rank = setup_view(&found.rank),
+                                  .lambda_min = setup_view(&found.lambda_min),
+                                  .stats = &found.stats};
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static int is_near(const comparison *on, const cloud *wall, int i)
+{
+    const int d = on->points.dimension;
+    for (int j = 0; j < wall->count; ++j) {
+        double square = 0;
+        for (int k = 0; k < d; ++k)
+            square += pow(on->points.x[i * d + k] - wall->x[j * d + k], 2);
+        if (square < pow(on->scheme.support_radius, 2) * 1.001)
+            return 1;
+    }
+    return 0;
+}
+
+static int same_number(const setup_array *a, const setup_array *b, int i)
+{
+    int same = 1;
+    for (int c = 0; c < a->width; ++c)
+        same &= setup_get(a, i, c) == setup_get(b, i, c);
+    return same;
+}
+
+static setup_array random_vectors(const test_case *test, int count, random_state *random)
+{
+    const int d = test->dimension;
+    double *numbers = test_memory((size_t)(count * d) * sizeof *numbers);
+    for (int k = 0; k < count * d; ++k)
+        numbers[k] = random_between(random, -1, 1);
+    return setup_numbers(test_field_type(test), count, d, numbers);
+}
+
+/* Those that have no pairs in the other set are finished before those that have. */
+static void compare_beside_wall(const test_case *test, double height, int some_are_near)
+{
+    random_state random = random_seeded(87);
+    const int d = test->dimension;
+    cloud points = cloud_jittered(d, d == 2 ? 12 : 7, .125, .2, &random);
+    cloud wall = cloud_plane(d, d == 2 ? 12 : 7, .125);
+    for (int j = 0; j < wall.count; ++j)
+        wall.x[d * j + d - 1] -= height;
+    const comparison on = comparison_of(test, "beside a wall", points, 2 * .125);
+    const setup_array positions[2] = {setup_positions(test, &points), setup_positions(test, &wall)};
+    const sphg_geometry to_wall = {.sources = setup_view(&positions[1]),
+                                   .source_count = wall.count,
+                                   .targets = setup_view(&positions[0]),
+                                   .target_count = points.count,
+                                   .precision = test_field_type(test)};
+    const setup_array volume =
+        setup_numbers(test_field_type(test), wall.count, 1, cloud_volumes(&wall, .2, &random));
+    const setup_array numbers[2] = {random_vectors(test, points.count, &random),
+                                    random_vectors(test, wall.count, &random)};
+    const sphg_view at_sources[2] = {setup_view(&numbers[0]), setup_view(&numbers[1])};
+    const sphg_sources sources[2] = {comparison_sources(&on),
+                                     {.neighbors = setup_search(on.context, &on.scheme, &to_wall),
+                                      .volume = setup_view(&volume)}};
+    const findings alone = findings_of(&on, sources, 1, at_sources);
+    const findings beside = findings_of(&on, sources, 2, at_sources);
+    int near = 0;
+    for (int i = 0; i < points.count; ++i) {
+        if (is_near(&on, &wall, i)) {
+            near += !same_number(&alone.gradient, &beside.gradient, i);
+            continue;
+        }
+        TEST_REQUIRE(same_number(&alone.table, &beside.table, i) &&
+                         same_number(&alone.gradient, &beside.gradient, i) &&
+                         same_number(&alone.rank, &beside.rank, i) &&
+                         same_number(&alone.lambda_min, &beside.lambda_min, i),
+                     "target %d", i);
+    }
+    TEST_REQUIRE(near < points.count / 2 && (near > 0) == some_are_near, "%d are near", near);
+    if (!near)
+        assert_true(memcmp(&alone.stats, &beside.stats, sizeof alone.stats) == 0);
+    else
+        assert_true(alone.stats.certified + alone.stats.decomposed ==
+                    beside.stats.certified + beside.stats.decomposed);
+}
+
+static void targets_far_from_a_wall_have_the_bits_of_no_wall(const test_case *test)
+{
+    compare_beside_wall(test, .125, 1);
+    compare_beside_wall(test, 1, 0);
+}
+
 /* ---- Targets unlike sources ------------------------------------------------------------------ */
 
 typedef struct probe {
@@ -628,6 +741,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(lists_of_the_host_may_lack_a_field, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(masked_targets_of_two_sets_have_the_bits_of_all, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
+    TEST_ENTRY(targets_far_from_a_wall_have_the_bits_of_no_wall, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(a_refused_list_leaves_no_sums_behind, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),

@@ -63,16 +63,16 @@ sphg_result sphg_context_create(int32_t version, const sphg_config *config, sphg
     return SPHG_OK;
 }
 
-enum { SCRATCH_BUFFERS = 13 };
+enum { SCRATCH_BUFFERS = 14 };
 
 static void list_scratch(sphg_context *context, struct sphgi_buffer **buffers)
 {
     struct sphgi_buffer *all[SCRATCH_BUFFERS] = {
         &context->workers,       &context->packed,        &context->sums,
-        &context->marks,         &context->coefficients,  &context->selection,
-        &context->sort,          &context->plan,          &context->input,
-        &context->order_grid[0], &context->order_grid[1], &context->order_grid[2],
-        &context->order_grid[3]};
+        &context->marks,         &context->waits,         &context->coefficients,
+        &context->selection,     &context->sort,          &context->plan,
+        &context->input,         &context->order_grid[0], &context->order_grid[1],
+        &context->order_grid[2], &context->order_grid[3]};
     memcpy(buffers, all, sizeof all);
 }
 

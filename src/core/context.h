@@ -25,6 +25,7 @@ struct sphg_context {
     struct sphgi_buffer packed;        /* rows of fields and volumes in storage order */
     struct sphgi_buffer sums;          /* of several source sets */
     struct sphgi_buffer marks;         /* a byte a target: has it any there? */
+    struct sphgi_buffer waits;         /* ... had it any, at the first step? */
     struct sphgi_buffer coefficients;  /* corrections computed for a second sweep */
     struct sphgi_buffer selection;     /* active targets and the groups that hold them */
     struct sphgi_buffer input;         /* positions as rows, in the order of the host */

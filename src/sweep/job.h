@@ -21,6 +21,14 @@ struct sphgi_put_away {
     uint8_t *marks; /* a byte a target; all 0 between calls. NULL: there is only one set */
 };
 
+/* Classic methods and several source sets: targets with pairs in others than the last set wait for
+ * the sums of these, step by step; those without go through all steps at once. */
+struct sphgi_turn {
+    const uint8_t *waits; /* a byte a target; NULL: everybody's turn */
+    uint8_t whose;        /* of the bytes */
+    int32_t waiting;
+};
+
 /* Where the sums of some steps stand among those of the plan. */
 struct sphgi_sums {
     int32_t first, count;
@@ -51,11 +59,17 @@ struct sphgi_sweep {
     double volume;                /* V / H^d of all sources otherwise */
     struct sphgi_kept_weights kept; /* s_ij that this sweep reads and writes */
     struct sphgi_put_away put_away;
+    struct sphgi_turn turn;
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */
     const struct sphgi_pair_sink *pairs;      /* NULL: results are summed */
     char *memory;
     size_t memory_each;
 };
+
+static inline bool sphgi_is_turn(const struct sphgi_sweep *sweep, int32_t target)
+{
+    return !sweep->turn.waits || sweep->turn.waits[target] == sweep->turn.whose;
+}
 
 /* What volumes are multiplied with: 1 / H^d. */
 double sphgi_volume_unit(const struct sphgi_sweep *sweep);

@@ -127,9 +127,10 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
     const sphg_type type = sweep->plan->type;
     const size_t size = row_size(type), rows = (size_t)n->source_count + 1;
     (void)worker;
-    sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
-                    rows * size);
-    if (sweep->plan->radius_row >= 0)
+    if (sphgi_rows_read(sweep))
+        sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
+                        rows * size);
+    if (sphgi_rows_read(sweep) && sweep->plan->radius_row >= 0)
         fill_radii(sweep, begin, end,
                    packing->rows + ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);
     if (packing->positions &&
@@ -144,7 +145,7 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
     const sphg_type type = sweep->plan->type;
-    const size_t rows = (size_t)n->source_count + 1, arrays = (size_t)sweep->plan->row_count;
+    const size_t rows = (size_t)n->source_count + 1, arrays = (size_t)sphgi_rows_read(sweep);
     const bool positions = sweep->volumes;
     const size_t positions_size =
         positions ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;

@@ -7,6 +7,12 @@
 /* Where the worker reads them: they stand packed, or will be copied. */
 void sphgi_use_rows(struct sphgi_worker *worker);
 
+/* How many arrays of rows a sweep reads: only sums of fields do. */
+static inline int32_t sphgi_rows_read(const struct sphgi_sweep *sweep)
+{
+    return sweep->steps & SPHGI_SUM_FIELDS ? sweep->plan->row_count : 0;
+}
+
 /* Packs positions with volumes, and fields, into the context's memory. Gives OK or MEMORY; tells of
  * volumes that are not valid. */
 sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume);

@@ -27,7 +27,8 @@ static int32_t target_at(const sphg_neighbors *n, int32_t place)
 
 static bool is_active(const struct sphgi_task *task, int32_t place)
 {
-    return sphgi_is_selected(task->selection, place, target_at(task->sweep.set->neighbors, place));
+    const int32_t target = target_at(task->sweep.set->neighbors, place);
+    return sphgi_is_selected(task->selection, place, target) && sphgi_is_turn(&task->sweep, target);
 }
 
 /* A bit for each target of a group; set without a branch that nobody could foresee. */
@@ -334,7 +335,7 @@ void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
     sphgi_use_rows(&w);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
-        if (target < 0)
+        if (target < 0 || !sphgi_is_turn(&task->sweep, target))
             continue;
         ask_for_list(&n->lists, target + SPHGI_LANES_MOST, n->target_count);
         const int32_t *ids;
