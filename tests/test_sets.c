@@ -413,6 +413,58 @@ static void targets_far_from_a_wall_have_the_bits_of_no_wall(const test_case *te
     compare_beside_wall(test, 1, 0);
 }
 
+/* ---- Corrections of some targets ----------------------------------------------------------------
+ */
+
+static void findings_of_some(const comparison *on, const uint8_t *mask, findings *found)
+{
+    const sphg_type type = test_field_type(on->test);
+    const int n = on->points.count;
+    const sphg_subset some = {0, n, NULL, mask};
+    const sphg_sources sources = comparison_sources(on);
+    found->table = setup_output(type, n, sphg_correction_width(&on->scheme));
+    found->rank = setup_output(SPHG_U8, n, 1);
+    found->lambda_min = setup_output(type, n, 1);
+    const sphg_request request = {.sources = &sources,
+                                  .set_count = 1,
+                                  .subset = mask ? &some : NULL,
+                                  .correction = setup_view(&found->table),
+                                  .rank = setup_view(&found->rank),
+                                  .lambda_min = setup_view(&found->lambda_min),
+                                  .stats = &found->stats};
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+}
+
+/* Of groups in which most targets are asked for, all are summed: the others must leave no trace. */
+static void corrections_of_most_targets_have_the_bits_of_all(const test_case *test)
+{
+    random_state random = random_seeded(89);
+    const int d = test->dimension;
+    cloud points = cloud_random(d, 600, d == 2 ? 3 : 1, &random); /* some lack directions */
+    const comparison on = comparison_of(test, "most", points, d == 2 ? .25 : .18);
+    const int n = points.count;
+    for (int of_sixteen = 9; of_sixteen < 16; of_sixteen += 3) {
+        uint8_t *mask = test_memory((size_t)n);
+        int64_t ranks[4] = {0}, chosen = 0;
+        findings all, some;
+        findings_of_some(&on, NULL, &all);
+        for (int i = 0; i < n; ++i)
+            chosen += mask[i] = random_index(&random, 16) < of_sixteen;
+        findings_of_some(&on, mask, &some);
+        for (int i = 0; i < n; ++i) {
+            TEST_REQUIRE(mask[i] ? same_number(&all.table, &some.table, i) &&
+                                       same_number(&all.rank, &some.rank, i) &&
+                                       same_number(&all.lambda_min, &some.lambda_min, i)
+                                 : setup_is_canary(&some.table, i),
+                         "target %d, %d of 16", i, of_sixteen);
+            ranks[(int)setup_get(&all.rank, i, 0)] += mask[i];
+        }
+        assert_true(some.stats.certified + some.stats.decomposed == chosen);
+        assert_true(memcmp(ranks, some.stats.rank, sizeof ranks) == 0);
+        assert_true(some.stats.decomposed > 0 && some.stats.certified > 0);
+    }
+}
+
 /* ---- Targets unlike sources ------------------------------------------------------------------ */
 
 typedef struct probe {
@@ -743,6 +795,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(masked_targets_of_two_sets_have_the_bits_of_all, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(targets_far_from_a_wall_have_the_bits_of_no_wall, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
+    TEST_ENTRY(corrections_of_most_targets_have_the_bits_of_all, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(a_refused_list_leaves_no_sums_behind, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),

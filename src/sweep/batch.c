@@ -120,11 +120,14 @@ static void repeat_coefficients(struct sphgi_worker *w)
 /* Corrections that later rounds need. Those of several source sets wait for the sums of all. */
 static void finish_round(struct sphgi_worker *w)
 {
-    if (w->batch.summing == SPHGI_SUM_MOMENTS)
+    const unsigned step = w->batch.summing;
+    if (step == SPHGI_SUM_MOMENTS && w->batch.drops)
+        sphgi_solve_for_slopes(w);
+    else if (step == SPHGI_SUM_MOMENTS)
         sphgi_finish_moments(w);
-    else if (w->batch.summing == SPHGI_SUM_SLOPES)
+    else if (step == SPHGI_SUM_SLOPES && !w->batch.drops)
         sphgi_finish_slopes(w);
-    if (w->tile.spread && w->batch.summing != SPHGI_SUM_FIELDS)
+    if (w->tile.spread && step != SPHGI_SUM_FIELDS)
         repeat_coefficients(w);
 }
 
@@ -213,4 +216,9 @@ void sphgi_batch_keep(struct sphgi_worker *w, uint32_t kept)
         to += (int32_t)(kept & 1);
     }
     bundle->count = w->bundle.summed = to;
+    if (w->batch.drops && to > w->batch.first) {
+        sphgi_put_to_work(w, w->batch.first);
+        sphgi_finish_moments(w);
+        sphgi_finish_slopes(w);
+    }
 }

@@ -71,6 +71,12 @@ static void solve_classic(struct sphgi_worker *w, struct sphgi_verdict *verdict)
         plan->lambda_min.count ? w->lambda_min : NULL, verdict);
 }
 
+void sphgi_solve_for_slopes(struct sphgi_worker *w)
+{
+    struct sphgi_verdict verdict = {.count = w->batch.targets};
+    solve_classic(w, &verdict);
+}
+
 void sphgi_finish_moments(struct sphgi_worker *w)
 {
     struct sphgi_verdict verdict = {.count = w->batch.targets};

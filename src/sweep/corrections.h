@@ -9,5 +9,7 @@
  */
 void sphgi_finish_moments(struct sphgi_worker *worker);
 void sphgi_finish_slopes(struct sphgi_worker *worker);
+/* What slopes need of moments, and nobody is told: some targets will drop out. */
+void sphgi_solve_for_slopes(struct sphgi_worker *worker);
 
 #endif

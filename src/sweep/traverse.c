@@ -130,10 +130,13 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
         for (int32_t l = 0; l < lanes; ++l)
             w->batch.lists.count[l] = lengths[first + l];
         put_into_lanes(w, targets + first, place + first);
+        const bool some = (active >> first & all) != all;
+        w->batch.drops = some && w->held.room;
         sphgi_batch_run(w);
-        if ((active >> first & all) != all)
+        if (some)
             sphgi_batch_keep(w, active >> first & all);
     }
+    w->batch.drops = false;
     w->batch.lists.side_by_side = false;
     w->batch.kept = NULL;
     if (kept->number)
@@ -166,12 +169,14 @@ static void add_kept(struct sphgi_worker *w, int32_t place, const uint32_t *ids,
 }
 
 /* Are groups of which some targets are active summed whole? Dropped ones must leave no trace: where
- * matrices come first, those of all would be counted. */
+ * matrices come before fields, those of all would be counted. Where they come alone, they are
+ * finished when the others are gone. */
 static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_worker *w)
 {
     enum { WORTH = 9 }; /* active targets of the sixteen, on average */
     const struct sphgi_selection *selection = task->selection;
-    return selection->groups && !w->coefficients_first && !w->sweep->pairs &&
+    const bool corrections = w->held.room && !(w->sweep->steps & SPHGI_SUM_FIELDS);
+    return selection->groups && (!w->coefficients_first || corrections) && !w->sweep->pairs &&
            selection->active_count >= (int64_t)WORTH * selection->group_count;
 }
 

@@ -26,8 +26,9 @@ struct sphgi_batch {
     int32_t tiles;    /* made ready since the lists were walked from their beginning */
     int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
     int32_t spread_pairs;            /* of a tile that holds one list */
-    char *kept;                      /* s_ij that stay between sweeps; NULL: none */
-    bool kept_stand;                 /* they were written by a sweep before */
+    bool drops;      /* summed in rounds, and some of its targets drop out afterwards */
+    char *kept;      /* s_ij that stay between sweeps; NULL: none */
+    bool kept_stand; /* they were written by a sweep before */
 };
 
 /* Tiles that stay until the next round. */
