@@ -23,16 +23,14 @@ void sphgi_held_open(struct sphgi_worker *w)
 
 void sphgi_place_tile(struct sphgi_worker *w)
 {
-    if (w->held.room)
-        use_place(w, sphgi_min32(w->batch.tiles, w->held.room - 1));
+    use_place(w, sphgi_min32(w->batch.tiles, w->held.room - 1));
 }
 
 void sphgi_hold_tile(struct sphgi_worker *w)
 {
-    const int32_t k = w->batch.tiles++;
-    if (k >= w->held.room)
+    if (++w->batch.tiles > w->held.room)
         return;
-    struct sphgi_held_tile *held = &w->held.tile[k];
+    struct sphgi_held_tile *held = &w->held.tile[w->batch.tiles - 1];
     held->tile = w->tile;
     held->spread_pairs = w->batch.spread_pairs;
     if (w->sweep->pairs)

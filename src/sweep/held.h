@@ -8,7 +8,8 @@
 /* Sweeps of one round hold nothing. */
 void sphgi_held_open(struct sphgi_worker *worker);
 
-/* A place for the next tile of this round; once it is ready, it stays there. */
+/* Where there is room: a place for the next tile of this round; once it is ready, it stays there.
+ */
 void sphgi_place_tile(struct sphgi_worker *worker);
 void sphgi_hold_tile(struct sphgi_worker *worker);
 

@@ -206,8 +206,6 @@ void sphgi_weigh_tile(struct sphgi_worker *w)
     const int32_t count = w->tile.steps * w->passes->lanes;
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
-    if (w->factors_at_once)
-        return;
     if (plan->classic || plan->wants_value || plan->mean_volume)
         p->shape_weights(&w->shape, w->tile.arrays, count);
     if (plan->classic)

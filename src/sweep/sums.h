@@ -4,7 +4,7 @@
 #define SPHGI_SUMS_H
 #include "worker.h"
 
-/* The weights of the gathered pairs, once a tile. */
+/* The weights of gathered pairs that came without. */
 void sphgi_weigh_tile(struct sphgi_worker *worker);
 
 /* Adds the pairs to the sums of this round, or hands them on one by one. */

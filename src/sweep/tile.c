@@ -66,7 +66,8 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
     if (!ready || w->sweep->pairs)
         for (int32_t l = 0; l < w->passes->lanes; ++l)
             w->batch.pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
-    sphgi_place_tile(w);
+    if (w->held.room)
+        sphgi_place_tile(w);
     if (ready)
         w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
     else
@@ -77,7 +78,9 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
     sphgi_scale_volumes(w);
-    sphgi_weigh_tile(w);
-    sphgi_hold_tile(w);
+    if (!w->factors_at_once)
+        sphgi_weigh_tile(w);
+    if (w->held.room)
+        sphgi_hold_tile(w);
     sphgi_evaluate_tile(w);
 }

@@ -36,6 +36,8 @@ static uint32_t active_of(const struct sphgi_task *task, int32_t group)
 {
     const int32_t first = group * SPHGI_GROUP;
     const int32_t count = sphgi_targets_in(task->sweep.set->neighbors, group);
+    if (!task->selection->subset && !task->sweep.turn.waits)
+        return (1u << count) - 1;
     uint32_t active = 0;
     for (int32_t k = 0; k < count; ++k)
         active |= (uint32_t)is_active(task, first + k) << k;

@@ -59,6 +59,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(rows.at, arrays + 1, sizeof(void *));
     CARVE(rows.positions, local, SPHGI_ROW * position);
     CARVE(rows.numbers, local * arrays, row);
+    CARVE(held.tile, tiles, sizeof(struct sphgi_held_tile));
     CARVE(held.arrays, tiles * SPHGI_ARRAYS * SPHGI_TILE, size);
     CARVE(held.own_ids, tiles * SPHGI_TILE, sizeof(uint32_t));
     CARVE(rows.clean_ids, SPHGI_TILE, sizeof(uint32_t));

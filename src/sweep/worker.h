@@ -42,7 +42,7 @@ struct sphgi_held {
     int32_t room;      /* for so many of them; 0: there is one round */
     char *arrays;      /* of all ... */
     uint32_t *own_ids; /* ... and their ids */
-    struct sphgi_held_tile tile[SPHGI_TILES_HELD];
+    struct sphgi_held_tile *tile;
 };
 
 /* Ids that wait until the lanes are full: lists of targets that follow one another, or the pairs of
