@@ -62,6 +62,11 @@ static void gather_factors(struct sphgi_worker *w, int32_t begin)
 
 void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
+    if (sphgi_is_held(w)) {
+        sphgi_take_tile(w, w->batch.tiles++);
+        sphgi_evaluate_tile(w);
+        return;
+    }
     const bool ready = !w->rows.local && w->sweep->set->neighbors->kind != SPHGI_HOST_LISTS;
     if (!ready || w->sweep->pairs)
         for (int32_t l = 0; l < w->passes->lanes; ++l)
