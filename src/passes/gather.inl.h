@@ -46,6 +46,14 @@ SPHGI_TEMPLATE vec square_of(double length)
     return splat(R(length)) * splat(R(length));
 }
 
+/* What r^2 of neighbours is less than. */
+SPHGI_TEMPLATE vec square_of_cutoff(const struct sphgi_gather *g, vec radius)
+{
+    if (g->all)
+        return splat((real)__builtin_inf());
+    return radius * radius;
+}
+
 enum { AHEAD = 64 /* steps: ids come from memory, those to come are asked for */ };
 
 /* LANES ids: those of what is no pair become the dummy's, for a field that is not finite must not

@@ -28,8 +28,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
         radius = own.w;
         unit = R(1) / radius;
     }
-    const vec far = radius + radius, infinite = splat((real)__builtin_inf());
-    const vec square_radius = radius * radius, cutoff = g->all ? infinite : square_radius;
+    const vec far = radius + radius, cutoff = square_of_cutoff(g, radius);
     const struct wraps w = wraps_of(g->period);
     const uint32_t *ids = tile->ids + first;
     const ptrdiff_t stride = tile->id_stride;

@@ -257,8 +257,8 @@ struct sphgi_passes {
      * tile. [0]: f32 arrays, [1]: f64. Masked: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,
                       struct sphgi_tile *tile);
-    /* The same for pairs that need no guard, and the factors s_ij instead of the distances. Rows of
-     * the type of the arrays. */
+    /* The same with the factors s_ij instead of the distances, on open axes. Rows of the type of
+     * the arrays. */
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
 

@@ -36,8 +36,8 @@ bool sphgi_is_masked(const struct sphgi_sweep *sweep)
 bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
-    return sweep->packed && plan->radius_row < 0 && !sphgi_is_masked(sweep) && !plan->classic &&
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return sweep->packed && plan->radius_row < 0 && !n->periodic && !plan->classic &&
            !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
-           (plan->differentiates || plan->computes) &&
-           sweep->set->neighbors->position_type == plan->type;
+           (plan->differentiates || plan->computes) && n->position_type == plan->type;
 }
