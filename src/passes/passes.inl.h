@@ -14,6 +14,7 @@
 #include "rows.inl.h"
 #include "gather.inl.h"
 #include "lists.inl.h"
+#include "host_lists.inl.h"
 #define OUT         float
 #define OUT_NAME(x) x##_f32
 #include "gather_pairs.inl.h"

@@ -18,6 +18,11 @@ struct sphgi_sums sphgi_sums_of(const struct sphgi_plan *plan, unsigned steps)
     return (struct sphgi_sums){first, end - first};
 }
 
+bool sphgi_must_finish(const struct sphgi_sweep *sweep)
+{
+    return sweep->pairs || (sweep->steps & SPHGI_FINISH);
+}
+
 bool sphgi_is_superset(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;

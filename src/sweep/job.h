@@ -74,6 +74,10 @@ static inline bool sphgi_is_turn(const struct sphgi_sweep *sweep, int32_t target
 /* What volumes are multiplied with: 1 / H^d. */
 double sphgi_volume_unit(const struct sphgi_sweep *sweep);
 
+/* Targets without pairs in this source set must be gone through all the same: they bring nothing to
+ * what is put away. */
+bool sphgi_must_finish(const struct sphgi_sweep *sweep);
+
 /* s_ij can be formed as pairs are gathered: nobody asks for distances, nor for anything else that
  * is made of them. */
 bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep);

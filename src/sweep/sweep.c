@@ -3,6 +3,7 @@
 #include "core/digits.h"
 #include "core/parallel.h"
 #include "rows.h"
+#include "host_lists.h"
 #include "traverse.h"
 #include "core/view.h"
 #include <math.h>

@@ -7,18 +7,8 @@
 #include "pieces.h"
 #include "waiting.h"
 #include "rows.h"
-#include "core/check.h"
 #include "search/find.h"
 #include <string.h>
-
-static void open(struct sphgi_worker *w, const struct sphgi_task *task, int32_t number)
-{
-    sphgi_worker_open(w, &task->sweep, number);
-    sphgi_held_open(w);
-    sphgi_find_targets_in_rows(w);
-}
-
-/* ---- Groups of a searched object ------------------------------------------------------------ */
 
 static int32_t target_at(const sphg_neighbors *n, int32_t place)
 {
@@ -182,12 +172,6 @@ static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_w
            selection->active_count >= (int64_t)WORTH * selection->group_count;
 }
 
-/* Targets without pairs in this source set bring nothing to what is put away. */
-static bool must_finish(const struct sphgi_worker *w)
-{
-    return w->sweep->pairs || (w->sweep->steps & SPHGI_FINISH);
-}
-
 /* Lists that stand one after the other. */
 static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, int32_t group)
 {
@@ -209,7 +193,7 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
         sweep_apart(task, w, group);
         return;
     }
-    if (!sphgi_kept_steps(n, group) && !must_finish(w))
+    if (!sphgi_kept_steps(n, group) && !sphgi_must_finish(w->sweep))
         return;
     const uint32_t *ids = sphgi_kept_ids(n, group);
     const uint16_t *lengths = n->found.lengths.data;
@@ -267,7 +251,7 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     if (!active)
         return;
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
-    if (collected && !must_finish(w) && are_empty(lengths))
+    if (collected && !sphgi_must_finish(w->sweep) && are_empty(lengths))
         return;
     const bool all = active == (1u << SPHGI_GROUP) - 1 && w->bundle.count == w->bundle.summed;
     for (uint32_t left = active; left; left &= left - 1) {
@@ -289,7 +273,9 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     const int32_t *groups = task->selection->groups;
     struct sphgi_worker w;
     struct sphgi_finder finder;
-    open(&w, task, number);
+    sphgi_worker_open(&w, &task->sweep, number);
+    sphgi_held_open(&w);
+    sphgi_find_targets_in_rows(&w);
     sphgi_use_rows(&w);
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
@@ -298,63 +284,6 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
             sweep_kept(task, &w, group);
         else
             sweep_found(task, &w, &finder, group);
-    }
-    sphgi_run_rest(&w);
-}
-
-/* ---- The host's lists ----------------------------------------------------------------------- */
-
-static void note_bad_length(struct sphgi_tally *tally, int32_t target)
-{
-    if (tally->bad_target < 0 || target < tally->bad_target) {
-        tally->bad_target = target;
-        tally->bad_index = SPHGI_BAD_LENGTH;
-    }
-}
-
-/* The host's numbers become ids when they are used. */
-static const uint32_t *numbers_of(const int32_t *list)
-{
-    return (const uint32_t *)(const void *)list;
-}
-
-/* Numbers that come from memory should be on their way before the lanes are full: those of a list
- * of usual length, without a question that nobody could foresee. */
-static void ask_for_list(const sphg_lists *lists, int32_t target, int32_t count)
-{
-    enum { LINE = 64 };
-    if (target >= count || lists->row)
-        return;
-    const uintptr_t ids = lists->offsets ? (uintptr_t)lists->indices +
-                                               (size_t)lists->offsets[target] * sizeof(int32_t)
-                                         : (uintptr_t)lists->rows[target];
-    __builtin_prefetch((const void *)ids);
-    __builtin_prefetch((const void *)(ids + LINE));
-    __asm__ volatile("");
-}
-
-void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t number)
-{
-    const struct sphgi_task *task = data;
-    const sphg_neighbors *n = task->sweep.set->neighbors;
-    struct sphgi_worker w;
-    open(&w, task, number);
-    sphgi_use_rows(&w);
-    for (int32_t k = begin; k < end; ++k) {
-        const int32_t target = sphgi_selected(task->selection, task->selection->begin + k);
-        if (target < 0 || !sphgi_is_turn(&task->sweep, target))
-            continue;
-        ask_for_list(&n->lists, target + SPHGI_LANES_MOST, n->target_count);
-        const int32_t *ids;
-        const int64_t count = sphgi_host_row(&n->lists, target, number, &ids);
-        if (!sphgi_is_host_row(ids, count))
-            note_bad_length(w.tally, target);
-        else if (!count && !must_finish(&w))
-            continue;
-        else if (n->lists.row) /* the host may use its array again */
-            sphgi_add_copied(&w, target, target, numbers_of(ids), (int32_t)count, (int32_t)count);
-        else
-            sphgi_add_list(&w, target, target, numbers_of(ids), (int32_t)count, 1);
     }
     sphgi_run_rest(&w);
 }

@@ -10,8 +10,7 @@ struct sphgi_task {
     const struct sphgi_selection *selection;
 };
 
-/* sphg_task functions; data: struct sphgi_task. */
-void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t worker); /* groups */
-void sphgi_list_task(void *data, int32_t begin, int32_t end, int32_t worker);  /* selected items */
+/* An sphg_task function; data: struct sphgi_task. A range of groups. */
+void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t worker);
 
 #endif
