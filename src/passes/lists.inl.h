@@ -9,13 +9,13 @@ SPHGI_TEMPLATE const uint32_t *four_from(const uint32_t *list, int32_t count, in
     return k < count ? list + k : (const uint32_t *)none;
 }
 
-/* Four steps of four lists from step k on. */
+/* Four steps of four lists from step k on. count NULL: all lists have them. */
 SPHGI_TEMPLATE void turn_four(const uint32_t *const *lists, const int32_t *count, int32_t k,
                               const four_ids *none, ptrdiff_t stride, uint32_t *to)
 {
     four_ids a[4];
     for (int32_t i = 0; i < 4; ++i)
-        a[i] = *(const four_ids *)four_from(lists[i], count[i], k, none);
+        a[i] = *(const four_ids *)(count ? four_from(lists[i], count[i], k, none) : lists[i] + k);
     const four_ids ac = SHUFFLED_BY(four_ids, a[0], a[2], 0, 4, 1, 5);
     const four_ids AC = SHUFFLED_BY(four_ids, a[0], a[2], 2, 6, 3, 7);
     const four_ids bd = SHUFFLED_BY(four_ids, a[1], a[3], 0, 4, 1, 5);
@@ -33,7 +33,8 @@ SPHGI_TEMPLATE void turn_lanes(const uint32_t *const *lists, const int32_t *coun
 {
     const real *row[LANES];
     for (int32_t l = 0; l < LANES; ++l)
-        row[l] = (const real *)(const void *)four_from(lists[l], count[l], k, none);
+        row[l] = (const real *)(const void *)(count ? four_from(lists[l], count[l], k, none)
+                                                    : lists[l] + k);
     const struct four v = transpose(row);
     real *out = (real *)(void *)to;
     store(out, v.x);

@@ -83,6 +83,7 @@ struct sphgi_lane_lists {
     const uint32_t *ids[SPHGI_LANES_MOST];
     int32_t count[SPHGI_LANES_MOST];
     int32_t stride[SPHGI_LANES_MOST]; /* from one id to the next */
+    bool numbers;                     /* of the host's sources, yet to become ids; strides of 1 */
     bool side_by_side;                /* they stand as the tile wants them, dummies included */
 };
 
@@ -107,6 +108,14 @@ struct sphgi_gather {
 /* What becomes of the host's numbers of sources; the dummy is the row behind these. */
 struct sphgi_cleaning {
     uint32_t mask, sources, self;
+};
+
+/* Where lists of the host's numbers become ids, a chunk of each. */
+struct sphgi_slots {
+    struct sphgi_cleaning how;
+    const int32_t *targets;        /* a list may name its own; NULL: they are no sources */
+    uint32_t *ids;                 /* SPHGI_CHUNK a lane */
+    const uint32_t *const *coming; /* lists that are read next, a lane each; NULL: none */
 };
 
 /* A smoothing kernel with everything multiplied into its two factors. */
@@ -277,12 +286,14 @@ struct sphgi_passes {
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,
                        struct sphgi_tile *tile);
 
-    /* A list of the host's becomes ids, padded to SPHGI_PAD. True: it holds what is no source. */
+    /* A list of the host's becomes ids, padded to SPHGI_PAD; up to the next multiple of
+     * SPHGI_LANES_MOST there is room. True: it holds what is no source. */
     bool (*clean_ids)(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out);
-    /* The same for lists of a tile, side by side. self: of each lane. */
-    bool (*interleave_hosts)(const struct sphgi_lane_lists *lists, const struct sphgi_cleaning *how,
-                             const uint32_t *self, struct sphgi_tile *tile);
+    /* The same for steps [begin, begin + tile->steps) of lists of the host's, which become the ids
+     * of the tile. */
+    bool (*interleave_hosts)(const struct sphgi_lane_lists *lists, int32_t begin,
+                             const struct sphgi_slots *slots, struct sphgi_tile *tile);
 
     /* Arrays from `first` on, times a number per lane. */
     void (*scale_pairs)(const struct sphgi_tile *tile, enum sphgi_array first, int32_t count,

@@ -55,7 +55,7 @@ static void run_lanes(struct sphgi_worker *w)
     do {
         w->tile.chunk = (int32_t)(at / SPHGI_CHUNK);
         w->tile.steps = sphgi_min32(SPHGI_CHUNK, w->batch.longest - (int32_t)at);
-        sphgi_run_tile(w, &w->batch.lists, (int32_t)at);
+        sphgi_run_tile(w, w->batch.lists, (int32_t)at);
         at += SPHGI_CHUNK;
     } while (at < w->batch.longest);
 }
@@ -72,7 +72,7 @@ static void join(struct sphgi_worker *w)
 void sphgi_run_spread(struct sphgi_worker *w, const uint32_t *ids, int32_t count, int32_t stride,
                       int32_t at)
 {
-    struct sphgi_lane_lists lists = {.side_by_side = false};
+    struct sphgi_lane_lists lists = {.numbers = w->batch.lists->numbers};
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
         const int32_t first = l * SPHGI_CHUNK;
         lists.ids[l] = ids + (ptrdiff_t)first * stride;
@@ -89,9 +89,9 @@ void sphgi_run_spread(struct sphgi_worker *w, const uint32_t *ids, int32_t count
 
 static void run_long_list(struct sphgi_worker *w)
 {
-    const int32_t stride = w->batch.lists.stride[0], most = sphgi_spread_most(w);
+    const int32_t stride = w->batch.lists->stride[0], most = sphgi_spread_most(w);
     for (int64_t at = 0; at < w->batch.longest; at += most)
-        sphgi_run_spread(w, w->batch.lists.ids[0] + at * stride,
+        sphgi_run_spread(w, w->batch.lists->ids[0] + at * stride,
                          (int32_t)(w->batch.longest - at < most ? w->batch.longest - at : most),
                          stride, (int32_t)at);
 }
@@ -181,11 +181,11 @@ void sphgi_batch_run(struct sphgi_worker *w)
     sphgi_batch_begin(w);
     w->batch.longest = 0;
     for (int32_t l = 0; l < w->batch.targets; ++l)
-        w->batch.longest = sphgi_max32(w->batch.longest, w->batch.lists.count[l]);
+        w->batch.longest = sphgi_max32(w->batch.longest, w->batch.lists->count[l]);
     for (int32_t l = w->batch.targets; l < w->passes->lanes; ++l) {
-        w->batch.lists.ids[l] = w->batch.lists.ids[0];
-        w->batch.lists.count[l] = 0;
-        w->batch.lists.stride[l] = 1;
+        w->batch.lists->ids[l] = w->batch.lists->ids[0];
+        w->batch.lists->count[l] = 0;
+        w->batch.lists->stride[l] = 1;
     }
     const bool spread = w->batch.targets == 1 && w->batch.longest > SPHGI_CHUNK;
     do

@@ -4,15 +4,13 @@
 #include "rows.h"
 #include <string.h>
 
+/* Of lists that name no target. */
 static struct sphgi_cleaning cleaning_of(const struct sphgi_worker *w)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
-    return sphgi_cleaning_of(n, &n->lists);
-}
-
-static uint32_t self_of(const struct sphgi_worker *w, int32_t target)
-{
-    return sphgi_self_of(w->sweep->set->neighbors, target);
+    struct sphgi_cleaning how = sphgi_cleaning_of(n, &n->lists);
+    how.self = UINT32_MAX;
+    return how;
 }
 
 /* Remembers the first target whose list holds what is no source, and what that is. */
@@ -35,22 +33,24 @@ void sphgi_clean_list(struct sphgi_worker *w, int32_t target, const uint32_t *li
                       uint32_t *ids)
 {
     struct sphgi_cleaning how = cleaning_of(w);
-    how.self = self_of(w, target);
+    how.self = sphgi_self_of(w->sweep->set->neighbors, target);
     if (w->passes->clean_ids((const int32_t *)(const void *)list, count, &how, ids))
         note_bad_index(w->tally, target, list, count, &how);
 }
 
-void sphgi_clean_lists(struct sphgi_worker *w, const struct sphgi_lane_lists *lists)
+void sphgi_clean_lists(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
-    const struct sphgi_cleaning how = cleaning_of(w);
-    const int32_t lanes = w->passes->lanes;
-    uint32_t self[SPHGI_LANES_MOST] = {0};
-    for (int32_t l = 0; l < lanes; ++l)
-        self[l] = self_of(w, sphgi_targets(w)[l]);
-    if (!w->passes->interleave_hosts(lists, &how, self, &w->tile))
+    const int32_t *targets = sphgi_targets(w);
+    const struct sphgi_slots slots = {.how = cleaning_of(w),
+                                      .targets = w->sweep->set->neighbors->part_of ? targets : NULL,
+                                      .ids = w->rows.clean_ids,
+                                      .coming = w->batch.coming};
+    if (!w->passes->interleave_hosts(lists, begin, &slots, &w->tile))
         return;
-    for (int32_t l = 0; l < lanes; ++l)
-        note_bad_index(w->tally, sphgi_targets(w)[l], lists->ids[l], lists->count[l], &how);
+    for (int32_t l = 0; l < w->passes->lanes; ++l)
+        if (lists->count[l] > begin)
+            note_bad_index(w->tally, targets[l], lists->ids[l] + begin,
+                           sphgi_min32(lists->count[l] - begin, w->tile.steps), &slots.how);
 }
 
 /* Numbers of rows packed; the ids that lead to the copies stay where the numbers stood. */

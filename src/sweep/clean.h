@@ -4,14 +4,16 @@
 #define SPHGI_CLEAN_H
 #include "worker.h"
 
-/* Ids of rows at out, padded to SPHGI_PAD: the target itself, and what is no source, becomes the
- * row behind the last source. What is no source is noted. */
+/* Ids of rows at out, padded to SPHGI_PAD, with room up to the next multiple of SPHGI_LANES_MOST:
+ * the target itself, and what is no source, becomes the row behind the last source. What is no
+ * source is noted. */
 void sphgi_clean_list(struct sphgi_worker *worker, int32_t target, const uint32_t *list,
                       int32_t count, uint32_t *ids);
 
-/* The same for lists of the lanes at work, SPHGI_CHUNK numbers each at most: the ids of the tile.
+/* The same for lists of the lanes at work, steps [begin, begin + tile.steps): the ids of the tile.
  */
-void sphgi_clean_lists(struct sphgi_worker *worker, const struct sphgi_lane_lists *lists);
+void sphgi_clean_lists(struct sphgi_worker *worker, const struct sphgi_lane_lists *lists,
+                       int32_t begin);
 
 /* Copies the rows behind ids of rows, up to SPHGI_CHUNK, so that they can be read like packed ones,
  * to place `at` on; the ids become those of the copies, the dummy's where there is no source. */

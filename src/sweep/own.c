@@ -80,6 +80,22 @@ void sphgi_load_targets(struct sphgi_worker *w)
     }
 }
 
+void sphgi_ask_for_targets(const struct sphgi_worker *w, int32_t count, const int32_t *targets)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const struct sphgi_passes *p = w->passes;
+    p->ask_for_lanes(count, &plan->target_correction, targets, false);
+    p->ask_for_lanes(count, &plan->correction, targets, true);
+    for (int32_t k = 0; k < plan->field_count; ++k) {
+        const struct sphgi_field_plan *field = &plan->fields[k];
+        if (k >= 32 || !(w->own.in_rows >> k & 1))
+            p->ask_for_lanes(count, &field->target, targets, false);
+        p->ask_for_lanes(count, &field->gradient, targets, true);
+        p->ask_for_lanes(count, &field->divergence, targets, true);
+        p->ask_for_lanes(count, &field->curl, targets, true);
+    }
+}
+
 /* ---- Volumes, and the pair of a target with itself ------------------------------------------- */
 
 void sphgi_load_volume(struct sphgi_worker *w, const struct sphgi_columns *columns, char *to)

@@ -13,7 +13,7 @@ static void copy_rows(struct sphgi_worker *w, const struct sphgi_lane_lists *lis
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
         const int32_t count = lists->count[l], stride = lists->stride[l];
         uint32_t *ids = w->rows.clean_ids + l * SPHGI_CHUNK;
-        if (count && w->sweep->set->neighbors->kind == SPHGI_HOST_LISTS)
+        if (count && lists->numbers)
             sphgi_clean_list(w, sphgi_targets(w)[l], lists->ids[l], count, ids);
         else
             for (int32_t k = 0; k < count; ++k)
@@ -29,20 +29,23 @@ static void copy_rows(struct sphgi_worker *w, const struct sphgi_lane_lists *lis
     w->passes->interleave(&ready, 0, w->gather.dummy, &w->tile);
 }
 
-/* Steps [begin, begin + tile.steps) of lists whose ids cannot be taken as they are. */
-static void ready_ids(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+/* The pairs of each lane in steps [begin, begin + tile.steps). */
+static void count_pairs(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
-    struct sphgi_lane_lists part = {.side_by_side = false};
+    for (int32_t l = 0; l < w->passes->lanes; ++l)
+        w->batch.pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
+}
+
+static void copy_steps(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
+{
+    struct sphgi_lane_lists part = {.numbers = lists->numbers};
     for (int32_t l = 0; l < w->passes->lanes; ++l) {
         part.ids[l] =
             w->batch.pairs[l] ? lists->ids[l] + (ptrdiff_t)begin * lists->stride[l] : NULL;
         part.count[l] = w->batch.pairs[l];
         part.stride[l] = lists->stride[l];
     }
-    if (w->rows.local)
-        copy_rows(w, &part);
-    else
-        sphgi_clean_lists(w, &part);
+    copy_rows(w, &part);
 }
 
 /* s_ij that stand in memory are read instead of formed; what is formed there is kept. */
@@ -67,16 +70,16 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         sphgi_evaluate_tile(w);
         return;
     }
-    const bool ready = !w->rows.local && w->sweep->set->neighbors->kind != SPHGI_HOST_LISTS;
-    if (!ready || w->sweep->pairs)
-        for (int32_t l = 0; l < w->passes->lanes; ++l)
-            w->batch.pairs[l] = sphgi_max32(0, sphgi_min32(lists->count[l] - begin, w->tile.steps));
+    if (w->rows.local || w->sweep->pairs)
+        count_pairs(w, lists, begin);
     if (w->held.room)
         sphgi_place_tile(w);
-    if (ready)
-        w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
+    if (w->rows.local)
+        copy_steps(w, lists, begin);
+    else if (lists->numbers)
+        sphgi_clean_lists(w, lists, begin);
     else
-        ready_ids(w, lists, begin);
+        w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
     if (w->factors_at_once)
         gather_factors(w, begin);
     else

@@ -48,24 +48,6 @@ static void ask_for_numbers(const sphg_neighbors *n, int32_t place)
     }
 }
 
-/* The host's arrays have an order of their own: what the group will read and write there comes
- * while its pairs are summed. */
-static void ask_for_group(const struct sphgi_worker *w, const int32_t *targets)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_passes *p = w->passes;
-    p->ask_for_lanes(SPHGI_GROUP, &plan->target_correction, targets, false);
-    p->ask_for_lanes(SPHGI_GROUP, &plan->correction, targets, true);
-    for (int32_t k = 0; k < plan->field_count; ++k) {
-        const struct sphgi_field_plan *field = &plan->fields[k];
-        if (k >= 32 || !(w->own.in_rows >> k & 1))
-            p->ask_for_lanes(SPHGI_GROUP, &field->target, targets, false);
-        p->ask_for_lanes(SPHGI_GROUP, &field->gradient, targets, true);
-        p->ask_for_lanes(SPHGI_GROUP, &field->divergence, targets, true);
-        p->ask_for_lanes(SPHGI_GROUP, &field->curl, targets, true);
-    }
-}
-
 /* They stand where the ids do. */
 static char *kept_factors(const struct sphgi_worker *w, const uint32_t *ids)
 {
@@ -84,7 +66,7 @@ static void targets_of_group(const struct sphgi_worker *w, int32_t place, uint32
     for (int32_t l = 0; l < SPHGI_GROUP; ++l)
         targets[l] = active >> l & 1 ? order[l] : other;
     ask_for_numbers(n, place);
-    ask_for_group(w, targets);
+    sphgi_ask_for_targets(w, SPHGI_GROUP, targets);
 }
 
 /* A vector of them. */
@@ -113,14 +95,14 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
         sphgi_finish_lanes(w);
     int32_t targets[SPHGI_GROUP];
     targets_of_group(w, place, active, targets);
-    w->batch.lists.stride[0] = SPHGI_GROUP;
-    w->batch.lists.side_by_side = true;
+    w->batch.lists->stride[0] = SPHGI_GROUP;
+    w->batch.lists->side_by_side = true;
     w->batch.kept_stand = kept->number && kept->marks[group] == kept->number;
     for (int32_t first = 0; first < SPHGI_GROUP; first += lanes) {
-        w->batch.lists.ids[0] = ids + first;
-        w->batch.kept = kept->number ? kept_factors(w, w->batch.lists.ids[0]) : NULL;
+        w->batch.lists->ids[0] = ids + first;
+        w->batch.kept = kept->number ? kept_factors(w, w->batch.lists->ids[0]) : NULL;
         for (int32_t l = 0; l < lanes; ++l)
-            w->batch.lists.count[l] = lengths[first + l];
+            w->batch.lists->count[l] = lengths[first + l];
         put_into_lanes(w, targets + first, place + first);
         const bool some = (active >> first & all) != all;
         w->batch.drops = some && w->held.room;
@@ -129,7 +111,7 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
             sphgi_batch_keep(w, active >> first & all);
     }
     w->batch.drops = false;
-    w->batch.lists.side_by_side = false;
+    w->batch.lists->side_by_side = false;
     w->batch.kept = NULL;
     if (kept->number)
         kept->marks[group] = kept->number;

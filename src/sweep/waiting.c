@@ -32,9 +32,9 @@ void sphgi_add_list(struct sphgi_worker *w, int32_t target, int32_t place, const
     if (w->bundle.count == w->bundle.summed && w->bundle.summed > SPHGI_WIDTH - w->passes->lanes)
         sphgi_finish_lanes(w); /* no room for a vector more */
     const int32_t lane = sphgi_add_target(w, target, place) - w->bundle.summed;
-    w->batch.lists.ids[lane] = ids;
-    w->batch.lists.count[lane] = count;
-    w->batch.lists.stride[lane] = stride;
+    w->batch.lists->ids[lane] = ids;
+    w->batch.lists->count[lane] = count;
+    w->batch.lists->stride[lane] = stride;
     if (lane + 1 == w->passes->lanes)
         sphgi_batch_run(w);
     if (w->bundle.summed == SPHGI_WIDTH)

@@ -148,6 +148,7 @@ static void open_scheme(struct sphgi_worker *w)
 void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)
 {
     *w = (struct sphgi_worker){.sweep = sweep, .passes = sweep->passes};
+    w->batch.lists = &w->batch.own_lists;
     carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
     open_scheme(w);
     w->inverse_h = 1 / sweep->plan->scheme.radius;

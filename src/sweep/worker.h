@@ -19,11 +19,13 @@ struct sphgi_bundle {
 
 /* The targets of the bundle that are at work, and their pairs. */
 struct sphgi_batch {
-    int32_t first, width, targets; /* the first of them, how many, and how many have a target */
-    struct sphgi_lane_lists lists;
-    int32_t longest;  /* pairs of a list */
-    unsigned summing; /* SPHGI_SUM_..., of this round over the pairs */
-    int32_t tiles;    /* made ready since the lists were walked from their beginning */
+    int32_t first, width, targets;  /* the first of them, how many, and how many have a target */
+    struct sphgi_lane_lists *lists; /* of the lanes: own_lists, or somebody else's */
+    struct sphgi_lane_lists own_lists;
+    const uint32_t *const *coming; /* lists of the host that are read next; NULL: none */
+    int32_t longest;               /* pairs of a list */
+    unsigned summing;              /* SPHGI_SUM_..., of this round over the pairs */
+    int32_t tiles;                 /* made ready since the lists were walked from their beginning */
     int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
     int32_t spread_pairs;            /* of a tile that holds one list */
     bool drops;      /* summed in rounds, and some of its targets drop out afterwards */
@@ -61,7 +63,7 @@ struct sphgi_source_rows {
     const int32_t *items;      /* sources behind the rows; NULL: the rows are their numbers */
     char *positions, *numbers; /* copies */
     int32_t *own_items;        /* the sources behind them */
-    uint32_t *clean_ids;       /* ids that lead to them */
+    uint32_t *clean_ids;       /* SPHGI_CHUNK ids a lane, made of the host's numbers */
 };
 
 /* What the targets bring: A_i, V_i, rho_i. */
