@@ -149,11 +149,18 @@ static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cle
 
 /* ---- Lists of a tile ------------------------------------------------------------------------- */
 
-/* Two lines: what a list of usual length takes. */
-SPHGI_TEMPLATE void ask_for_list(const uint32_t *list)
+/* The lines of a list of usual length, or as many as the longest that comes takes: how many each
+ * takes nobody could foresee. */
+SPHGI_TEMPLATE void ask_ahead(const struct sphgi_slots *slots, int l)
 {
-    __builtin_prefetch(list);
-    __builtin_prefetch((const void *)((uintptr_t)list + SPHGI_ALIGNMENT));
+    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */ };
+    const uintptr_t first = (uintptr_t)slots->ahead_begin * sizeof(uint32_t);
+    const uintptr_t bytes = (uintptr_t)slots->ahead_count * sizeof(uint32_t);
+    const uintptr_t list = (uintptr_t)slots->ahead[l] + first;
+    for (uintptr_t line = 0; line < USUAL; ++line)
+        __builtin_prefetch((const void *)(list + line * LINE));
+    for (uintptr_t line = USUAL; line < (bytes + LINE / 2) / LINE; ++line)
+        __builtin_prefetch((const void *)(list + line * LINE));
 }
 
 /* The numbers of each lane, from `begin` on, become ids in a slot of its own, as many for all. */
@@ -169,8 +176,8 @@ static bool fill_slots(const struct sphgi_lane_lists *lists, int32_t begin,
             own.self = all_ids((uint32_t)slots->targets[l]);
         clean_list((const int32_t *)(const void *)(count ? lists->ids[l] + begin : slot), count,
                    steps, &own, slot);
-        if (slots->coming)
-            ask_for_list(slots->coming[l]);
+        if (slots->ahead)
+            ask_ahead(slots, l);
     }
     return is_any_beyond(&own);
 }

@@ -110,12 +110,15 @@ struct sphgi_cleaning {
     uint32_t mask, sources, self;
 };
 
-/* Where lists of the host's numbers become ids, a chunk of each. */
+/* Where lists of the host's numbers become ids, a chunk of each; and what is read next, so that the
+ * memory can be asked for it. */
 struct sphgi_slots {
     struct sphgi_cleaning how;
-    const int32_t *targets;        /* a list may name its own; NULL: they are no sources */
-    uint32_t *ids;                 /* SPHGI_CHUNK a lane */
-    const uint32_t *const *coming; /* lists that are read next, a lane each; NULL: none */
+    const int32_t *targets;       /* a list may name its own; NULL: they are no sources */
+    uint32_t *ids;                /* SPHGI_CHUNK a lane */
+    const uint32_t *const *ahead; /* lists, a lane each; NULL: nothing is asked for */
+    int32_t ahead_begin;          /* the first number of these that is read, */
+    int32_t ahead_count;          /* and how many are of the longest */
 };
 
 /* A smoothing kernel with everything multiplied into its two factors. */

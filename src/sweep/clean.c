@@ -38,13 +38,30 @@ void sphgi_clean_list(struct sphgi_worker *w, int32_t target, const uint32_t *li
         note_bad_index(w->tally, target, list, count, &how);
 }
 
+/* The next chunk of the same lists, or the first of those that come. */
+static void look_ahead(const struct sphgi_worker *w, const struct sphgi_lane_lists *lists,
+                       int32_t begin, struct sphgi_slots *slots)
+{
+    const int64_t more = (int64_t)w->batch.longest - begin - SPHGI_CHUNK;
+    if (w->tile.spread)
+        return;
+    if (more > 0) {
+        slots->ahead = lists->ids;
+        slots->ahead_begin = begin + SPHGI_CHUNK;
+        slots->ahead_count = more < SPHGI_CHUNK ? (int32_t)more : SPHGI_CHUNK;
+    } else if (w->batch.coming) {
+        slots->ahead = w->batch.coming->ids;
+        slots->ahead_count = sphgi_min32(w->batch.coming_longest, SPHGI_CHUNK);
+    }
+}
+
 void sphgi_clean_lists(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
     const int32_t *targets = sphgi_targets(w);
-    const struct sphgi_slots slots = {.how = cleaning_of(w),
-                                      .targets = w->sweep->set->neighbors->part_of ? targets : NULL,
-                                      .ids = w->rows.clean_ids,
-                                      .coming = w->batch.coming};
+    struct sphgi_slots slots = {.how = cleaning_of(w), .ids = w->rows.clean_ids};
+    if (w->sweep->set->neighbors->part_of)
+        slots.targets = targets;
+    look_ahead(w, lists, begin, &slots);
     if (!w->passes->interleave_hosts(lists, begin, &slots, &w->tile))
         return;
     for (int32_t l = 0; l < w->passes->lanes; ++l)

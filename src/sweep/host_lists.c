@@ -58,7 +58,7 @@ SPHGI_TEMPLATE bool next_list(const struct reading *reading, const sphg_lists *l
 
 /* Targets that are summed at once, and their lists. */
 struct lanes {
-    int32_t count, target[SPHGI_LANES_MOST];
+    int32_t count, longest, target[SPHGI_LANES_MOST];
     struct sphgi_lane_lists lists;
 };
 
@@ -77,20 +77,27 @@ static void fill(struct reading *reading, struct lanes *lanes)
     const sphg_lists lists = reading->task->sweep.set->neighbors->lists;
     const int32_t most = reading->worker.passes->lanes;
     struct host_list list;
-    int32_t at = reading->at;
+    int32_t at = reading->at, longest = 0;
     lanes->count = 0;
-    while (lanes->count < most && next_list(reading, &lists, &at, &list))
+    while (lanes->count < most && next_list(reading, &lists, &at, &list)) {
         put(lanes, &list, list.numbers);
+        longest = sphgi_max32(longest, list.count);
+    }
+    lanes->longest = longest;
     reading->at = at;
 }
 
 /* A function mostly hands out one array after another: that of as many targets further on will
  * stand as far behind this one as this one does behind that of as many targets before. */
-static void ask_for_later(const uint32_t *numbers, uintptr_t *before)
+static void ask_for_later(const struct host_list *list, uintptr_t *before)
 {
-    const uintptr_t here = (uintptr_t)numbers, later = here + (here - *before);
-    __builtin_prefetch((const void *)later);
-    __builtin_prefetch((const void *)(later + SPHGI_ALIGNMENT));
+    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */ };
+    const uintptr_t here = (uintptr_t)list->numbers, later = here + (here - *before);
+    const uintptr_t bytes = (uintptr_t)list->count * sizeof *list->numbers;
+    for (uintptr_t line = 0; line < USUAL; ++line)
+        __builtin_prefetch((const void *)(later + line * LINE));
+    for (uintptr_t line = USUAL; line < (bytes + LINE / 2) / LINE; ++line)
+        __builtin_prefetch((const void *)(later + line * LINE));
     *before = here;
 }
 
@@ -112,7 +119,7 @@ static void fill_by_function(struct reading *reading, struct lanes *lanes)
                 put(lanes, &list, list.numbers);
             break;
         }
-        ask_for_later(list.numbers, &reading->before[lanes->count]);
+        ask_for_later(&list, &reading->before[lanes->count]);
         if (list.count)
             memcpy(copy, list.numbers, (size_t)list.count * sizeof *copy);
         put(lanes, &list, copy);
@@ -133,7 +140,8 @@ static void run(struct sphgi_worker *w, struct lanes *lanes, const struct lanes 
         target[l] = place[l] = lanes->target[l];
     w->bundle.count += lanes->count;
     w->batch.lists = &lanes->lists;
-    w->batch.coming = coming ? coming->lists.ids : NULL;
+    w->batch.coming = coming && coming->count ? &coming->lists : NULL;
+    w->batch.coming_longest = coming ? coming->longest : 0;
     sphgi_ask_for_targets(w, lanes->count, lanes->target);
     sphgi_batch_run(w);
     if (w->bundle.summed == SPHGI_WIDTH)

@@ -22,10 +22,11 @@ struct sphgi_batch {
     int32_t first, width, targets;  /* the first of them, how many, and how many have a target */
     struct sphgi_lane_lists *lists; /* of the lanes: own_lists, or somebody else's */
     struct sphgi_lane_lists own_lists;
-    const uint32_t *const *coming; /* lists of the host that are read next; NULL: none */
-    int32_t longest;               /* pairs of a list */
-    unsigned summing;              /* SPHGI_SUM_..., of this round over the pairs */
-    int32_t tiles;                 /* made ready since the lists were walked from their beginning */
+    const struct sphgi_lane_lists *coming; /* of the host, and read next; NULL: none */
+    int32_t coming_longest;
+    int32_t longest;  /* pairs of a list */
+    unsigned summing; /* SPHGI_SUM_..., of this round over the pairs */
+    int32_t tiles;    /* made ready since the lists were walked from their beginning */
     int32_t pairs[SPHGI_LANES_MOST]; /* of the tile, lane by lane, padding left out */
     int32_t spread_pairs;            /* of a tile that holds one list */
     bool drops;      /* summed in rounds, and some of its targets drop out afterwards */
