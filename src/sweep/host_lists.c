@@ -91,9 +91,9 @@ static void fill(struct reading *reading, struct lanes *lanes)
  * stand as far behind this one as this one does behind that of as many targets before. */
 static void ask_for_later(const struct host_list *list, uintptr_t *before)
 {
-    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */ };
+    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */, MOST = 4 * SPHGI_CHUNK /* numbers */ };
     const uintptr_t here = (uintptr_t)list->numbers, later = here + (here - *before);
-    const uintptr_t bytes = (uintptr_t)list->count * sizeof *list->numbers;
+    const uintptr_t bytes = (uintptr_t)sphgi_min32(list->count, MOST) * sizeof *list->numbers;
     for (uintptr_t line = 0; line < USUAL; ++line)
         __builtin_prefetch((const void *)(later + line * LINE));
     for (uintptr_t line = USUAL; line < (bytes + LINE / 2) / LINE; ++line)
