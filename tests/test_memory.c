@@ -405,6 +405,55 @@ static void spreading_clouds_allocate_nothing(const test_case *test)
     }
 }
 
+/* Matrices and a gradient over the particles and the same ones moved: a second set that is beside
+ * all of them, or some, or none. */
+static void evaluate_beside(world *own, double distance)
+{
+    const int d = own->particles.dimension, n = own->particles.source_count;
+    sphg_geometry geometry = own->geometry;
+    double *x = test_memory((size_t)(n * d) * sizeof *x);
+    for (int k = 0; k < n * d; ++k)
+        x[k] = own->particles.sources[k] + distance * (k % d == 0);
+    const sphg_type type = own->particles.is_double ? SPHG_F64 : SPHG_F32;
+    const setup_array moved = setup_numbers(type, n, d, x);
+    sphg_neighbors *other = NULL;
+    geometry.targets = geometry.sources;
+    geometry.target_count = n;
+    geometry.sources = setup_view(&moved);
+    SETUP_OK(own->context, sphg_neighbors_create(own->context, &other));
+    SETUP_OK(own->context, sphg_neighbors_search(own->context, other, &own->scheme, &geometry));
+    fake_host_fail(own->host, 0, 0);
+    const sphg_sources sources[2] = {
+        {.neighbors = own->neighbors, .volume = setup_view(&own->volume)},
+        {.neighbors = other, .volume = setup_view(&own->volume)}};
+    const sphg_view field = setup_view(&own->field), at_sources[2] = {field, field};
+    const sphg_field asked = {
+        .shape = SPHG_SCALAR, .at_sources = at_sources, .gradient = items_of(&own->first, d)};
+    const sphg_request request = {.sources = sources,
+                                  .set_count = 2,
+                                  .fields = &asked,
+                                  .field_count = 1,
+                                  .rank = sphg_view_u8(own->second.data, 1)};
+    SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
+    sphg_neighbors_destroy(other);
+}
+
+static void sets_near_and_far_allocate_nothing(const test_case *test)
+{
+    static const double distance[2][4] = {{.01, 100, .75, 100}, {100, .75, .01, 100}};
+    for (int order = 0; order < 2; ++order) {
+        world *own = world_create(test);
+        own->scheme.method = test->method;
+        prepare(own, SEARCH);
+        SETUP_OK(own->context, perform(own, SEARCH));
+        for (int k = 0; k < 4; ++k) {
+            evaluate_beside(own, distance[order][k]);
+            TEST_REQUIRE(k == 0 || own->host->allocations == 0, "%d times as far: %lld allocations",
+                         k, (long long)own->host->allocations);
+        }
+    }
+}
+
 /* What an object says it holds is what goes back to the host with it. */
 static void neighbors_know_what_they_hold(const test_case *test)
 {
@@ -454,6 +503,8 @@ static const test_entry entries[] = {
     EACH(failed_build_must_be_repeated),
     EACH(spreading_clouds_allocate_nothing),
     EACH(neighbors_know_what_they_hold),
+    TEST_ENTRY(sets_near_and_far_allocate_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
     EACH(contexts_hold_what_they_say),
     TEST_ENTRY(warm_calls_allocate_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),

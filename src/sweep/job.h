@@ -26,7 +26,6 @@ struct sphgi_put_away {
 struct sphgi_turn {
     const uint8_t *waits; /* a byte a target; NULL: everybody's turn */
     uint8_t whose;        /* of the bytes */
-    int32_t waiting;
 };
 
 /* Where the sums of some steps stand among those of the plan. */

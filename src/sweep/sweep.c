@@ -192,16 +192,14 @@ static bool see_who_waits(struct sphgi_sweep *sweep)
     if (!sphgi_reserve(&context->allocator, &context->waits, targets + 1, 1))
         return false;
     uint8_t *waits = context->waits.data;
-    sweep->turn = (struct sphgi_turn){.waits = waits};
-    for (size_t i = 0; i < targets; ++i) {
-        waits[i] = sweep->put_away.marks[i];
-        sweep->turn.waiting += waits[i];
-    }
+    memcpy(waits, sweep->put_away.marks, targets);
+    sweep->turn = (struct sphgi_turn){.waits = waits, .whose = 0};
     return true;
 }
 
 /* Targets far from all other sets are done by a single sweep, in rounds. Weights are not negative:
- * whoever has no moments in a set has nothing there. */
+ * whoever has no moments in a set has nothing there. Every sweep runs, also where nobody has a
+ * turn: what memory they need depends on counts alone. */
 static sphg_result sweep_classic_sets(struct sphgi_task *task, struct sphgi_selection *selection,
                                       unsigned steps, struct sphgi_tally *tally)
 {
@@ -212,11 +210,11 @@ static sphg_result sweep_classic_sets(struct sphgi_task *task, struct sphgi_sele
     sphg_result result = sweep_others(task, selection, SPHGI_SUM_MOMENTS, tally);
     if (!result && !see_who_waits(sweep))
         result = SPHG_ERROR_MEMORY;
-    if (!result && sweep->turn.waiting < sweep->plan->target_count)
+    if (!result)
         result = sweep_last(task, selection, steps, tally);
     sweep->turn.whose = 1;
     sweep->coefficients = &table;
-    if (!result && sweep->turn.waiting)
+    if (!result)
         result = sweep_by_steps(task, selection, steps, true, tally);
     sweep->coefficients = NULL;
     sweep->turn.waits = NULL;
