@@ -318,8 +318,10 @@ sphg_result sphg_invert_moments(sphg_context *context, const sphg_scheme *scheme
     if (!result)
         result = begin_batch(checker, &moments, "moments", count, &batch);
     batch.dimension = checked.dimension;
-    batch.threshold =
-        (struct sphgi_threshold){checked.policy, checked.threshold, checked.dimension, 1};
+    batch.threshold = (struct sphgi_threshold){.policy = checked.policy,
+                                               .eps = checked.threshold,
+                                               .dimension = checked.dimension,
+                                               .unit = 1};
     if (!result)
         result = check_inversion(checker, &checked, &moments, &volume, wanted, &batch);
     if (!result)

@@ -247,7 +247,8 @@ SPHGI_TEMPLATE real highest_touched(const struct sphgi_threshold *threshold)
 SPHGI_TEMPLATE vec scaled_moment(const struct sphgi_threshold *threshold, const real *moment,
                                  const real *scale, int32_t l)
 {
-    vec m = splat(R(threshold->unit)) * load(moment + l);
+    const real *each = threshold->unit_lanes;
+    vec m = (each ? load(each + l) : splat(R(threshold->unit))) * load(moment + l);
     if (scale)
         m *= load(scale + l);
     return m;

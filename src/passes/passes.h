@@ -138,7 +138,16 @@ struct sphgi_threshold {
     sphg_policy policy;
     double eps;
     int32_t dimension;
-    double unit; /* of the linearised moments: 1 / H */
+    double unit;            /* of the linearised moments: 1 / H */
+    const void *unit_lanes; /* instead, a number per target, or NULL */
+};
+
+/* What the units of targets with radii of their own are made of. */
+struct sphgi_lane_units {
+    double largest;     /* H of the plan, in whose units volumes stand */
+    double factor_of_h; /* w_scale times H */
+    int32_t dimension;
+    bool with_volume; /* s_ij holds V_j */
 };
 
 /* The second block of order 2 (theory.md, section 9). */
@@ -298,6 +307,10 @@ struct sphgi_passes {
     bool (*interleave_hosts)(const struct sphgi_lane_lists *lists, int32_t begin,
                              const struct sphgi_slots *slots, struct sphgi_tile *tile);
 
+    /* H^d of the plan over that of each target, 1 / H, 1 / H^2, and the factor of s_ij. */
+    void (*lane_units)(int32_t width, const struct sphgi_lane_units *units, const double *radius,
+                       void *ratio, void *inverse, void *inverse_square, void *factor);
+
     /* Arrays from `first` on, times a number per lane. */
     void (*scale_pairs)(const struct sphgi_tile *tile, enum sphgi_array first, int32_t count,
                         const void *each);
@@ -422,9 +435,9 @@ struct sphgi_passes {
     void (*eigen)(int32_t width, int32_t dimension, const void *matrices, void *values,
                   void *vectors);
 
-    /* Results. */
+    /* Results. each: a factor per target, or NULL. */
     void (*apply)(int32_t width, int32_t dimension, int32_t count, const void *correction,
-                  const void *sums, double scale, void *jacobian);
+                  const void *sums, double scale, const void *each, void *jacobian);
     /* Gradients, times scale; Hessians and their traces, times its square, unless hessian is NULL:
      * [component][pair][target]. */
     void (*apply_quadratic)(int32_t width, int32_t dimension, int32_t count,

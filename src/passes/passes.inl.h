@@ -46,6 +46,7 @@
 #include "values.inl.h"
 #include "eigen.inl.h"
 #include "invert.inl.h"
+#include "lane_units.inl.h"
 #include "results.inl.h"
 #include "quadratic.inl.h"
 #include "borrowed.inl.h"
@@ -82,6 +83,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .interleave = interleave,
     .clean_ids = clean_ids,
     .interleave_hosts = interleave_hosts,
+    .lane_units = lane_units,
     .scale_pairs = scale_pairs,
     .shape_factors = shape_factors,
     .shape_other = shape_other,

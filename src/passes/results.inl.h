@@ -2,7 +2,7 @@
 /* From sums and corrections to results. jacobian: [component][axis][target]. Loops over the vectors
  * of a group stand outermost: one vector's numbers fit the registers. */
 
-/* J[a][b] = scale sum_c C[b][c] sums[a][c]; correction NULL: the sums are gradients already. */
+/* J[a][b] = factor sum_c C[b][c] sums[a][c]; correction NULL: the sums are gradients already. */
 SPHGI_TEMPLATE void apply_as(int32_t count, const real *correction, const real *sums, vec factor,
                              real *j, int32_t d)
 {
@@ -26,10 +26,12 @@ SPHGI_TEMPLATE void apply_as(int32_t count, const real *correction, const real *
 }
 
 static void apply(int32_t width, int32_t dimension, int32_t count, const void *correction,
-                  const void *sums, double scale, void *jacobian)
+                  const void *sums, double scale, const void *each, void *jacobian)
 {
-    const vec factor = splat(R(scale));
     for (int32_t l = 0; l < width; l += LANES) {
+        vec factor = splat(R(scale));
+        if (each)
+            factor *= load((const real *)each + l);
         const real *c = correction ? (const real *)correction + l : NULL;
         if (dimension == 3)
             apply_as(count, c, (const real *)sums + l, factor, (real *)jacobian + l, 3);

@@ -135,12 +135,15 @@ static inline const char *sphgi_target_row(const sphg_neighbors *neighbors, int3
 }
 
 /* The radius in a row. */
+static inline double sphgi_radius_in(const void *rows, sphg_type type, int32_t number)
+{
+    const size_t at = SPHGI_ROW * (size_t)number + SPHGI_ROW - 1;
+    return type == SPHG_F64 ? ((const double *)rows)[at] : (double)((const float *)rows)[at];
+}
 static inline double sphgi_row_radius(const sphg_neighbors *neighbors, const void *rows,
                                       int32_t number)
 {
-    const size_t at = SPHGI_ROW * (size_t)number + SPHGI_ROW - 1;
-    return neighbors->position_type == SPHG_F64 ? ((const double *)rows)[at]
-                                                : (double)((const float *)rows)[at];
+    return sphgi_radius_in(rows, neighbors->position_type, number);
 }
 
 /* Of the host's lists: the target's, and how long it says it is. */

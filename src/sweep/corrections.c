@@ -19,12 +19,8 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
         scale = w->extra;
     }
     const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
-    if (plan->graded) {
-        const int32_t numbers = plan->dimension * (plan->dimension + 1) / 2;
-        w->passes->scale(w->batch.width, numbers, moments, 1, sphgi_lane(w, w->radii.inverse, 0),
-                         sphgi_lane(w, w->raw, 0));
-        moments = sphgi_lane(w, w->raw, 0);
-    }
+    if (plan->graded)
+        w->threshold.unit_lanes = sphgi_lane(w, w->radii.inverse, 0);
     void *correction = sphgi_lane(w, w->coefficients, 0);
     void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;
     if (plan->quadratic)

@@ -24,8 +24,7 @@ static void finish_one_sided(struct sphgi_worker *w, const struct sphgi_field_pl
         return;
     w->passes->apply(w->batch.width, plan->dimension, field->components,
                      multiply ? w->coefficients : NULL, sphgi_lane(w, w->reduced, field->sum),
-                     sphgi_common(w, w->inverse_h), w->jacobian);
-    sphgi_scale_by_radius(w, field->components * plan->dimension, w->jacobian);
+                     sphgi_common(w, w->inverse_h), sphgi_inverse_lanes(w), w->jacobian);
     if (field->form == SPHG_DIRECT && plan->classic && plan->own_set >= 0)
         add_self_gradient(w, field);
 }
@@ -49,7 +48,8 @@ static void finish_plain(struct sphgi_worker *w, const struct sphgi_field_plan *
                          w->contracted);
 }
 
-/* C_i sum a_j s_ij x_ij; classic: the sum is made of gradients already. */
+/* C_i sum a_j s_ij x_ij; classic: the sum is made of gradients already. Where targets have radii of
+ * their own it is taken to units of the plan's H, in which the other side of pairs stands. */
 static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
@@ -59,8 +59,8 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
         return;
     }
     w->passes->apply(w->batch.width, plan->dimension, 1, multiply ? w->coefficients : NULL,
-                     sphgi_lane(w, w->reduced, sum), 1, to);
-    sphgi_take_side_by_radius(w, to);
+                     sphgi_lane(w, w->reduced, sum), plan->graded ? plan->scheme.radius : 1,
+                     sphgi_inverse_lanes(w), to);
 }
 
 /* What the terms of both sides are multiplied with; NULL: 1. */

@@ -82,7 +82,7 @@ static const double *product(struct folding *f)
         p->scale(f->width, numbers, f->correction, 1, f->a, f->b);
     else
         p->apply(f->width, d, f->field->shape == SPHG_VECTOR ? 1 : d, f->correction,
-                 f->field->shape == SPHG_SYM_TENSOR ? f->whole : f->a, 1, f->b);
+                 f->field->shape == SPHG_SYM_TENSOR ? f->whole : f->a, 1, NULL, f->b);
     return f->b;
 }
 

@@ -13,36 +13,17 @@ static void put(const struct sphgi_worker *w, char *base, int32_t number, int32_
 
 /* ---- Units ---------------------------------------------------------------------------------- */
 
-static void put_all(const struct sphgi_worker *w, char *base, const double *x)
-{
-    char *at = sphgi_lane(w, base, 0);
-    if (w->sweep->plan->type == SPHG_F64)
-        for (int32_t l = 0; l < w->batch.width; ++l)
-            ((double *)(void *)at)[l] = x[l];
-    else
-        for (int32_t l = 0; l < w->batch.width; ++l)
-            ((float *)(void *)at)[l] = (float)x[l];
-}
-
-/* Volumes stand in units of the largest radius. The factor of s_ij takes them to units of the
- * target's, at the same place whether s_ij is formed at once or later. */
 static void put_units(struct sphgi_worker *w, const double *radius)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const bool with_volume = plan->scheme.method != SPHG_MLS, three = plan->dimension == 3;
-    const double largest = plan->scheme.radius, factor_of_h = w->factor_of_h;
-    double ratio[SPHGI_WIDTH], inverse[SPHGI_WIDTH], square[SPHGI_WIDTH], factor[SPHGI_WIDTH];
-    for (int32_t l = 0; l < w->batch.width; ++l) {
-        const double one = largest / radius[l], two = one * one;
-        ratio[l] = three ? two * one : two;
-        inverse[l] = 1 / radius[l];
-        square[l] = inverse[l] * inverse[l];
-        factor[l] = factor_of_h / radius[l] * (with_volume ? ratio[l] : 1);
-    }
-    put_all(w, w->radii.ratio, ratio);
-    put_all(w, w->radii.inverse, inverse);
-    put_all(w, w->radii.inverse_square, square);
-    put_all(w, w->radii.factor, factor);
+    const struct sphgi_lane_units units = {.largest = plan->scheme.radius,
+                                           .factor_of_h = w->factor_of_h,
+                                           .dimension = plan->dimension,
+                                           .with_volume = plan->scheme.method != SPHG_MLS};
+    w->passes->lane_units(w->batch.width, &units, radius, sphgi_lane(w, w->radii.ratio, 0),
+                          sphgi_lane(w, w->radii.inverse, 0),
+                          sphgi_lane(w, w->radii.inverse_square, 0),
+                          sphgi_lane(w, w->radii.factor, 0));
 }
 
 /* A table's units, as sphgi_shares_of has them, lane by lane: mantissa and two powers of each. */
@@ -57,15 +38,22 @@ static void put_shares(struct sphgi_worker *w, int32_t lane, double radius)
     }
 }
 
+static void radii_at(const sphg_neighbors *n, const int32_t *places, int32_t count, double *radius)
+{
+    const sphg_type type = n->position_type;
+    const char *rows = sphgi_target_row(n, 0);
+    for (int32_t l = 0; l < count; ++l)
+        radius[l] = sphgi_radius_in(rows, type, places[l]);
+}
+
 static void read_radii(struct sphgi_worker *w, const int32_t *places)
 {
-    const sphg_neighbors *n = w->sweep->set->neighbors;
-    const char *rows = sphgi_target_row(n, 0);
+    const int32_t width = w->batch.width;
+    const bool units = sphgi_has_units(&w->sweep->plan->scheme);
     double radius[SPHGI_WIDTH];
-    for (int32_t l = 0; l < w->batch.width; ++l)
-        radius[l] = sphgi_row_radius(n, rows, places[l]);
+    radii_at(w->sweep->set->neighbors, places, width, radius);
     put_units(w, radius);
-    for (int32_t l = 0; sphgi_has_units(&w->sweep->plan->scheme) && l < w->batch.width; ++l)
+    for (int32_t l = 0; units && l < width; ++l)
         put_shares(w, l, radius[l]);
     if (!w->sweep->plan->classic) {
         w->shape.inverse_lanes = sphgi_lane(w, w->radii.inverse, 0);
@@ -122,21 +110,6 @@ void sphgi_scale_values(struct sphgi_worker *w)
         w->passes->scale_pairs(&w->tile, SPHGI_PHI, 1, sphgi_lane(w, w->radii.ratio, 0));
 }
 
-void sphgi_scale_by_radius(struct sphgi_worker *w, int32_t count, char *numbers)
-{
-    if (w->sweep->plan->graded)
-        w->passes->scale(w->batch.width, count, numbers, 1, sphgi_lane(w, w->radii.inverse, 0),
-                         numbers);
-}
-
-void sphgi_take_side_by_radius(struct sphgi_worker *w, char *vectors)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    if (plan->graded)
-        w->passes->scale(w->batch.width, plan->dimension, vectors, plan->scheme.radius,
-                         sphgi_lane(w, w->radii.inverse, 0), vectors);
-}
-
 void sphgi_weigh_other_side(struct sphgi_worker *w)
 {
     struct sphgi_shape shape = w->shape;
@@ -165,8 +138,9 @@ void sphgi_round_by_radius(struct sphgi_worker *w, bool wanted)
         const struct sphgi_share *share = &w->share[k];
         char *ours = sphgi_lane(w, w->coefficients, share->first);
         char *raw = sphgi_lane(w, w->raw, share->first);
-        w->passes->scale(w->batch.width, share->count, ours, 1, units ? unit_of(w, k, 0) : NULL,
-                         raw);
+        if (units || wanted)
+            w->passes->scale(w->batch.width, share->count, ours, 1, units ? unit_of(w, k, 0) : NULL,
+                             raw);
         if (units)
             divide(w, share, k);
         for (int32_t p = 1; units && wanted && p < 3; ++p)

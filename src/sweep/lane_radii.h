@@ -14,17 +14,17 @@ void sphgi_keep_lane_radii(struct sphgi_worker *worker, uint32_t kept);
 void sphgi_scale_volumes(struct sphgi_worker *worker);
 void sphgi_scale_values(struct sphgi_worker *worker);
 
-/* count numbers of each target, times 1 / H_i (or 1 / H_i^2), in the place of what they were times
- * 1 / H: nothing happens where all radii are the same. */
-void sphgi_scale_by_radius(struct sphgi_worker *worker, int32_t count, char *numbers);
+/* 1 / H of the targets at work; NULL where all radii are the same. */
+static inline const char *sphgi_inverse_lanes(const struct sphgi_worker *worker)
+{
+    return worker->sweep->plan->graded ? sphgi_lane(worker, worker->radii.inverse, 0) : NULL;
+}
 /* What a scalar factor of 1 / H becomes: 1 where the lanes have their own. */
 static inline double sphgi_common(const struct sphgi_worker *worker, double factor)
 {
     return worker->sweep->plan->graded ? 1 : factor;
 }
 
-/* The other side of pairs stands in units of the plan's H: so does ours, if it comes in. */
-void sphgi_take_side_by_radius(struct sphgi_worker *worker, char *vectors);
 /* s_ij of the tile become those with H_j. */
 void sphgi_weigh_other_side(struct sphgi_worker *worker);
 

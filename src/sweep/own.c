@@ -127,7 +127,8 @@ void sphgi_self_gradient(struct sphgi_worker *w, char *gradient)
 {
     const int32_t d = w->sweep->plan->dimension;
     sphgi_self_weight(w, w->self);
-    sphgi_scale_by_radius(w, 1, w->self);
+    if (w->sweep->plan->graded)
+        w->passes->scale(w->batch.width, 1, w->self, 1, sphgi_inverse_lanes(w), w->self);
     for (int32_t k = 0; k < d; ++k)
         w->passes->scale(w->batch.width, 1, sphgi_lane(w, w->coefficients, (k + 1) * (d + 1)),
                          sphgi_common(w, w->inverse_h), w->self, sphgi_lane(w, gradient, k));

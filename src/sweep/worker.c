@@ -139,8 +139,10 @@ static void open_scheme(struct sphgi_worker *w)
         .value_scale = sigma};
     w->factor_of_h = by_value ? sigma / mu2 : sigma;
     w->gather.target_rows = sphgi_target_row(n, 0);
-    w->threshold = (struct sphgi_threshold){scheme->policy, scheme->threshold, d,
-                                            plan->quadratic || plan->graded ? 1 : 1 / h};
+    w->threshold = (struct sphgi_threshold){.policy = scheme->policy,
+                                            .eps = scheme->threshold,
+                                            .dimension = d,
+                                            .unit = plan->quadratic ? 1 : 1 / h};
     if (plan->quadratic)
         w->second = sphgi_second_of(scheme);
 }
