@@ -5,6 +5,7 @@
 typedef double radius_vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
 typedef double radius_anywhere
     __attribute__((vector_size(VECTOR_BYTES), aligned(__alignof__(double)), may_alias));
+typedef int64_t radius_bits __attribute__((vector_size(VECTOR_BYTES), may_alias));
 enum { RADII = VECTOR_BYTES / sizeof(double) };
 typedef real radius_rounded
     __attribute__((vector_size(RADII * sizeof(real)), aligned(__alignof__(real)), may_alias));
@@ -33,5 +34,34 @@ static void lane_units(int32_t width, const struct sphgi_lane_units *units, cons
         put_rounded(&reciprocal, inverse, l);
         put_rounded(&square, inverse_square, l);
         put_rounded(&weight, factor, l);
+    }
+}
+
+enum { MANTISSA_BITS = 52, BIAS = 1023 };
+
+SPHGI_TEMPLATE void put_power(const radius_bits *exponent, void *to, int32_t l)
+{
+    const radius_bits bits = (*exponent + BIAS) << MANTISSA_BITS;
+    const radius_vec power = (radius_vec)bits;
+    put_rounded(&power, to, l);
+}
+
+/* frexp() and ldexp() of normal numbers. The exponent is halved towards 0. */
+static void lane_shares(int32_t width, const double *factor, void *mantissa, void *first,
+                        void *second)
+{
+    const int64_t field = (int64_t)0x7ff << MANTISSA_BITS, one = (int64_t)1 << MANTISSA_BITS;
+    for (int32_t l = 0; l < width; l += RADII) {
+        const radius_bits bits = (radius_bits) * (const radius_anywhere *)(factor + l);
+        radius_bits exponent = ((bits & field) >> MANTISSA_BITS) - (BIAS - 1);
+        radius_bits low = (bits & ~field) | (BIAS - 1) * one;
+        const radius_bits half = (radius_bits)((radius_vec)low == 0.5);
+        low += half & one; /* a power of two: nothing is rounded */
+        exponent += half;
+        const radius_bits part = (exponent - (exponent >> 63)) >> 1, rest = exponent - part;
+        const radius_vec rounded = (radius_vec)low;
+        put_rounded(&rounded, mantissa, l);
+        put_power(&part, first, l);
+        put_power(&rest, second, l);
     }
 }

@@ -84,6 +84,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .clean_ids = clean_ids,
     .interleave_hosts = interleave_hosts,
     .lane_units = lane_units,
+    .lane_shares = lane_shares,
     .scale_pairs = scale_pairs,
     .shape_factors = shape_factors,
     .shape_other = shape_other,

@@ -10,22 +10,38 @@ bool sphgi_has_units(const struct sphgi_scheme *scheme)
     return scheme->method != SPHG_KGC && scheme->method != SPHG_PLAIN;
 }
 
+/* A loop for each method, which compilers turn into vectors: divisions are what it costs. */
+static void put_values(const struct sphgi_scheme *scheme, int32_t count,
+                       const double *restrict radius, double *restrict value)
+{
+    const double mu2 = sphgi_kernel_mu2(scheme->kernel, scheme->dimension);
+    const bool mls = scheme->method == SPHG_MLS, rkpm = scheme->method == SPHG_RKPM;
+    const bool three = scheme->dimension == 3;
+    for (int32_t k = 0; k < count; ++k)
+        value[k] = three ? radius[k] * radius[k] * radius[k] : radius[k] * radius[k];
+    for (int32_t k = 0; mls && k < count; ++k)
+        value[k] = value[k] / (radius[k] * radius[k]) / mu2;
+    for (int32_t k = 0; rkpm && k < count; ++k)
+        value[k] = 1 / (mu2 * radius[k] * radius[k]);
+    for (int32_t k = 0; !mls && !rkpm && scheme->method != SPHG_CMLS && k < count; ++k)
+        value[k] = 1;
+}
+
+void sphgi_table_scales_at(const struct sphgi_scheme *scheme, int32_t count,
+                           const double *restrict radius, double *restrict value,
+                           double *restrict slope)
+{
+    const bool classic = sphgi_is_classic(scheme->method);
+    put_values(scheme, count, radius, value);
+    for (int32_t k = 0; k < count; ++k)
+        slope[k] = classic ? value[k] / radius[k] : 0;
+}
+
 struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
 {
-    const double h = scheme->radius, mu2 = sphgi_kernel_mu2(scheme->kernel, scheme->dimension);
-    const double volume = sphgi_power(h, scheme->dimension);
-    switch (scheme->method) {
-    case SPHG_MLS:
-        return (struct sphgi_scales){volume / (h * h) / mu2, 0};
-    case SPHG_RKPM:
-        return (struct sphgi_scales){1 / (mu2 * h * h), 0};
-    case SPHG_CMLS:
-        return (struct sphgi_scales){volume, volume / h};
-    case SPHG_CRKPM:
-        return (struct sphgi_scales){1, 1 / h};
-    default:
-        return (struct sphgi_scales){1, 0};
-    }
+    struct sphgi_scales scales;
+    sphgi_table_scales_at(scheme, 1, &scheme->radius, &scales.value, &scales.slope);
+    return scales;
 }
 
 static struct sphgi_share share_of(double factor, int32_t first, int32_t count)
@@ -44,18 +60,10 @@ static struct sphgi_share share_of(double factor, int32_t first, int32_t count)
 
 void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES])
 {
-    sphgi_shares_at(plan, plan->scheme.radius, shares);
-}
-
-void sphgi_shares_at(const struct sphgi_plan *plan, double radius,
-                     struct sphgi_share shares[SPHGI_SHARES])
-{
-    struct sphgi_scheme scheme = plan->scheme;
-    scheme.radius = radius;
-    const struct sphgi_scales scales = sphgi_table_scales(&scheme);
+    const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
     const int32_t width = sphgi_plan_width(plan), d = plan->dimension, pairs = d * (d + 1) / 2;
     const int32_t values = plan->classic ? d + 1 : plan->quadratic ? pairs : width;
-    const double h = radius;
+    const double h = plan->scheme.radius;
     shares[0] = share_of(scales.value, 0, values);
     shares[1] = shares[2] = (struct sphgi_share){.count = 0};
     if (plan->classic)

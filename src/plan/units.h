@@ -7,6 +7,9 @@
 /* Factors between the host's table and coefficients in units of H: value for y, slope for z_k;
  * linearised methods have one factor for all. host = factor * ours. */
 struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme);
+/* The same for targets of these radii. */
+void sphgi_table_scales_at(const struct sphgi_scheme *scheme, int32_t count, const double *radius,
+                           double *value, double *slope);
 
 /* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
  * exact, also where the factor itself is so large or small that no table could hold the result. */
@@ -19,9 +22,6 @@ enum { SPHGI_SHARES = 3 };
 
 /* [0] of y, or of all numbers of a linearised method, [1] of z_k. Order 2: of its three blocks. */
 void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES]);
-/* The same for a target of that radius. */
-void sphgi_shares_at(const struct sphgi_plan *plan, double radius,
-                     struct sphgi_share shares[SPHGI_SHARES]);
 /* Tables are in units of H; else the factor is 1. */
 bool sphgi_has_units(const struct sphgi_scheme *scheme);
 

@@ -2,16 +2,13 @@
 #include "lane_radii.h"
 #include "core/kernel.h"
 
-static void put(const struct sphgi_worker *w, char *base, int32_t number, int32_t lane, double x)
-{
-    char *at = sphgi_lane(w, base, number);
-    if (w->sweep->plan->type == SPHG_F64)
-        ((double *)(void *)at)[lane] = x;
-    else
-        ((float *)(void *)at)[lane] = (float)x;
-}
-
 /* ---- Units ---------------------------------------------------------------------------------- */
+
+/* [0] the mantissas of a share, [1] and [2] its powers. */
+static char *share_lanes(const struct sphgi_worker *w, int32_t share, int32_t which)
+{
+    return sphgi_lane(w, w->radii.shares, 3 * share + which);
+}
 
 static void put_units(struct sphgi_worker *w, const double *radius)
 {
@@ -27,15 +24,13 @@ static void put_units(struct sphgi_worker *w, const double *radius)
 }
 
 /* A table's units, as sphgi_shares_of has them, lane by lane: mantissa and two powers of each. */
-static void put_shares(struct sphgi_worker *w, int32_t lane, double radius)
+static void put_shares(struct sphgi_worker *w, const double *radius)
 {
-    struct sphgi_share share[SPHGI_SHARES];
-    sphgi_shares_at(w->sweep->plan, radius, share);
-    for (int32_t k = 0; k < SPHGI_SHARES && share[k].count; ++k) {
-        put(w, w->radii.shares, 3 * k, lane, share[k].mantissa);
-        put(w, w->radii.shares, 3 * k + 1, lane, share[k].power[0]);
-        put(w, w->radii.shares, 3 * k + 2, lane, share[k].power[1]);
-    }
+    double factor[2][SPHGI_WIDTH];
+    sphgi_table_scales_at(&w->sweep->plan->scheme, w->batch.width, radius, factor[0], factor[1]);
+    for (int32_t k = 0; k < 2 && w->share[k].count; ++k)
+        w->passes->lane_shares(w->batch.width, factor[k], share_lanes(w, k, 0),
+                               share_lanes(w, k, 1), share_lanes(w, k, 2));
 }
 
 static void radii_at(const sphg_neighbors *n, const int32_t *places, int32_t count, double *radius)
@@ -53,8 +48,8 @@ static void read_radii(struct sphgi_worker *w, const int32_t *places)
     double radius[SPHGI_WIDTH];
     radii_at(w->sweep->set->neighbors, places, width, radius);
     put_units(w, radius);
-    for (int32_t l = 0; units && l < width; ++l)
-        put_shares(w, l, radius[l]);
+    if (units)
+        put_shares(w, radius);
     if (!w->sweep->plan->classic) {
         w->shape.inverse_lanes = sphgi_lane(w, w->radii.inverse, 0);
         w->shape.factor_lanes = sphgi_lane(w, w->radii.factor, 0);
@@ -119,15 +114,10 @@ void sphgi_weigh_other_side(struct sphgi_worker *w)
 
 /* ---- Tables --------------------------------------------------------------------------------- */
 
-static const char *unit_of(const struct sphgi_worker *w, int32_t share, int32_t which)
-{
-    return sphgi_lane(w, w->radii.shares, 3 * share + which);
-}
-
 static void divide(struct sphgi_worker *w, const struct sphgi_share *share, int32_t k)
 {
     for (int32_t c = share->first; c < share->first + share->count; ++c)
-        w->passes->quotient(w->batch.width, sphgi_lane(w, w->raw, c), unit_of(w, k, 0),
+        w->passes->quotient(w->batch.width, sphgi_lane(w, w->raw, c), share_lanes(w, k, 0),
                             sphgi_lane(w, w->coefficients, c));
 }
 
@@ -139,12 +129,12 @@ void sphgi_round_by_radius(struct sphgi_worker *w, bool wanted)
         char *ours = sphgi_lane(w, w->coefficients, share->first);
         char *raw = sphgi_lane(w, w->raw, share->first);
         if (units || wanted)
-            w->passes->scale(w->batch.width, share->count, ours, 1, units ? unit_of(w, k, 0) : NULL,
-                             raw);
+            w->passes->scale(w->batch.width, share->count, ours, 1,
+                             units ? share_lanes(w, k, 0) : NULL, raw);
         if (units)
             divide(w, share, k);
         for (int32_t p = 1; units && wanted && p < 3; ++p)
-            w->passes->scale(w->batch.width, share->count, raw, 1, unit_of(w, k, p), raw);
+            w->passes->scale(w->batch.width, share->count, raw, 1, share_lanes(w, k, p), raw);
     }
 }
 
@@ -155,7 +145,7 @@ void sphgi_take_by_radius(struct sphgi_worker *w)
         const struct sphgi_share *share = &w->share[k];
         char *raw = sphgi_lane(w, w->raw, share->first);
         for (int32_t p = 1; units && p < 3; ++p) {
-            w->passes->quotient(w->batch.width, NULL, unit_of(w, k, p), w->extra);
+            w->passes->quotient(w->batch.width, NULL, share_lanes(w, k, p), w->extra);
             w->passes->scale(w->batch.width, share->count, raw, 1, w->extra, raw);
         }
         if (units)
