@@ -381,6 +381,68 @@ static void masks_give_the_same_bits(const test_case *test)
     }
 }
 
+enum { MIXED = 5 };
+
+/* What a solver may ask for in one call: each on its own, and all of them together. */
+static void require_alone_as_together(const comparison *on, const sphg_sources *sources,
+                                      const char *where)
+{
+    static const comparison_field kinds[MIXED] = {{SPHG_VECTOR, SPHG_DIFFERENCE, NULL},
+                                                  {SPHG_SYM_TENSOR, SPHG_ADJOINT, NULL},
+                                                  {SPHG_VECTOR, SPHG_ADJOINT, NULL},
+                                                  {SPHG_SCALAR, SPHG_SYMMETRIC, NULL},
+                                                  {SPHG_SCALAR, SPHG_ADJOINT, NULL}};
+    comparison_result alone[MIXED], together[MIXED];
+    sphg_field asked[MIXED] = {{0}};
+    setup_array numbers[MIXED];
+    sphg_view views[MIXED];
+    sphg_request request = {.sources = sources, .set_count = 1, .field_count = 1};
+    for (int k = 0; k < MIXED; ++k) {
+        comparison_field field = kinds[k];
+        field.numbers = comparison_random_field(on, field.shape, 20);
+        alone[k] = comparison_outputs(on, &field, on->points.count);
+        together[k] = comparison_outputs(on, &field, on->points.count);
+        numbers[k] = setup_numbers(test_field_type(on->test), on->points.count,
+                                   setup_width(field.shape, on->points.dimension), field.numbers);
+        views[k] = setup_view(&numbers[k]);
+        asked[k].shape = field.shape;
+        asked[k].form = field.form;
+        asked[k].at_sources = &views[k];
+        comparison_ask_for(&alone[k], &asked[k]);
+        request.fields = &asked[k];
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        comparison_ask_for(&together[k], &asked[k]);
+    }
+    request.fields = asked;
+    request.field_count = MIXED;
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    for (int k = 0; k < MIXED; ++k)
+        TEST_REQUIRE(comparison_results_have_same_bits(&alone[k], &together[k]), "field %d, %s", k,
+                     where);
+}
+
+/* Pairs may be weighed with both radii at once, or one after the other, with a guard or without. */
+static void forces_alone_have_the_bits_of_those_among_others(const test_case *test)
+{
+    comparison on = graded_stage(test, 1);
+    const setup_array table = comparison_table(&on), x = setup_positions(test, &on.points);
+    const setup_array h =
+        setup_numbers(test_position_type(test), on.points.count, 1, on.scene.support);
+    sphg_geometry geometry = setup_geometry(test, &on.points, &x);
+    geometry.source_support = setup_view(&h);
+    geometry.mutual = 1;
+    sphg_sources sources = comparison_sources(&on);
+    if (test->method != SPHG_PLAIN)
+        sources.correction = comparison_table_view(&on, &table);
+    require_alone_as_together(&on, &sources, "open");
+    for (int a = 0; a < test->dimension; ++a)
+        geometry.period[a] = 64;
+    sources.neighbors = setup_search(on.context, &on.scheme, &geometry);
+    require_alone_as_together(&on, &sources, "in a box");
+    sources.volume.stride = 0;
+    require_alone_as_together(&on, &sources, "in a box, one volume");
+}
+
 /* What is farther than H_i does not count, whatever it is. */
 static void nothing_comes_from_beyond_the_targets_radius(const test_case *test)
 {
@@ -626,6 +688,38 @@ static void what_has_one_radius_says_so(const test_case *test)
                     "one radius for all");
 }
 
+/* Of ghosts, whose volumes a force alone reads as sources'. */
+static void bad_volumes_of_forces_are_refused(const test_case *test)
+{
+    static const double bad[] = {-1, NAN, INFINITY};
+    comparison on = graded_stage(test, 1);
+    const int n = on.points.count;
+    const setup_array table = comparison_table(&on), x = setup_positions(test, &on.points);
+    const setup_array h = setup_numbers(test_position_type(test), n, 1, on.scene.support);
+    const setup_array a =
+        setup_numbers(test_field_type(test), n, 1, comparison_random_field(&on, SPHG_SCALAR, 7));
+    const setup_array out = setup_output(test_field_type(test), n, test->dimension);
+    sphg_geometry geometry = sphg_own_and_ghosts(setup_view(&x), n / 2, n - n / 2);
+    geometry.precision = test_field_type(test);
+    geometry.source_support = setup_view(&h);
+    geometry.mutual = 1;
+    sphg_neighbors *const neighbors = setup_search(on.context, &on.scheme, &geometry);
+    double *volume = test_memory((size_t)n * sizeof *volume);
+    for (int k = 0; k < 3; ++k) {
+        memcpy(volume, on.scene.volume, (size_t)n * sizeof *volume);
+        volume[n - 3] = bad[k];
+        const setup_array volumes = setup_numbers(test_field_type(test), n, 1, volume);
+        sphg_sources sources = comparison_sources(&on);
+        sources.neighbors = neighbors;
+        sources.volume = setup_view(&volumes);
+        sources.correction = comparison_table_view(&on, &table);
+        require_refused(&on,
+                        sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR,
+                                   setup_view(&a), setup_view(&out)),
+                        SPHG_ERROR_VOLUME, "volume");
+    }
+}
+
 /* Lists of a skin cannot tell the pairs of both radii: forces and pairs are refused, derivatives
  * are not. */
 static void mutual_lists_with_a_skin_say_so(const test_case *test)
@@ -704,6 +798,8 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(masks_give_the_same_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(forces_alone_have_the_bits_of_those_among_others, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(nothing_comes_from_beyond_the_targets_radius, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(skins_in_proportion_miss_no_pair, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
@@ -713,6 +809,7 @@ static const test_entry entries[] = {
     TEST_ENTRY(moments_hold_the_grad_h_term, 0, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(halves_add_up, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(what_has_one_radius_says_so, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(bad_volumes_of_forces_are_refused, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(mutual_lists_with_a_skin_say_so, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(half_given_radii_are_refused, TEST_ALL_PRECISIONS, 0, 0, 0),
 };

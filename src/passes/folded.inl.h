@@ -18,7 +18,7 @@ static void source_weights(int32_t width, enum sphgi_weight kind, const void *vo
     }
 }
 
-/* b_j and, if dense, rho_j behind it, of the pairs from place k on. */
+/* b_j and, if dense, o_j behind it, of the pairs from place k on. */
 SPHGI_TEMPLATE void folded_at(const struct sphgi_tile *tile, int32_t k, const void *const *rows,
                               int count, vec *b)
 {
@@ -30,9 +30,10 @@ SPHGI_TEMPLATE void folded_at(const struct sphgi_tile *tile, int32_t k, const vo
     }
 }
 
-/* sum s_ij b_j x_ij, and sum s_ij x_ij or sum rho_j s_ij x_ij */
+/* sum s_ij b_j x_ij, and sum s_ij x_ij or sum o_j s_ij x_ij. The first of pairs with two radii:
+ * with the factors of the source's. */
 SPHGI_TEMPLATE void folded_as(const struct sphgi_tile *tile, enum sphgi_fold fold, bool dense,
-                              const void *const *rows, void *sums, void *vectors, int d)
+                              bool both, const void *const *rows, void *sums, void *vectors, int d)
 {
     const int results = fold == SPHGI_FOLDED_VECTOR ? 1 : d;
     const int numbers = fold == SPHGI_FOLDED_NUMBER      ? 1
@@ -43,17 +44,22 @@ SPHGI_TEMPLATE void folded_as(const struct sphgi_tile *tile, enum sphgi_fold fol
     clear(sum, results);
     clear(own, d);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec b[10], g[3];
+        vec b[10], g[3], h[3];
         folded_at(tile, k, rows, numbers + (dense ? 1 : 0), b);
         vectors_at(tile, k, SPHGI_FACTORS, d == 3, g);
+        for (int a = 0; a < d; ++a)
+            if (both)
+                h[a] = from(tile, SPHGI_D, k) * from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+            else
+                h[a] = g[a];
         if (fold == SPHGI_FOLDED_NUMBER)
             for (int a = 0; a < d; ++a)
-                sum[a] = plus(sum[a], b[0], g[a]);
+                sum[a] = plus(sum[a], b[0], h[a]);
         else
             add_contracted(fold == SPHGI_FOLDED_VECTOR      ? SPHG_VECTOR
                            : fold == SPHGI_FOLDED_SYMMETRIC ? SPHG_SYM_TENSOR
                                                             : SPHG_TENSOR,
-                           d, b, g, sum);
+                           d, b, h, sum);
         for (int a = 0; a < d; ++a)
             own[a] = plus_vector(own[a], g[a], dense ? &b[numbers] : NULL);
     }
@@ -63,27 +69,38 @@ SPHGI_TEMPLATE void folded_as(const struct sphgi_tile *tile, enum sphgi_fold fol
 }
 
 SPHGI_TEMPLATE void folded_in(const struct sphgi_tile *tile, enum sphgi_fold fold, bool dense,
-                              const void *const *rows, void *sums, void *vectors, int d)
+                              bool both, const void *const *rows, void *sums, void *vectors, int d)
 {
     if (fold == SPHGI_FOLDED_NUMBER)
-        folded_as(tile, SPHGI_FOLDED_NUMBER, dense, rows, sums, vectors, d);
+        folded_as(tile, SPHGI_FOLDED_NUMBER, dense, both, rows, sums, vectors, d);
     else if (fold == SPHGI_FOLDED_VECTOR)
-        folded_as(tile, SPHGI_FOLDED_VECTOR, dense, rows, sums, vectors, d);
+        folded_as(tile, SPHGI_FOLDED_VECTOR, dense, both, rows, sums, vectors, d);
     else if (fold == SPHGI_FOLDED_SYMMETRIC)
-        folded_as(tile, SPHGI_FOLDED_SYMMETRIC, dense, rows, sums, vectors, d);
+        folded_as(tile, SPHGI_FOLDED_SYMMETRIC, dense, both, rows, sums, vectors, d);
     else
-        folded_as(tile, SPHGI_FOLDED_MATRIX, dense, rows, sums, vectors, d);
+        folded_as(tile, SPHGI_FOLDED_MATRIX, dense, both, rows, sums, vectors, d);
+}
+
+SPHGI_TEMPLATE void folded_by(const struct sphgi_tile *tile, enum sphgi_fold fold, bool dense,
+                              enum sphgi_array factors, const void *const *rows, void *sums,
+                              void *vectors, int d)
+{
+    if (factors == SPHGI_D && dense)
+        folded_in(tile, fold, true, true, rows, sums, vectors, d);
+    else if (factors == SPHGI_D) /* what others carry */
+        folded_in(tile, fold, false, true, rows, sums, NULL, d);
+    else if (dense)
+        folded_in(tile, fold, true, false, rows, sums, vectors, d);
+    else
+        folded_in(tile, fold, false, false, rows, sums, vectors, d);
 }
 
 static void sum_folded(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_fold fold,
-                       bool dense, const void *const *rows, void *sums, void *vectors)
+                       bool dense, enum sphgi_array factors, const void *const *rows, void *sums,
+                       void *vectors)
 {
-    if (dimension == 3 && dense)
-        folded_in(tile, fold, true, rows, sums, vectors, 3);
-    else if (dimension == 3)
-        folded_in(tile, fold, false, rows, sums, vectors, 3);
-    else if (dense)
-        folded_in(tile, fold, true, rows, sums, vectors, 2);
+    if (dimension == 3)
+        folded_by(tile, fold, dense, factors, rows, sums, vectors, 3);
     else
-        folded_in(tile, fold, false, rows, sums, vectors, 2);
+        folded_by(tile, fold, dense, factors, rows, sums, vectors, 2);
 }

@@ -283,7 +283,14 @@ struct sphgi_passes {
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
 
-    /* The same for factors that stand in memory, [step][SPHGI_GROUP] from that of the first lane
+    /* The same where rows hold the radii of sources: s_ij without V_j into SPHGI_S, and w or w' / q
+     * with the source's radius into SPHGI_D; and of pairs that gather() has put into the tile, with
+     * H_j in the place of V_j. */
+    void (*gather_both)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                        const int32_t *targets, struct sphgi_tile *tile);
+    void (*weigh_both)(const struct sphgi_shape *shape, const struct sphgi_tile *tile);
+
+    /* Factors that stand in memory, [step][SPHGI_GROUP] from that of the first lane
      * on; and what puts them there. */
     void (*gather_offsets)(const struct sphgi_gather *gather, const void *kept,
                            const int32_t *targets, struct sphgi_tile *tile);
@@ -399,10 +406,12 @@ struct sphgi_passes {
                           const void *at_target, void *sums);
     void (*sum_vectors)(const struct sphgi_tile *tile, int32_t dimension,
                         enum sphgi_vectors vectors, const void *rows, void *sums);
-    /* sum s_ij b_j x_ij; and, unless vectors is NULL, sum s_ij x_ij or, where rho_j stands behind
-     * b_j, sum rho_j s_ij x_ij. rows: of each 4 numbers */
+    /* sum s_ij b_j x_ij; and, unless vectors is NULL, sum s_ij x_ij or, where a number o_j stands
+     * behind b_j, sum o_j s_ij x_ij. factors: SPHGI_S, or SPHGI_D of gather_both for what stands
+     * before b_j. rows: of each 4 numbers */
     void (*sum_folded)(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_fold fold,
-                       bool dense, const void *const *rows, void *sums, void *vectors);
+                       bool dense, enum sphgi_array factors, const void *const *rows, void *sums,
+                       void *vectors);
     void (*sum_volume)(const struct sphgi_tile *tile, void *sums);
     /* What the chunks of a spread tile come to, added to the first lane's sums; chunks: there are.
      */

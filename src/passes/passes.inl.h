@@ -38,6 +38,7 @@
 #include "kept_factors.inl.h"
 #include "sums.inl.h"
 #include "other_side.inl.h"
+#include "both_sides.inl.h"
 #include "contracted.inl.h"
 #include "folded.inl.h"
 #include "classic.inl.h"
@@ -72,6 +73,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
 #endif
     .largest_move = largest_move,
     .gather_factors = gather_factors,
+    .gather_both = gather_both,
+    .weigh_both = weigh_both,
     .gather_offsets = gather_offsets,
     .keep_factors = keep_factors,
     .find = find,

@@ -94,14 +94,18 @@ struct sphgi_plan {
     int32_t correction_stream, density_stream; /* -1: not needed */
     int32_t correction_row, density_row;       /* -1: no pair needs them */
     bool sums_transposed[2]; /* adjoint, symmetric: A_j of any field is read with T */
-    int32_t radius_row; /* of each source's radius, where both sides of a pair have their own; -1 */
-    int32_t carrier[2]; /* the folded field that sums vector_sum on its way, -1: none */
+    bool both_sides;         /* both ends of a pair have radii of their own, and either counts */
+    bool both_at_once;  /* any field is folded then: its pairs are weighed with both at once ... */
+    bool both_alone;    /* ... and nothing else is summed */
+    int32_t radius_row; /* of each source's radius, for the fields that are not folded then; -1 */
+    int32_t carrier[2]; /* the folded field that sums folded_sum on its way, -1: none */
     int32_t sums;
     int32_t moment_sums; /* all that corrections need: they stand first */
     int32_t moment_sum, volume_sum;
     int32_t slope_sum; /* classic: first of those that follow once y is known; they stand last of
                           what corrections need */
-    int32_t vector_sum[2]; /* of adjoint and symmetric: sum G_ij, sum rho_j G_ij */
+    int32_t vector_sum[2]; /* of adjoint and symmetric: sum G_ij, sum rho_j G_ij ... */
+    int32_t folded_sum[2]; /* ... and those of folded fields: the same, unless both_at_once */
     int32_t target_lanes;  /* numbers of all A_i */
 };
 

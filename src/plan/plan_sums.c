@@ -20,9 +20,13 @@ static void decide_sums(struct sphgi_plan *plan)
     plan->sums += plan->classic && plan->computes ? d + d * (d + 1) / 2 : 0;
     plan->moment_sums = plan->sums;
     for (int32_t k = 0; k < 2; ++k) {
-        plan->vector_sum[k] = plan->sums;
-        if (plan->transposes[k])
+        plan->vector_sum[k] = plan->folded_sum[k] = plan->sums;
+        if (plan->transposes[k] && !(plan->both_sides && !plan->sums_transposed[k]))
             plan->sums += plan->quadratic ? d + d * (d + 1) / 2 : d;
+        if (plan->both_sides && plan->carrier[k] >= 0) {
+            plan->folded_sum[k] = plan->sums;
+            plan->sums += d;
+        }
     }
     for (int32_t k = 0; k < plan->field_count; ++k) {
         struct sphgi_field_plan *field = &plan->fields[k];
@@ -76,21 +80,23 @@ static enum sphgi_fold fold_of(const struct sphgi_plan *plan, const struct sphgi
     return plain && field->shape == SPHG_SYM_TENSOR ? SPHGI_FOLDED_SYMMETRIC : SPHGI_FOLDED_MATRIX;
 }
 
-/* The first folded field of a form carries what is summed once for all of them. */
+/* The first folded field of a form carries what is summed once for all of them: with two radii the
+ * weights of the sources, which are not in s_ij then, stand behind its b_j. */
 static void fold_field(struct sphgi_plan *plan, int32_t k)
 {
     struct sphgi_field_plan *field = &plan->fields[k];
     const bool symmetric = field->form == SPHG_SYMMETRIC;
     if (!field->fold)
         return;
-    const bool carries = plan->carrier[symmetric] < 0 && !plan->graded; /* else s_ij is another */
-    const bool dense = symmetric && carries;
+    const bool carries = plan->carrier[symmetric] < 0;
+    const bool dense = carries && (symmetric || plan->both_sides);
     const int32_t numbers = sphgi_folded_numbers(field->fold, plan->dimension) + (dense ? 1 : 0);
     if (carries)
         plan->carrier[symmetric] = k;
     field->folded_row = plan->row_count;
     field->folded_rows = (numbers + SPHGI_ROW - 1) / SPHGI_ROW;
     plan->row_count += field->folded_rows;
+    plan->both_at_once |= plan->both_sides;
 }
 
 static void decide_rows_of(struct sphgi_plan *plan, int32_t k)
@@ -118,6 +124,7 @@ static void decide_rows(struct sphgi_plan *plan)
     plan->correction_stream = plan->density_stream = -1;
     plan->correction_row = plan->density_row = -1;
     plan->carrier[0] = plan->carrier[1] = -1;
+    plan->both_sides = plan->graded && (transposes || plan->diffuses);
     for (int32_t k = 0; k < plan->field_count; ++k)
         decide_rows_of(plan, k);
     if ((transposes || plan->diffuses) && plan->scheme.method != SPHG_PLAIN) {
@@ -130,10 +137,21 @@ static void decide_rows(struct sphgi_plan *plan)
     }
     if (plan->transposes[1]) {
         plan->density_stream = plan->stream_count++;
-        if (plan->sums_transposed[1] || plan->graded)
+        if (plan->sums_transposed[1])
             plan->density_row = plan->row_count++;
     }
-    plan->radius_row = (transposes || plan->diffuses) && plan->graded ? plan->row_count++ : -1;
+    const bool apart = plan->sums_transposed[0] || plan->sums_transposed[1] || plan->diffuses;
+    plan->radius_row = plan->both_sides && apart ? plan->row_count++ : -1;
+}
+
+/* Pairs are weighed for folded fields of two radii, and for nobody else. */
+static bool are_both_alone(const struct sphgi_plan *plan, enum sphgi_purpose purpose)
+{
+    bool alone = plan->both_at_once && plan->radius_row < 0 && !plan->computes &&
+                 !plan->wants_value && purpose == SPHGI_FOR_RESULTS;
+    for (int32_t k = 0; k < plan->field_count; ++k)
+        alone &= plan->fields[k].fold != SPHGI_NOT_FOLDED;
+    return alone;
 }
 
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
@@ -159,5 +177,6 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
     plan->computes |= plan->corrects && !plan->target_correction.count;
     plan->mean_volume = plan->computes && method == SPHG_MLS && !plan->target_volume.count;
     decide_rows(plan);
+    plan->both_alone = are_both_alone(plan, purpose);
     decide_sums(plan);
 }

@@ -44,6 +44,13 @@ struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme)
     return scales;
 }
 
+double sphgi_factor_of_h(const struct sphgi_scheme *scheme)
+{
+    const double sigma = sphgi_kernel_sigma(scheme->kernel, scheme->dimension);
+    const bool by_value = scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM;
+    return by_value ? sigma / sphgi_kernel_mu2(scheme->kernel, scheme->dimension) : sigma;
+}
+
 static struct sphgi_share share_of(double factor, int32_t first, int32_t count)
 {
     int exponent;

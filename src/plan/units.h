@@ -11,6 +11,11 @@ struct sphgi_scales sphgi_table_scales(const struct sphgi_scheme *scheme);
 void sphgi_table_scales_at(const struct sphgi_scheme *scheme, int32_t count, const double *radius,
                            double *value, double *slope);
 
+/* What |s_ij| is multiplied with besides V_j, times H: sigma, or sigma / mu2 in units of the
+ * moments.
+ */
+double sphgi_factor_of_h(const struct sphgi_scheme *scheme);
+
 /* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
  * exact, also where the factor itself is so large or small that no table could hold the result. */
 struct sphgi_share {

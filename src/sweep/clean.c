@@ -104,6 +104,7 @@ void sphgi_make_local(struct sphgi_worker *w, uint32_t *ids, int32_t count, int3
     if (!sweep->position_passes->put_volumes[sweep->plan->type == SPHG_F64](
             positions, &sweep->set->volume, sphgi_volume_unit(sweep), items, 0, used, positions))
         w->tally->bad_volume = true;
-    sphgi_fill_rows(sweep, items, 0, used, w->rows.numbers + (size_t)at * row,
-                    (size_t)(SPHGI_TILE + 1) * row);
+    if (!sphgi_fill_rows(sweep, items, 0, used, w->rows.numbers + (size_t)at * row,
+                         (size_t)(SPHGI_TILE + 1) * row))
+        w->tally->bad_volume = true;
 }

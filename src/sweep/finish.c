@@ -123,11 +123,18 @@ static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_p
     const struct sides sides = sides_of(w, symmetric);
     struct sides folded = sides; /* whose C_j came in in units of H */
     folded.table = 1;
-    own_side(w, w->sweep->plan->vector_sum[symmetric], w->extra);
-    if (field->sums_gradient)
+    const struct sphgi_plan *plan = w->sweep->plan;
+    const int32_t apart = plan->vector_sum[symmetric], in_fold = plan->folded_sum[symmetric];
+    const int32_t first = field->rows ? apart : in_fold, second = field->fold ? in_fold : apart;
+    if (field->sums_gradient) {
+        own_side(w, first, w->extra);
         join_sides(w, field, field->rows ? &sides : &folded, false);
-    if (field->sums_divergence)
-        join_sides(w, field, field->fold ? &folded : &sides, true);
+    }
+    if (!field->sums_divergence)
+        return;
+    if (!field->sums_gradient || second != first)
+        own_side(w, second, w->extra);
+    join_sides(w, field, field->fold ? &folded : &sides, true);
 }
 
 static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan *field)

@@ -16,6 +16,7 @@ struct folding {
     double raw[6 * SPHGI_WIDTH], correction[6 * SPHGI_WIDTH];
     double volume[SPHGI_WIDTH], density[SPHGI_WIDTH], weight[SPHGI_WIDTH];
     double b[12 * SPHGI_WIDTH];
+    bool bad_volume;
 };
 
 enum sphgi_weight sphgi_source_weight(const struct sphgi_plan *plan, bool symmetric)
@@ -47,11 +48,57 @@ static void load_weights(struct folding *f)
     const struct sphgi_plan *plan = f->sweep->plan;
     const bool symmetric = f->field->form == SPHG_SYMMETRIC;
     load(f, &f->sweep->set->volume, 1, f->volume);
+    f->bad_volume |= !p->valid_volumes(f->width, f->volume);
     p->scale(f->width, 1, f->volume, sphgi_volume_unit(f->sweep), NULL, f->volume);
     if (symmetric)
         load(f, &f->sweep->set->streams[plan->density_stream].columns, 1, f->density);
     p->source_weights(f->width, sphgi_source_weight(plan, symmetric), f->volume, f->density,
                       f->weight);
+}
+
+/* Where both ends of a pair have radii of their own, sums have w or w' / q of the source's: the
+ * weight takes what s_ji has besides, V_j first and H_j a few powers at a time, lest one of them
+ * leaves the range of the type. */
+static void weigh_by_radii(struct folding *f, int64_t first)
+{
+    const struct sphgi_passes *p = f->sweep->passes;
+    const struct sphgi_scheme *scheme = &f->sweep->plan->scheme;
+    const sphg_neighbors *n = f->sweep->set->neighbors;
+    const bool slope = scheme->method == SPHG_KGC || scheme->method == SPHG_PLAIN;
+    const struct sphgi_lane_units units = {.largest = scheme->radius,
+                                           .dimension = scheme->dimension};
+    double radius[SPHGI_WIDTH], ratio[SPHGI_WIDTH], inverse[SPHGI_WIDTH], square[SPHGI_WIDTH];
+    double factor[SPHGI_WIDTH];
+    for (int32_t k = 0; k < f->width; ++k)
+        radius[k] =
+            sphgi_row_radius(n, n->sources.rows.data, (int32_t)first + (k < f->count ? k : 0));
+    p->lane_units(f->width, &units, radius, ratio, inverse, square, factor);
+    if (scheme->method != SPHG_MLS)
+        p->scale(f->width, 1, f->weight, 1, f->volume, f->weight);
+    p->scale(f->width, 1, f->weight, 1, ratio, f->weight);
+    if (slope)
+        p->scale(f->width, 1, f->weight, sphgi_factor_of_h(scheme) * scheme->radius, square,
+                 f->weight);
+    else
+        p->scale(f->width, 1, f->weight, -sphgi_factor_of_h(scheme) / scheme->radius, NULL,
+                 f->weight);
+}
+
+/* What stands behind b_j of the field that carries sum o_j s_ij x_ij: rho_j, and with two radii
+ * V_j, which is in s_ij otherwise. */
+static void put_carried(struct folding *f, int32_t numbers)
+{
+    const struct sphgi_passes *p = f->sweep->passes;
+    const struct sphgi_plan *plan = f->sweep->plan;
+    const bool symmetric = f->field->form == SPHG_SYMMETRIC;
+    char *to = number(f, f->b, numbers);
+    if (f->field != plan->fields + plan->carrier[symmetric] || !(symmetric || plan->both_sides))
+        return;
+    p->fill(f->width, 1, to);
+    if (symmetric)
+        p->scale(f->width, 1, to, 1, f->density, to);
+    if (plan->both_sides && plan->scheme.method != SPHG_MLS)
+        p->scale(f->width, 1, to, 1, f->volume, to);
 }
 
 /* A symmetric tensor with all its components. */
@@ -101,27 +148,29 @@ static void ask_for_next(const struct folding *f, const int32_t *order, int64_t 
     p->ask_for_lanes(count, &f->sweep->set->volume, order, false);
 }
 
-static void fold_some(struct folding *f, struct sphgi_columns *rows)
+static void fold_some(struct folding *f, int64_t first, struct sphgi_columns *rows)
 {
     const struct sphgi_passes *p = f->sweep->passes;
     const struct sphgi_plan *plan = f->sweep->plan;
     const int32_t numbers = sphgi_folded_numbers(f->field->fold, plan->dimension);
     load(f, &f->sweep->set->streams[f->field->stream].columns, f->field->components, f->a);
     load_weights(f);
+    if (plan->both_sides)
+        weigh_by_radii(f, first);
     p->scale(f->width, numbers, product(f), 1, f->weight, f->b);
-    if (f->field->form == SPHG_SYMMETRIC && f->field == plan->fields + plan->carrier[1])
-        p->scale(f->width, 1, f->density, 1, NULL, number(f, f->b, numbers));
+    put_carried(f, numbers);
     for (int32_t k = 0; k < f->field->folded_rows; ++k)
         p->store_lanes(f->count, &rows[k], f->places, number(f, f->b, k * SPHGI_ROW), false);
 }
 
-void sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
+bool sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
                      const int32_t *order, int64_t begin, int64_t end, char *to, size_t array)
 {
     const size_t lanes = (size_t)sweep->passes->lanes;
     struct folding f;
     f.sweep = sweep;
     f.field = field;
+    f.bad_volume = false;
     memset(f.b, 0, sizeof f.b); /* what is behind the last number of a row */
     struct sphgi_columns rows[3];
     for (int32_t k = 0; k < field->folded_rows; ++k)
@@ -138,6 +187,7 @@ void sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_p
         }
         if (order)
             ask_for_next(&f, order + at + f.count, end - at - f.count);
-        fold_some(&f, rows);
+        fold_some(&f, at, rows);
     }
+    return !f.bad_volume;
 }

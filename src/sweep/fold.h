@@ -7,9 +7,10 @@
 /* What a source's term is multiplied with in the adjoint (symmetric false) or symmetric form. */
 enum sphgi_weight sphgi_source_weight(const struct sphgi_plan *plan, bool symmetric);
 
-/* Rows of b_j of the sources order[begin] to order[end - 1] of the host; order NULL: of `begin` and
- * so on themselves. They stand at `to`; each further array of rows `array` bytes behind. */
-void sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
+/* Rows of b_j, and of what is carried behind it, of the sources order[begin] to order[end - 1] of
+ * the host; order NULL: of `begin` and so on themselves. They stand at `to`; each further array of
+ * rows `array` bytes behind. False: a volume is negative or not finite. */
+bool sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
                      const int32_t *order, int64_t begin, int64_t end, char *to, size_t array);
 
 #endif

@@ -28,7 +28,7 @@ bool sphgi_is_superset(const struct sphgi_sweep *sweep)
     const sphg_neighbors *n = sweep->set->neighbors;
     if (sweep->plan->graded)
         return n->kind == SPHGI_HOST_LISTS || n->skin > 0 ||
-               (n->mutual && !sweep->pairs && sweep->plan->radius_row < 0);
+               (n->mutual && !sweep->pairs && !sweep->plan->both_sides);
     return n->kind == SPHGI_HOST_LISTS || n->skin > 0 || sweep->plan->scheme.radius < n->radius;
 }
 
@@ -42,7 +42,12 @@ bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
     const sphg_neighbors *n = sweep->set->neighbors;
-    return sweep->packed && plan->radius_row < 0 && !n->periodic && !plan->classic &&
+    return sweep->packed && !plan->both_sides && !n->periodic && !plan->classic &&
            !plan->quadratic && !plan->wants_value && !plan->mean_volume &&
            (plan->differentiates || plan->computes) && n->position_type == plan->type;
+}
+
+bool sphgi_weighs_both_at_once(const struct sphgi_sweep *sweep)
+{
+    return !sphgi_is_masked(sweep) && sweep->set->neighbors->position_type == sweep->plan->type;
 }

@@ -45,6 +45,9 @@ static void use_packed_rows(struct sphgi_worker *w)
     w->rows.items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
     for (int32_t k = 0; k < sweep->plan->row_count; ++k)
         w->rows.at[k] = sweep->packed_rows + (size_t)k * rows * size;
+    w->both = w->gather; /* rows as the search left them hold the radii of the sources */
+    w->both.rows = n->sources.rows.data;
+    w->both.volumes = true;
 }
 
 void sphgi_use_rows(struct sphgi_worker *w)
@@ -66,15 +69,16 @@ static void load_stream(const struct sphgi_sweep *sweep, int32_t number, const i
                              stream->columns.count ? stream->count : 0, rows);
 }
 
-void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
+bool sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
                      int64_t end, char *to, size_t array)
 {
     const struct sphgi_plan *plan = sweep->plan;
+    bool good = true;
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->fold)
-            sphgi_fold_rows(sweep, field, order, begin, end, to + (size_t)field->folded_row * array,
-                            array);
+            good &= sphgi_fold_rows(sweep, field, order, begin, end,
+                                    to + (size_t)field->folded_row * array, array);
         for (int32_t s = 0; s < field->rows; ++s)
             load_stream(sweep, field->stream + s, order, begin, end,
                         to + (size_t)(field->row + s) * array);
@@ -94,6 +98,7 @@ void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int6
     if (plan->density_row >= 0)
         load_stream(sweep, plan->density_stream, order, begin, end,
                     to + (size_t)plan->density_row * array);
+    return good;
 }
 
 /* H of the plan over that of each source; the dummy's is 0. */
@@ -127,9 +132,10 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
     const sphg_type type = sweep->plan->type;
     const size_t size = row_size(type), rows = (size_t)n->source_count + 1;
     (void)worker;
-    if (sphgi_rows_read(sweep))
-        sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
-                        rows * size);
+    if (sphgi_rows_read(sweep) &&
+        !sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
+                         rows * size))
+        atomic_store(&packing->bad_volume, true);
     if (sphgi_rows_read(sweep) && sweep->plan->radius_row >= 0)
         fill_radii(sweep, begin, end,
                    packing->rows + ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);

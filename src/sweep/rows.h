@@ -18,8 +18,9 @@ static inline int32_t sphgi_rows_read(const struct sphgi_sweep *sweep)
 sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume);
 
 /* Rows of the sources order[begin] to order[end - 1] of the host, one array behind the other: each
- * starts `array` bytes after the one before. order NULL: of `begin` and so on themselves. */
-void sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
+ * starts `array` bytes after the one before. order NULL: of `begin` and so on themselves. False: a
+ * volume is negative or not finite. */
+bool sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
                      int64_t end, char *to, size_t array);
 
 #endif

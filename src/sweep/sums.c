@@ -3,6 +3,7 @@
 #include "borrow.h"
 #include "diffusion.h"
 #include "fold.h"
+#include "folded.h"
 #include "lane_radii.h"
 #include "own.h"
 #include "pair_rows.h"
@@ -83,18 +84,6 @@ static void form_transposed(struct sphgi_worker *w, bool symmetric)
         w->passes->transposed(&w->tile, plan->dimension, table, density, weight);
 }
 
-static void sum_folded(struct sphgi_worker *w, int32_t number)
-{
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_field_plan *field = &plan->fields[number];
-    const bool symmetric = field->form == SPHG_SYMMETRIC,
-               carrier = plan->carrier[symmetric] == number;
-    const int32_t sum = field->sums_divergence ? field->divergence_sum : field->sum;
-    w->passes->sum_folded(&w->tile, plan->dimension, field->fold, symmetric && carrier,
-                          w->rows.at + field->folded_row, sphgi_lane(w, w->reduced, sum),
-                          carrier ? sphgi_lane(w, w->reduced, plan->vector_sum[symmetric]) : NULL);
-}
-
 /* sum s_ij x_ij, or of rho_j times that: what A_i is multiplied with. */
 static void sum_own_vectors(struct sphgi_worker *w, bool symmetric)
 {
@@ -118,12 +107,12 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         if (!field->differentiates || field->one_sided ||
             symmetric != (field->form == SPHG_SYMMETRIC))
             continue;
-        if (field->fold)
-            sum_folded(w, k);
+        if (field->fold && !plan->both_sides)
+            sphgi_sum_folded(w, k);
         if (field->rows)
             sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
     }
-    if (plan->carrier[symmetric] < 0 && !plan->graded)
+    if (plan->carrier[symmetric] < 0 && !plan->both_sides)
         sum_own_vectors(w, symmetric);
 }
 
@@ -131,7 +120,7 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
 static void turn_to_other_side(struct sphgi_worker *w)
 {
     for (int symmetric = 0; symmetric < 2; ++symmetric)
-        if (w->sweep->plan->transposes[symmetric])
+        if (w->sweep->plan->sums_transposed[symmetric])
             sum_own_vectors(w, symmetric);
     sphgi_weigh_other_side(w);
 }
@@ -179,6 +168,8 @@ static void sum_fields(struct sphgi_worker *w)
     for (int symmetric = 0; symmetric < 2; ++symmetric)
         if (plan->transposes[symmetric])
             sum_transposed(w, symmetric);
+    if (plan->both_at_once)
+        sphgi_sum_both_sides(w);
 }
 
 /* Hands on the pairs inside the cutoff; counts them in any case. */
@@ -206,6 +197,8 @@ void sphgi_weigh_tile(struct sphgi_worker *w)
     const int32_t count = w->tile.steps * w->passes->lanes;
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
+    if (plan->both_alone)
+        return;
     if (plan->classic || plan->wants_value || plan->mean_volume)
         p->shape_weights(&w->shape, w->tile.arrays, count);
     if (plan->classic)

@@ -51,9 +51,9 @@ static void look_at_volumes(struct sphgi_sweep *sweep, struct sphgi_tally *tally
     const struct sphgi_columns *volume = &sweep->set->volume;
     const double unit = sphgi_volume_unit(sweep);
     double value = 0;
-    sweep->volumes = volume->count && volume->stride;
+    sweep->volumes = volume->count && volume->stride && !sweep->plan->both_alone;
     sweep->volume = 0;
-    if (!volume->count || sweep->volumes)
+    if (!volume->count || volume->stride)
         return;
     tally->bad_volume |= is_bad_volume(volume, sweep->plan->type, 0, &value);
     sweep->volume =
@@ -89,7 +89,7 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     const int32_t active = some ? selection->active_count : items;
     const int32_t groups = some ? selection->group_count : sphgi_group_count(n->target_count);
     const bool nothing_to_pack = !sweep->volumes && !sphgi_rows_read(sweep);
-    sweep->packed = nothing_to_pack || sweep->plan->radius_row >= 0 ||
+    sweep->packed = nothing_to_pack || sweep->plan->both_sides ||
                     (int64_t)active * PACK_WORTH >= n->source_count;
     const bool ready =
         !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) && open_workers(sweep);

@@ -82,7 +82,7 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
     if (w->factors_at_once)
         gather_factors(w, begin);
-    else
+    else if (!w->sweep->plan->both_alone)
         w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
     sphgi_scale_volumes(w);

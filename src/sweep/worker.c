@@ -113,10 +113,8 @@ static void open_scheme(struct sphgi_worker *w)
     const struct sphgi_scheme *scheme = &plan->scheme;
     const sphg_neighbors *n = w->sweep->set->neighbors;
     const int32_t d = plan->dimension;
-    const double h = scheme->radius, sigma = sphgi_kernel_sigma(scheme->kernel, d);
-    const double mu2 = sphgi_kernel_mu2(scheme->kernel, d);
+    const double h = scheme->radius;
     const bool scaled = plan->classic || plan->quadratic;
-    const bool by_value = scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM;
     w->gather = (struct sphgi_gather){.unit = scaled ? 1 / h : 1,
                                       .cutoff = h,
                                       .periodic = n->periodic,
@@ -125,19 +123,19 @@ static void open_scheme(struct sphgi_worker *w)
                                       .dimension = d};
     memcpy(w->gather.period, n->period, sizeof n->period);
     w->gather.radii = plan->graded;
-    w->gather.all = n->mutual && (w->sweep->pairs || plan->radius_row >= 0);
+    w->gather.all = n->mutual && (w->sweep->pairs || plan->both_sides);
     if (plan->graded && scaled)
         w->gather.unit = 0;
     w->gather.superset = sphgi_is_superset(w->sweep);
     w->gather.masked = sphgi_is_masked(w->sweep);
-    w->shape = (struct sphgi_shape){
-        .kernel = scheme->kernel,
-        .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
-        .dimension = d,
-        .inverse_h = scaled ? 1 : 1 / h,
-        .w_scale = (by_value ? sigma / mu2 : sigma) / (plan->quadratic ? 1 : h),
-        .value_scale = sigma};
-    w->factor_of_h = by_value ? sigma / mu2 : sigma;
+    w->shape =
+        (struct sphgi_shape){.kernel = scheme->kernel,
+                             .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
+                             .dimension = d,
+                             .inverse_h = scaled ? 1 : 1 / h,
+                             .w_scale = sphgi_factor_of_h(scheme) / (plan->quadratic ? 1 : h),
+                             .value_scale = sphgi_kernel_sigma(scheme->kernel, d)};
+    w->factor_of_h = sphgi_factor_of_h(scheme);
     w->gather.target_rows = sphgi_target_row(n, 0);
     w->threshold = (struct sphgi_threshold){.policy = scheme->policy,
                                             .eps = scheme->threshold,
@@ -159,4 +157,5 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     w->tile.section = (ptrdiff_t)sweep->plan->sums * SPHGI_WIDTH;
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     w->factors_at_once = sphgi_forms_factors_alone(sweep);
+    w->both_as_gathered = sphgi_weighs_both_at_once(sweep);
 }

@@ -101,6 +101,7 @@ struct sphgi_worker {
 
     /* The scheme, in the units of the sums. */
     struct sphgi_gather gather;
+    struct sphgi_gather both; /* the same for pairs that are weighed with both radii */
     struct sphgi_shape shape;
     struct sphgi_threshold threshold;
     struct sphgi_second second;
@@ -108,6 +109,7 @@ struct sphgi_worker {
     double factor_of_h;                     /* w_scale, times H */
     struct sphgi_share share[SPHGI_SHARES]; /* of the table of corrections */
     bool factors_at_once;    /* s_ij come with the pairs, for nobody asks for distances */
+    bool both_as_gathered;   /* pairs that count with two radii are weighed then, too */
     bool coefficients_first; /* they must be known before all that this sweep sums can be: it comes
                                 in rounds, or they are there */
 

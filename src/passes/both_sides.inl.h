@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+/* Pairs whose two ends have radii of their own, where nothing but sums over both is wanted of them:
+ * a value of the kernel with either radius, in one loop with the distances where no pair needs a
+ * guard. The rows of the sources hold H_j. Whatever else belongs to a source, V_j first of all, is
+ * multiplied into what the sums read of it (folded.inl.h), once a particle. */
+
+/* w(q) or w'(q) / q with q = r / H_j, which counts up to 1: all kernels end there. */
+SPHGI_TEMPLATE vec seen_from_source(vec r, vec radius, sphg_kernel kernel, bool slope)
+{
+    const vec one = splat(R(1)), q = vmin(r / radius, one);
+    const struct ratio at = {q, one - q};
+    return slope ? kernel_d(kernel, at) : kernel_w(kernel, at);
+}
+
+/* s_ij without V_j; and what s_ji is of the source's numbers. */
+SPHGI_TEMPLATE void put_both(real *at, vec r, vec radius, vec scale, vec inverse_h,
+                             sphg_kernel kernel, bool slope)
+{
+    const struct ratio own = ratio_of(r, inverse_h);
+    store(at + SPHGI_S * SPHGI_TILE,
+          scale * (slope ? kernel_d(kernel, own) : kernel_w(kernel, own)));
+    store(at + SPHGI_D * SPHGI_TILE, seen_from_source(r, radius, kernel, slope));
+}
+
+SPHGI_TEMPLATE vec own_scale(const struct sphgi_shape *shape, bool slope)
+{
+    return factor_scale(shape, slope ? SPHG_KGC : SPHG_RKPM);
+}
+
+SPHGI_TEMPLATE void both_of_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                  const int32_t *targets, struct sphgi_tile *tile,
+                                  sphg_kernel kernel, bool slope, bool three)
+{
+    const struct four own = target_rows(g, targets);
+    const vec scale = own_scale(shape, slope), inverse_h = inverse_radius(shape);
+    const real *rows = g->rows;
+    const uint32_t *ids = tile->ids;
+    const int32_t steps = tile->steps;
+    const ptrdiff_t stride = tile->id_stride;
+    const ptrdiff_t ahead = ids == tile->own_ids ? 0 : AHEAD * stride;
+    real *at = tile->arrays;
+    for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride) {
+        __builtin_prefetch(ids + ahead);
+        const struct four row = gather_rows(rows, ids);
+        const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
+        vec square = plus(dx * dx, dy, dy);
+        if (three)
+            square = plus(square, dz, dz);
+        store(at + SPHGI_X * SPHGI_TILE, dx);
+        store(at + SPHGI_Y * SPHGI_TILE, dy);
+        if (three)
+            store(at + SPHGI_Z * SPHGI_TILE, dz);
+        put_both(at, vsqrt(square), row.w, scale, inverse_h, kernel, slope);
+    }
+}
+
+/* The same of pairs that were gathered with a guard: H_j stands where volumes do. */
+SPHGI_TEMPLATE void both_of_tile(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
+                                 sphg_kernel kernel, bool slope)
+{
+    const vec scale = own_scale(shape, slope), inverse_h = inverse_radius(shape);
+    for (int32_t k = 0; k < places_of(tile); k += LANES)
+        put_both((real *)tile->arrays + k, from(tile, SPHGI_R, k), from(tile, SPHGI_V, k), scale,
+                 inverse_h, kernel, slope);
+}
+
+SPHGI_TEMPLATE void both_by_method(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                   const int32_t *targets, struct sphgi_tile *tile,
+                                   sphg_kernel kernel)
+{
+    const bool slope = shape->method == SPHG_KGC;
+    if (g->dimension == 3 && slope)
+        both_of_pairs(g, shape, targets, tile, kernel, true, true);
+    else if (g->dimension == 3)
+        both_of_pairs(g, shape, targets, tile, kernel, false, true);
+    else if (slope)
+        both_of_pairs(g, shape, targets, tile, kernel, true, false);
+    else
+        both_of_pairs(g, shape, targets, tile, kernel, false, false);
+}
+
+#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
+    static void prefix##_both(const struct sphgi_gather *g, const struct sphgi_shape *shape,       \
+                              const int32_t *targets, struct sphgi_tile *tile)                     \
+    {                                                                                              \
+        both_by_method(g, shape, targets, tile, SPHG_##name);                                      \
+    }                                                                                              \
+    static void prefix##_both_of_tile(const struct sphgi_shape *shape,                             \
+                                      const struct sphgi_tile *tile)                               \
+    {                                                                                              \
+        if (shape->method == SPHG_KGC)                                                             \
+            both_of_tile(shape, tile, SPHG_##name, true);                                          \
+        else                                                                                       \
+            both_of_tile(shape, tile, SPHG_##name, false);                                         \
+    }
+SPHGI_KERNELS(SPHGI_INSTANCE)
+#undef SPHGI_INSTANCE
+
+static void gather_both(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                        const int32_t *targets, struct sphgi_tile *tile)
+{
+    static void (*const instance[])(const struct sphgi_gather *, const struct sphgi_shape *,
+                                    const int32_t *, struct sphgi_tile *) = {
+#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_both,
+        SPHGI_KERNELS(SPHGI_ENTRY)
+#undef SPHGI_ENTRY
+    };
+    instance[shape->kernel](gather, shape, targets, tile);
+}
+
+static void weigh_both(const struct sphgi_shape *shape, const struct sphgi_tile *tile)
+{
+    static void (*const instance[])(const struct sphgi_shape *, const struct sphgi_tile *) = {
+#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                    \
+    [SPHG_##name] = prefix##_both_of_tile,
+        SPHGI_KERNELS(SPHGI_ENTRY)
+#undef SPHGI_ENTRY
+    };
+    instance[shape->kernel](shape, tile);
+}
