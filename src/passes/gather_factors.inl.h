@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Pairs and their factors in one loop: what most sweeps do, and most of what they do. */
+/* Pairs and their factors in one loop: what most sweeps do, and most of what they do. Order 2 has
+ * offsets in units of H, and their products. */
 
 /* masked: each pair is tested. Of what is none nothing reaches a sum, whatever its rows hold; the
  * root and the kernel do not wait for the answer. */
 SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,
                                      const int32_t *targets, struct sphgi_tile *tile,
                                      sphg_kernel kernel, sphg_method method, bool three,
-                                     bool volumes, bool masked)
+                                     bool volumes, bool masked, bool quadratic)
 {
     const struct four own = target_rows(g, targets);
     const vec scale = factor_scale(shape, method), inverse_h = inverse_radius(shape);
-    const vec volume = splat(R(g->volume)), radius = splat(R(g->cutoff));
+    const vec volume = splat(R(g->volume)), radius = splat(R(g->cutoff)), unit = splat(R(g->unit));
     const vec cutoff = square_of_cutoff(g, g->radii ? own.w : radius);
     const real *rows = g->rows;
     const uint32_t *ids = tile->ids;
@@ -26,8 +27,14 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         vec square = plus(dx * dx, dy, dy);
         if (three)
             square = plus(square, dz, dz);
-        vec s =
-            factor_of(scale, inverse_h, vsqrt(square), volumes ? row.w : volume, kernel, method);
+        vec r = vsqrt(square);
+        if (quadratic) {
+            dx *= unit;
+            dy *= unit;
+            dz *= unit;
+            r *= unit;
+        }
+        vec s = factor_of(scale, inverse_h, r, volumes ? row.w : volume, kernel, method);
         if (masked) {
             const mask inside = less(square_distance(dx, dy, dz), cutoff);
             keep_ids(inside, g->dummy, ids, kept);
@@ -44,6 +51,8 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         if (volumes)
             store(at + SPHGI_V * SPHGI_TILE, row.w);
         store(at + SPHGI_S * SPHGI_TILE, s);
+        if (quadratic)
+            put_products(at, s, (const vec[]){dx, dy, dz}, three);
     }
     if (masked) {
         tile->ids = tile->own_ids;
@@ -58,15 +67,18 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         factors_by_method(g, shape, targets, tile, SPHG_##name);                                   \
     }
 
-SPHGI_TEMPLATE void factors_by_mask(const struct sphgi_gather *g, const struct sphgi_shape *shape,
-                                    const int32_t *targets, struct sphgi_tile *tile,
-                                    sphg_kernel kernel, sphg_method method, bool three,
-                                    bool volumes)
+/* Order 2 comes here with pairs that need no test. */
+SPHGI_TEMPLATE void factors_by_order(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                     const int32_t *targets, struct sphgi_tile *tile,
+                                     sphg_kernel kernel, sphg_method method, bool three,
+                                     bool volumes)
 {
-    if (g->masked)
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, true);
+    if (shape->quadratic)
+        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false, true);
+    else if (g->masked)
+        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, true, false);
     else
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false);
+        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false, false);
 }
 
 SPHGI_TEMPLATE void factors_by_shape(const struct sphgi_gather *g, const struct sphgi_shape *shape,
@@ -74,13 +86,13 @@ SPHGI_TEMPLATE void factors_by_shape(const struct sphgi_gather *g, const struct 
                                      sphg_kernel kernel, sphg_method method)
 {
     if (g->dimension == 3 && g->volumes)
-        factors_by_mask(g, shape, targets, tile, kernel, method, true, true);
+        factors_by_order(g, shape, targets, tile, kernel, method, true, true);
     else if (g->dimension == 3)
-        factors_by_mask(g, shape, targets, tile, kernel, method, true, false);
+        factors_by_order(g, shape, targets, tile, kernel, method, true, false);
     else if (g->volumes)
-        factors_by_mask(g, shape, targets, tile, kernel, method, false, true);
+        factors_by_order(g, shape, targets, tile, kernel, method, false, true);
     else
-        factors_by_mask(g, shape, targets, tile, kernel, method, false, false);
+        factors_by_order(g, shape, targets, tile, kernel, method, false, false);
 }
 
 SPHGI_TEMPLATE void factors_by_method(const struct sphgi_gather *g, const struct sphgi_shape *shape,

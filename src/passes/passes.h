@@ -55,7 +55,8 @@ enum sphgi_array {
     SPHGI_TY,
     SPHGI_TZ,
     SPHGI_PHI, /* weight of the value: V_j W, classic Phi_j */
-    SPHGI_ARRAYS,
+    SPHGI_P,   /* order 2: products s_ij x_a x_b of all pairs of axes, up to six arrays */
+    SPHGI_ARRAYS = SPHGI_P + 6,
     SPHGI_L = SPHGI_GX, /* L_ij of diffusion, which no G_ij stand beside */
     SPHGI_W = SPHGI_D   /* W of linearised methods, where fields have volumes of their own */
 };
@@ -129,6 +130,7 @@ struct sphgi_shape {
     double inverse_h;   /* from the unit of the offsets to q = r / H */
     double w_scale;     /* sigma / H; RKPM and MLS sigma / (mu2 H) */
     double value_scale; /* sigma */
+    bool quadratic;     /* order 2: products of offsets are wanted */
     const void *inverse_lanes,
         *factor_lanes; /* instead of inverse_h and w_scale, a number per lane,
                           where targets have radii of their own; or NULL */
@@ -278,8 +280,9 @@ struct sphgi_passes {
      * tile. [0]: f32 arrays, [1]: f64. Masked: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,
                       struct sphgi_tile *tile);
-    /* The same with the factors s_ij instead of the distances, on open axes. Rows of the type of
-     * the arrays. */
+    /* The same with the factors s_ij instead of the distances, on open axes; for order 2, of pairs
+     * that need no test, with their products with the offsets, too. Rows of the type of the arrays.
+     */
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
 
@@ -333,6 +336,7 @@ struct sphgi_passes {
                         const void *rows);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
+    void (*shape_products)(const struct sphgi_tile *tile, int32_t dimension); /* of order 2 */
     /* W of shape_weights where factors leave it alone; and V_j W of it, V_j in rows, times unit and
      * a number per lane, or 1. */
     void (*keep_kernel)(void *arrays, int32_t count);

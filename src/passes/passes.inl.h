@@ -93,6 +93,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .shape_other = shape_other,
     .shape_weights = shape_weights,
     .shape_values = shape_values,
+    .shape_products = shape_products,
     .keep_kernel = keep_kernel,
     .values_of_volumes = values_of_volumes,
     .classic_vectors = classic_vectors,

@@ -3,19 +3,57 @@
  * is -s. Index of x_a x_b: sphgi_pair_index. Sums of third and fourth order hold each product once,
  * in the order of the alphabet. */
 
-/* The products x_a x_b, times first[a] instead of x_a. */
-SPHGI_TEMPLATE void pair_products(const vec *first, const vec *x, bool three, vec *products)
-{
-    const int d = three ? 3 : 2;
-    for (int a = 0; a < d; ++a)
-        for (int b = a; b < d; ++b)
-            products[sphgi_pair_index(a, b, d)] = first[a] * x[b];
-}
-
 SPHGI_TEMPLATE void offsets_at(const struct sphgi_tile *tile, int32_t k, bool three, vec *x)
 {
     for (int a = 0; a < (three ? 3 : 2); ++a)
         x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+}
+
+/* s_ij x_a x_b, as gather_factors or shape_products have left them. */
+SPHGI_TEMPLATE void products_at(const struct sphgi_tile *tile, int32_t k, bool three, vec *products)
+{
+    vec x[3], g[3];
+    for (int c = 0; KEEPS_PRODUCTS && c < (three ? 6 : 3); ++c)
+        products[c] = from(tile, (enum sphgi_array)(SPHGI_P + c), k);
+    if (KEEPS_PRODUCTS)
+        return;
+    offsets_at(tile, k, three, x);
+    vectors_at(tile, k, SPHGI_FACTORS, three, g);
+    pair_products(g, x, three, products);
+}
+
+SPHGI_TEMPLATE void products_as(const struct sphgi_tile *tile, bool three)
+{
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec x[3];
+        offsets_at(tile, k, three, x);
+        put_products((real *)tile->arrays + k, from(tile, SPHGI_S, k), x, three);
+    }
+}
+
+static void shape_products(const struct sphgi_tile *tile, int32_t dimension)
+{
+    if (!KEEPS_PRODUCTS)
+        return;
+    if (dimension == 3)
+        products_as(tile, true);
+    else
+        products_as(tile, false);
+}
+
+/* The sums of third order, from these products. */
+SPHGI_TEMPLATE void add_triples(vec *sum, const vec *p, const vec *x, bool three)
+{
+    for (int c = 0; c < (three ? 6 : 3); ++c)
+        sum[c] = plus(sum[c], p[c], x[0]);
+    if (three) {
+        sum[6] = plus(sum[6], p[3], x[1]);
+        sum[7] = plus(sum[7], p[3], x[2]);
+        sum[8] = plus(sum[8], p[4], x[2]);
+        sum[9] = plus(sum[9], p[5], x[2]);
+    } else {
+        sum[3] = plus(sum[3], p[2], x[1]);
+    }
 }
 
 SPHGI_TEMPLATE void third_moments_as(const struct sphgi_tile *tile, real *sums, bool three)
@@ -24,22 +62,34 @@ SPHGI_TEMPLATE void third_moments_as(const struct sphgi_tile *tile, real *sums, 
     vec sum[10];
     clear(sum, n);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        vec x[3], p[6];
+        offsets_at(tile, k, three, x);
+        products_at(tile, k, three, p);
+        add_triples(sum, p, x, three);
+    }
+    end_tile(tile, sum, n, sums);
+}
+
+/* Those of second order, as moments_as has them, and of third in one loop. */
+SPHGI_TEMPLATE void first_moments_as(const struct sphgi_tile *tile, real *sums, bool three)
+{
+    const int d = three ? 3 : 2;
+    const int32_t n = three ? 6 : 3, triples = three ? 10 : 4;
+    vec sum[16];
+    clear(sum, n + triples);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
         vec x[3], g[3], p[6];
         offsets_at(tile, k, three, x);
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
         pair_products(g, x, three, p);
-        for (int c = 0; c < (three ? 6 : 3); ++c)
-            sum[c] = plus(sum[c], p[c], x[0]);
-        if (three) {
-            sum[6] = plus(sum[6], p[3], x[1]);
-            sum[7] = plus(sum[7], p[3], x[2]);
-            sum[8] = plus(sum[8], p[4], x[2]);
-            sum[9] = plus(sum[9], p[5], x[2]);
-        } else {
-            sum[3] = plus(sum[3], p[2], x[1]);
-        }
+        for (int a = 0; a < d; ++a)
+            for (int c = a; c < d; ++c) {
+                const int m = sphgi_pair_index(a, c, d);
+                sum[m] = minus(sum[m], g[a], x[c]);
+            }
+        add_triples(sum + n, p, x, three);
     }
-    end_tile(tile, sum, n, sums);
+    end_tile(tile, sum, n + triples, sums);
 }
 
 /* Which two pairs make each product of four. */
@@ -54,10 +104,9 @@ SPHGI_TEMPLATE void fourth_moments_as(const struct sphgi_tile *tile, real *sums,
     vec sum[15];
     clear(sum, count);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], g[3], weighted[6], plain[6];
+        vec x[3], weighted[6], plain[6];
         offsets_at(tile, k, three, x);
-        vectors_at(tile, k, SPHGI_FACTORS, three, g);
-        pair_products(g, x, three, weighted);
+        products_at(tile, k, three, weighted);
         pair_products(x, x, three, plain);
         for (int c = 0; c < count; ++c) {
             const int *of = three ? fourth_of_three[first + c] : fourth_of_two[first + c];
@@ -71,8 +120,12 @@ SPHGI_TEMPLATE void quadratic_moments_as(const struct sphgi_tile *tile, real *su
 {
     const int d = three ? 3 : 2, pairs = three ? 6 : 3, triples = three ? 10 : 4;
     real *third = sums + pairs * SPHGI_WIDTH, *fourth = third + triples * SPHGI_WIDTH;
-    moments_as(tile, sums, three);
-    third_moments_as(tile, third, three);
+    if (VECTOR_BYTES == 64) {
+        first_moments_as(tile, sums, three);
+    } else {
+        moments_as(tile, sums, three);
+        third_moments_as(tile, third, three);
+    }
     if (d == 2 || VECTOR_BYTES == 64) {
         fourth_moments_as(tile, fourth, three, 0, three ? 15 : 5);
     } else { /* 15 sums do not fit sixteen registers beside what they are made of */
@@ -99,10 +152,9 @@ SPHGI_TEMPLATE void quadratic_vectors_as(const struct sphgi_tile *tile, const re
     clear(sum, d + n);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const vec density = rows ? gather_rows(rows, ids_at(tile, k)).x : splat(R(1));
-        vec x[3], g[3], p[6];
-        offsets_at(tile, k, three, x);
+        vec g[3], p[6];
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
-        pair_products(g, x, three, p);
+        products_at(tile, k, three, p);
         for (int32_t a = 0; a < d; ++a)
             sum[a] = plus(sum[a], density, g[a]);
         for (int32_t b = 0; b < n; ++b)
@@ -154,15 +206,14 @@ SPHGI_TEMPLATE void second_sums_as(const struct sphgi_tile *tile, int32_t first,
     vec sum[24];
     clear(sum, count * n);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], g[3], p[6];
-        offsets_at(tile, k, three, x);
-        vectors_at(tile, k, SPHGI_FACTORS, three, g);
-        pair_products(g, x, three, p);
-        for (int32_t c = 0; c < count; ++c) {
-            const vec difference = from(tile, (enum sphgi_array)(SPHGI_GX + first + c), k);
-            for (int32_t b = 0; b < n; ++b)
-                sum[c * n + b] = minus(sum[c * n + b], difference, p[b]);
-        }
+        vec p[6];
+        products_at(tile, k, three, p);
+        vec difference[3];
+        for (int32_t c = 0; c < count; ++c)
+            difference[c] = from(tile, (enum sphgi_array)(SPHGI_GX + first + c), k);
+        for (int32_t b = 0; b < n; ++b)
+            for (int32_t c = 0; c < count; ++c)
+                sum[c * n + b] = minus(sum[c * n + b], difference[c], p[b]);
     }
     end_tile(tile, sum, count * n, sums + first * n * SPHGI_WIDTH);
 }

@@ -209,6 +209,8 @@ void sphgi_weigh_tile(struct sphgi_worker *w)
         p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */
         p->shape_factors(&w->shape, w->tile.arrays, count);
+    if (plan->quadratic)
+        p->shape_products(&w->tile, plan->dimension);
 }
 
 void sphgi_evaluate_tile(struct sphgi_worker *w)

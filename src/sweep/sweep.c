@@ -68,7 +68,7 @@ static struct sphgi_kept_weights take_weights(const struct sphgi_sweep *sweep)
                                                                                : scheme->method,
                                         .radius = scheme->radius,
                                         .volume = sweep->volumes ? -1 : sweep->volume};
-    if (!sphgi_forms_factors_alone(sweep) || sphgi_is_masked(sweep))
+    if (!sphgi_forms_factors_alone(sweep) || sphgi_is_masked(sweep) || sweep->plan->quadratic)
         return (struct sphgi_kept_weights){.number = 0};
     return sphgi_weights_take(sweep->set->neighbors, &of, sweep->set->same_volumes);
 }

@@ -132,6 +132,7 @@ static void open_scheme(struct sphgi_worker *w)
         (struct sphgi_shape){.kernel = scheme->kernel,
                              .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
                              .dimension = d,
+                             .quadratic = plan->quadratic,
                              .inverse_h = scaled ? 1 : 1 / h,
                              .w_scale = sphgi_factor_of_h(scheme) / (plan->quadratic ? 1 : h),
                              .value_scale = sphgi_kernel_sigma(scheme->kernel, d)};
