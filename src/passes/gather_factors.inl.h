@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Pairs and their factors in one loop: what most sweeps do, and most of what they do. Order 2 has
- * offsets in units of H, and their products. */
+/* Pairs and their factors in one loop: what most sweeps do, and most of what they do. */
 
 /* masked: each pair is tested. Of what is none nothing reaches a sum, whatever its rows hold; the
  * root and the kernel do not wait for the answer. */
 SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,
                                      const int32_t *targets, struct sphgi_tile *tile,
                                      sphg_kernel kernel, sphg_method method, bool three,
-                                     bool volumes, bool masked, bool quadratic)
+                                     bool volumes, bool masked)
 {
     const struct four own = target_rows(g, targets);
     const vec scale = factor_scale(shape, method), inverse_h = inverse_radius(shape);
-    const vec volume = splat(R(g->volume)), radius = splat(R(g->cutoff)), unit = splat(R(g->unit));
+    const vec volume = splat(R(g->volume)), radius = splat(R(g->cutoff));
     const vec cutoff = square_of_cutoff(g, g->radii ? own.w : radius);
     const real *rows = g->rows;
     const uint32_t *ids = tile->ids;
@@ -27,14 +26,8 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         vec square = plus(dx * dx, dy, dy);
         if (three)
             square = plus(square, dz, dz);
-        vec r = vsqrt(square);
-        if (quadratic) {
-            dx *= unit;
-            dy *= unit;
-            dz *= unit;
-            r *= unit;
-        }
-        vec s = factor_of(scale, inverse_h, r, volumes ? row.w : volume, kernel, method);
+        vec s =
+            factor_of(scale, inverse_h, vsqrt(square), volumes ? row.w : volume, kernel, method);
         if (masked) {
             const mask inside = less(square_distance(dx, dy, dz), cutoff);
             keep_ids(inside, g->dummy, ids, kept);
@@ -51,8 +44,6 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         if (volumes)
             store(at + SPHGI_V * SPHGI_TILE, row.w);
         store(at + SPHGI_S * SPHGI_TILE, s);
-        if (quadratic)
-            put_products(at, s, (const vec[]){dx, dy, dz}, three);
     }
     if (masked) {
         tile->ids = tile->own_ids;
@@ -67,18 +58,15 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
         factors_by_method(g, shape, targets, tile, SPHG_##name);                                   \
     }
 
-/* Order 2 comes here with pairs that need no test. */
-SPHGI_TEMPLATE void factors_by_order(const struct sphgi_gather *g, const struct sphgi_shape *shape,
-                                     const int32_t *targets, struct sphgi_tile *tile,
-                                     sphg_kernel kernel, sphg_method method, bool three,
-                                     bool volumes)
+SPHGI_TEMPLATE void factors_by_mask(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                    const int32_t *targets, struct sphgi_tile *tile,
+                                    sphg_kernel kernel, sphg_method method, bool three,
+                                    bool volumes)
 {
-    if (shape->quadratic)
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false, true);
-    else if (g->masked)
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, true, false);
+    if (g->masked)
+        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, true);
     else
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false, false);
+        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false);
 }
 
 SPHGI_TEMPLATE void factors_by_shape(const struct sphgi_gather *g, const struct sphgi_shape *shape,
@@ -86,13 +74,13 @@ SPHGI_TEMPLATE void factors_by_shape(const struct sphgi_gather *g, const struct 
                                      sphg_kernel kernel, sphg_method method)
 {
     if (g->dimension == 3 && g->volumes)
-        factors_by_order(g, shape, targets, tile, kernel, method, true, true);
+        factors_by_mask(g, shape, targets, tile, kernel, method, true, true);
     else if (g->dimension == 3)
-        factors_by_order(g, shape, targets, tile, kernel, method, true, false);
+        factors_by_mask(g, shape, targets, tile, kernel, method, true, false);
     else if (g->volumes)
-        factors_by_order(g, shape, targets, tile, kernel, method, false, true);
+        factors_by_mask(g, shape, targets, tile, kernel, method, false, true);
     else
-        factors_by_order(g, shape, targets, tile, kernel, method, false, false);
+        factors_by_mask(g, shape, targets, tile, kernel, method, false, false);
 }
 
 SPHGI_TEMPLATE void factors_by_method(const struct sphgi_gather *g, const struct sphgi_shape *shape,

@@ -130,7 +130,6 @@ struct sphgi_shape {
     double inverse_h;   /* from the unit of the offsets to q = r / H */
     double w_scale;     /* sigma / H; RKPM and MLS sigma / (mu2 H) */
     double value_scale; /* sigma */
-    bool quadratic;     /* order 2: products of offsets are wanted */
     const void *inverse_lanes,
         *factor_lanes; /* instead of inverse_h and w_scale, a number per lane,
                           where targets have radii of their own; or NULL */
@@ -159,6 +158,7 @@ struct sphgi_second {
     double high;                 /* eps, below which curvature is borrowed */
     double off, diagonal, trace; /* whitening of products of offsets: of x_a x_b, of x_a x_a, and of
                                     the sum of these */
+    bool whole; /* R is wanted, the part of a correction that gives second derivatives */
 };
 
 /* Curvature taken from neighbours (theory.md, section 9). Memory of lanes. */
@@ -280,11 +280,13 @@ struct sphgi_passes {
      * tile. [0]: f32 arrays, [1]: f64. Masked: what is no pair gets the dummy's id. */
     void (*gather[2])(const struct sphgi_gather *gather, const int32_t *targets, int32_t lanes,
                       struct sphgi_tile *tile);
-    /* The same with the factors s_ij instead of the distances, on open axes; for order 2, of pairs
-     * that need no test, with their products with the offsets, too. Rows of the type of the arrays.
-     */
+    /* The same with the factors s_ij instead of the distances, on open axes. Rows of the type of
+     * the arrays. */
     void (*gather_factors)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
                            const int32_t *targets, struct sphgi_tile *tile);
+    /* The same of pairs that need no test, with offsets in units of H. */
+    void (*gather_quadratic)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                             const int32_t *targets, struct sphgi_tile *tile);
 
     /* The same where rows hold the radii of sources: s_ij without V_j into SPHGI_S, and w or w' / q
      * with the source's radius into SPHGI_D; and of pairs that gather() has put into the tile, with
@@ -336,7 +338,8 @@ struct sphgi_passes {
                         const void *rows);
     void (*shape_weights)(const struct sphgi_shape *shape, void *arrays, int32_t count);
     void (*shape_values)(void *arrays, int32_t count);
-    void (*shape_products)(const struct sphgi_tile *tile, int32_t dimension); /* of order 2 */
+    /* What order 2 sums over, where sum_quadratic_moments has not left it. */
+    void (*shape_products)(const struct sphgi_tile *tile, int32_t dimension);
     /* W of shape_weights where factors leave it alone; and V_j W of it, V_j in rows, times unit and
      * a number per lane, or 1. */
     void (*keep_kernel)(void *arrays, int32_t count);

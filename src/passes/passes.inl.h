@@ -35,6 +35,7 @@
 #include "near.inl.h"
 #include "shape.inl.h"
 #include "gather_factors.inl.h"
+#include "gather_quadratic.inl.h"
 #include "kept_factors.inl.h"
 #include "sums.inl.h"
 #include "other_side.inl.h"
@@ -73,6 +74,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
 #endif
     .largest_move = largest_move,
     .gather_factors = gather_factors,
+    .gather_quadratic = gather_quadratic,
     .gather_both = gather_both,
     .weigh_both = weigh_both,
     .gather_offsets = gather_offsets,

@@ -4,6 +4,13 @@
 
 enum { PAIRS_MOST = 6 };
 
+/* Loops over the pairs whose numbers are to be constants, lest matrices stay in memory. */
+#if defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#else
+#define UNROLLED _Pragma("GCC unroll 6")
+#endif
+
 /* Index of the product of two pairs among the sums of fourth order. */
 SPHGI_TEMPLATE int fourth_index(int k, int l, bool three)
 {
@@ -169,11 +176,13 @@ SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sum
         }
         whiten(second, R(1), m3[a], three);
     }
+    UNROLLED
     for (int k = 0; k < n; ++k) {
         for (int l = 0; l < n; ++l)
             b->s[k][l] = factor * load(fourth + fourth_index(k, l, three) * SPHGI_WIDTH);
         whiten(second, R(1), b->s[k], three);
     }
+    UNROLLED
     for (int l = 0; l < n; ++l) {
         vec column[PAIRS_MOST];
         for (int k = 0; k < n; ++k)
@@ -227,15 +236,30 @@ SPHGI_TEMPLATE void measure(const struct sphgi_second *second, const struct bloc
     r->dropped = second->policy == SPHG_IDENTITY ? less(zero, r->low) : first_lanes(0);
 }
 
-/* What is resolved of the curvature: F, and how many directions that comes to. borrows: r->beta is
- * given, and the shift grows with it. */
+/* F where the shift is not 0: in few vectors, so that it stands apart. */
+SPHGI_TEMPLATE void shift_block(struct block *b, vec shift, mask whole,
+                                vec f[PAIRS_MOST][PAIRS_MOST], struct resolution *r, bool three)
+{
+    const int n = three ? 6 : 3;
+    vec shifted[PAIRS_MOST][PAIRS_MOST];
+    mask sound = inverse_by_columns(b->s, shift, shifted, three);
+    sound &= ~r->dropped;
+    for (int k = 0; k < n; ++k)
+        for (int l = 0; l <= k; ++l)
+            f[k][l] = select(whole, f[k][l], where(sound, shifted[k][l]));
+    const vec lost = minus(splat(R(n)), shift, trace_of(shifted, n));
+    r->left = select(whole, r->left, where(sound, lost));
+}
+
+/* What is resolved of the curvature: F, from the inverse of S, and how many directions that comes
+ * to. positive: the lanes whose pivots were. borrows: r->beta is given, and the shift grows with
+ * it. */
 SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, vec kept,
-                           vec f[PAIRS_MOST][PAIRS_MOST], struct resolution *r, bool borrows,
-                           bool three)
+                           vec f[PAIRS_MOST][PAIRS_MOST], mask positive, struct resolution *r,
+                           bool borrows, bool three)
 {
     const int n = three ? 6 : 3;
     const vec zero = splat(R(0));
-    const mask positive = inverse_by_columns(b->s, zero, f, three);
     measure(second, b, f, positive, r, three);
     vec shift = r->low;
     if (borrows) {
@@ -243,32 +267,43 @@ SPHGI_TEMPLATE vec resolve(const struct sphgi_second *second, struct block *b, v
         r->high = shift_of(second, r->t, select(less(given, r->eps), r->eps, given));
         shift = plus(shift, r->beta, r->high);
     }
-    const mask whole = at_most(shift, zero);
+    const mask whole = at_most(shift, zero), part = less(kept, splat(R(1)));
     r->left = splat(R(n)); /* tr F S / kept = n - s tr (S + s)^-1 */
-    if (bits_of(~whole) & ALL) {
-        vec shifted[PAIRS_MOST][PAIRS_MOST];
-        mask sound = inverse_by_columns(b->s, shift, shifted, three);
-        sound &= ~r->dropped;
+    if (bits_of(~whole) & ALL)
+        shift_block(b, shift, whole, f, r, three);
+    if (bits_of(part) & ALL) { /* else it is 1 */
+        const mask some = less(zero, kept);
         for (int k = 0; k < n; ++k)
             for (int l = 0; l <= k; ++l)
-                f[k][l] = select(whole, f[k][l], where(sound, shifted[k][l]));
-        const vec lost = minus(splat(R(n)), shift, trace_of(shifted, n));
-        r->left = select(whole, r->left, where(sound, lost));
+                f[k][l] = where(some, kept * f[k][l]);
     }
-    const mask some = less(zero, kept);
     for (int k = 0; k < n; ++k)
-        for (int l = 0; l <= k; ++l) {
-            f[k][l] = where(some, kept * f[k][l]);
+        for (int l = 0; l < k; ++l)
             f[l][k] = f[k][l];
-        }
-    const mask exact = whole & ~less(kept, splat(R(1)));
-    return select(exact, splat(R(n)), vmin(kept * r->left, splat(R(n - 1))));
+    return select(whole & ~part, splat(R(n)), vmin(kept * r->left, splat(R(n - 1))));
 }
 
-/* P = C + K F K^T, Q = -K F, R = F: the inverse of all moments, in the basis of derivatives. */
+/* R = F, in the basis of derivatives. */
+SPHGI_TEMPLATE void put_rest(const struct sphgi_second *second, vec f[PAIRS_MOST][PAIRS_MOST],
+                             vec factor, real *rest, bool three)
+{
+    const int n = three ? 6 : 3;
+    for (int k = 0; k < n; ++k)
+        whiten(second, R(2), f[k], three);
+    for (int l = 0; l < n; ++l) {
+        vec column[PAIRS_MOST];
+        for (int k = 0; k < n; ++k)
+            column[k] = f[k][l];
+        whiten(second, R(2), column, three);
+        for (int k = 0; k <= l; ++k)
+            store(rest + sphgi_pair_index(k, l, n) * SPHGI_WIDTH, factor * column[k]);
+    }
+}
+
+/* P = C + K F K^T, Q = -K F and, if whole, R = F: the inverse of all moments. */
 SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct block *b,
                                 vec f[PAIRS_MOST][PAIRS_MOST], mask some, vec factor, real *out,
-                                bool three)
+                                bool whole, bool three)
 {
     const int d = three ? 3 : 2, n = three ? 6 : 3;
     real *cross = out + n * SPHGI_WIDTH, *rest = cross + d * n * SPHGI_WIDTH;
@@ -293,14 +328,6 @@ SPHGI_TEMPLATE void join_blocks(const struct sphgi_second *second, const struct 
         for (int k = 0; k < n; ++k)
             store(cross + (a * n + k) * SPHGI_WIDTH, factor * q[a][k]);
     }
-    for (int k = 0; k < n; ++k)
-        whiten(second, R(2), f[k], three);
-    for (int l = 0; l < n; ++l) {
-        vec column[PAIRS_MOST];
-        for (int k = 0; k < n; ++k)
-            column[k] = f[k][l];
-        whiten(second, R(2), column, three);
-        for (int k = 0; k <= l; ++k)
-            store(rest + sphgi_pair_index(k, l, n) * SPHGI_WIDTH, factor * column[k]);
-    }
+    if (whole)
+        put_rest(second, f, factor, rest, three);
 }

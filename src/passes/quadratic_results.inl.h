@@ -10,41 +10,53 @@ SPHGI_TEMPLATE void note_directions(vec resolved, int32_t lanes, uint8_t *direct
     }
 }
 
-SPHGI_TEMPLATE void quadratic_as(const struct sphgi_second *second, const real *sums,
-                                 const real *scale, const real *kept, int32_t l,
-                                 const struct sphgi_borrowing *borrowing, real *out,
-                                 uint8_t *directions, int32_t lanes, bool borrows, bool three)
-{
-    vec factor = splat(R(1)), f[PAIRS_MOST][PAIRS_MOST];
-    if (scale)
-        factor = load(scale);
+/* One vector of targets on its way. */
+struct solving {
     struct block block;
     struct resolution found;
-    const vec share = load(kept);
-    const mask some = less(splat(R(0)), share);
-    if (borrows)
-        look_for_lenders(borrowing, l, factor, &found);
-    eliminate(second, sums, factor, &block, three);
-    const vec resolved = resolve(second, &block, share, f, &found, borrows, three);
-    if (borrows)
-        note_borrowing(second, sums, factor, share, &block, &found, f, l, borrowing, three);
-    join_blocks(second, &block, f, some, factor, out, three);
-    note_directions(resolved, lanes, directions);
+    vec f[PAIRS_MOST][PAIRS_MOST];
+    mask positive;
+};
+
+SPHGI_TEMPLATE vec factor_at(const real *scale, int32_t l)
+{
+    if (scale)
+        return load(scale + l);
+    return splat(R(1));
 }
 
-SPHGI_TEMPLATE void invert_quadratic_as(int32_t width, int32_t dimension,
-                                        const struct sphgi_second *second, const real *sums,
-                                        const real *scale, const real *kept, int32_t lanes,
-                                        const struct sphgi_borrowing *borrowing, real *out,
-                                        uint8_t *directions, bool borrows)
+/* Step by step for all vectors: what one waits for, another does. */
+SPHGI_TEMPLATE void invert_quadratic_as(int32_t width, const struct sphgi_second *second,
+                                        const real *sums, const real *scale, const real *kept,
+                                        int32_t lanes, const struct sphgi_borrowing *borrowing,
+                                        real *out, uint8_t *directions, bool borrows, bool three)
 {
-    for (int32_t l = 0; l < width; l += LANES)
-        if (dimension == 3)
-            quadratic_as(second, sums + l, scale ? scale + l : NULL, kept + l, l, borrowing,
-                         out + l, directions + l, lanes - l, borrows, true);
-        else
-            quadratic_as(second, sums + l, scale ? scale + l : NULL, kept + l, l, borrowing,
-                         out + l, directions + l, lanes - l, borrows, false);
+    struct solving all[SPHGI_WIDTH / LANES];
+    for (int32_t l = 0; l < width; l += LANES) {
+        struct solving *one = &all[l / LANES];
+        const vec factor = factor_at(scale, l);
+        if (borrows)
+            look_for_lenders(borrowing, l, factor, &one->found);
+        eliminate(second, sums + l, factor, &one->block, three);
+    }
+    for (struct solving *one = all; one < all + width / LANES; ++one)
+        one->positive = inverse_by_columns(one->block.s, splat(R(0)), one->f, three);
+    for (int32_t l = 0; l < width; l += LANES) {
+        struct solving *one = &all[l / LANES];
+        const vec share = load(kept + l);
+        const vec resolved =
+            resolve(second, &one->block, share, one->f, one->positive, &one->found, borrows, three);
+        if (borrows)
+            note_borrowing(second, sums + l, factor_at(scale, l), share, &one->block, &one->found,
+                           one->f, l, borrowing, three);
+        note_directions(resolved, lanes - l, directions + l);
+    }
+    for (int32_t l = 0; l < width; l += LANES) {
+        struct solving *one = &all[l / LANES];
+        const mask some = less(splat(R(0)), load(kept + l));
+        join_blocks(second, &one->block, one->f, some, factor_at(scale, l), out + l,
+                    borrows || second->whole, three);
+    }
 }
 
 static void invert_quadratic(int32_t width, int32_t dimension, const struct sphgi_second *second,
@@ -52,12 +64,18 @@ static void invert_quadratic(int32_t width, int32_t dimension, const struct sphg
                              const struct sphgi_borrowing *borrowing, void *coefficients,
                              uint8_t *directions)
 {
-    if (borrowing)
-        invert_quadratic_as(width, dimension, second, sums, scale, kept, lanes, borrowing,
-                            coefficients, directions, true);
+    if (dimension == 3 && borrowing)
+        invert_quadratic_as(width, second, sums, scale, kept, lanes, borrowing, coefficients,
+                            directions, true, true);
+    else if (dimension == 3)
+        invert_quadratic_as(width, second, sums, scale, kept, lanes, NULL, coefficients, directions,
+                            false, true);
+    else if (borrowing)
+        invert_quadratic_as(width, second, sums, scale, kept, lanes, borrowing, coefficients,
+                            directions, true, false);
     else
-        invert_quadratic_as(width, dimension, second, sums, scale, kept, lanes, NULL, coefficients,
-                            directions, false);
+        invert_quadratic_as(width, second, sums, scale, kept, lanes, NULL, coefficients, directions,
+                            false, false);
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */

@@ -3,13 +3,26 @@
  * is -s. Index of x_a x_b: sphgi_pair_index. Sums of third and fourth order hold each product once,
  * in the order of the alphabet. */
 
+/* The products x_a x_b, times first[a] instead of x_a. */
+SPHGI_TEMPLATE void pair_products(const vec *first, const vec *x, bool three, vec *products)
+{
+    const int d = three ? 3 : 2;
+    for (int a = 0; a < d; ++a)
+        for (int b = a; b < d; ++b)
+            products[sphgi_pair_index(a, b, d)] = first[a] * x[b];
+}
+
 SPHGI_TEMPLATE void offsets_at(const struct sphgi_tile *tile, int32_t k, bool three, vec *x)
 {
     for (int a = 0; a < (three ? 3 : 2); ++a)
         x[a] = from(tile, (enum sphgi_array)(SPHGI_X + a), k);
 }
 
-/* s_ij x_a x_b, as gather_factors or shape_products have left them. */
+/* Sixteen registers hold few sums beside products, so that these stay in arrays for other loops; 32
+ * hold as many as can be added while one loop forms them. */
+enum { KEEPS_PRODUCTS = VECTOR_BYTES < 64 };
+
+/* s_ij x_a x_b */
 SPHGI_TEMPLATE void products_at(const struct sphgi_tile *tile, int32_t k, bool three, vec *products)
 {
     vec x[3], g[3];
@@ -22,19 +35,26 @@ SPHGI_TEMPLATE void products_at(const struct sphgi_tile *tile, int32_t k, bool t
     pair_products(g, x, three, products);
 }
 
+SPHGI_TEMPLATE void keep_products(const struct sphgi_tile *tile, int32_t k, bool three,
+                                  const vec *products)
+{
+    for (int c = 0; KEEPS_PRODUCTS && c < (three ? 6 : 3); ++c)
+        store(array_of(tile->arrays, (enum sphgi_array)(SPHGI_P + c)) + k, products[c]);
+}
+
 SPHGI_TEMPLATE void products_as(const struct sphgi_tile *tile, bool three)
 {
-    for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3];
+    for (int32_t k = 0; KEEPS_PRODUCTS && k < places_of(tile); k += LANES) {
+        vec x[3], g[3], p[6];
         offsets_at(tile, k, three, x);
-        put_products((real *)tile->arrays + k, from(tile, SPHGI_S, k), x, three);
+        vectors_at(tile, k, SPHGI_FACTORS, three, g);
+        pair_products(g, x, three, p);
+        keep_products(tile, k, three, p);
     }
 }
 
 static void shape_products(const struct sphgi_tile *tile, int32_t dimension)
 {
-    if (!KEEPS_PRODUCTS)
-        return;
     if (dimension == 3)
         products_as(tile, true);
     else
@@ -70,26 +90,30 @@ SPHGI_TEMPLATE void third_moments_as(const struct sphgi_tile *tile, real *sums, 
     end_tile(tile, sum, n, sums);
 }
 
-/* Those of second order, as moments_as has them, and of third in one loop. */
-SPHGI_TEMPLATE void first_moments_as(const struct sphgi_tile *tile, real *sums, bool three)
+/* Those of second order, as moments_as has them, with the products; and if there is room for them
+ * those of third. */
+SPHGI_TEMPLATE void first_moments_as(const struct sphgi_tile *tile, real *sums, bool third,
+                                     bool three)
 {
     const int d = three ? 3 : 2;
-    const int32_t n = three ? 6 : 3, triples = three ? 10 : 4;
+    const int32_t n = three ? 6 : 3, all = third ? n + (three ? 10 : 4) : n;
     vec sum[16];
-    clear(sum, n + triples);
+    clear(sum, all);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         vec x[3], g[3], p[6];
         offsets_at(tile, k, three, x);
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
         pair_products(g, x, three, p);
+        keep_products(tile, k, three, p);
         for (int a = 0; a < d; ++a)
             for (int c = a; c < d; ++c) {
                 const int m = sphgi_pair_index(a, c, d);
                 sum[m] = minus(sum[m], g[a], x[c]);
             }
-        add_triples(sum + n, p, x, three);
+        if (third)
+            add_triples(sum + n, p, x, three);
     }
-    end_tile(tile, sum, n + triples, sums);
+    end_tile(tile, sum, all, sums);
 }
 
 /* Which two pairs make each product of four. */
@@ -120,11 +144,11 @@ SPHGI_TEMPLATE void quadratic_moments_as(const struct sphgi_tile *tile, real *su
 {
     const int d = three ? 3 : 2, pairs = three ? 6 : 3, triples = three ? 10 : 4;
     real *third = sums + pairs * SPHGI_WIDTH, *fourth = third + triples * SPHGI_WIDTH;
-    if (VECTOR_BYTES == 64) {
-        first_moments_as(tile, sums, three);
-    } else {
-        moments_as(tile, sums, three);
+    if (KEEPS_PRODUCTS) {
+        first_moments_as(tile, sums, false, three);
         third_moments_as(tile, third, three);
+    } else {
+        first_moments_as(tile, sums, true, three);
     }
     if (d == 2 || VECTOR_BYTES == 64) {
         fourth_moments_as(tile, fourth, three, 0, three ? 15 : 5);

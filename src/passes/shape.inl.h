@@ -29,33 +29,6 @@ SPHGI_TEMPLATE vec inverse_radius(const struct sphgi_shape *shape)
     return shape->inverse_lanes ? load(shape->inverse_lanes) : splat(R(shape->inverse_h));
 }
 
-/* The products x_a x_b, times first[a] instead of x_a. */
-SPHGI_TEMPLATE void pair_products(const vec *first, const vec *x, bool three, vec *products)
-{
-    const int d = three ? 3 : 2;
-    for (int a = 0; a < d; ++a)
-        for (int b = a; b < d; ++b)
-            products[sphgi_pair_index(a, b, d)] = first[a] * x[b];
-}
-
-/* Sixteen registers hold too few sums beside products, so that these are read again and again; 32
- * hold as many as can be added while one loop forms them. */
-enum { KEEPS_PRODUCTS = VECTOR_BYTES < 64 };
-
-/* Those of order 2, s_ij x_a x_b, at the place of a pair in the arrays. */
-SPHGI_TEMPLATE void put_products(real *at, vec s, const vec *x, bool three)
-{
-    const int d = three ? 3 : 2;
-    vec first[3], products[6];
-    if (!KEEPS_PRODUCTS)
-        return;
-    for (int a = 0; a < d; ++a)
-        first[a] = s * x[a];
-    pair_products(first, x, three, products);
-    for (int k = 0; k < d * (d + 1) / 2; ++k)
-        store(at + (SPHGI_P + k) * SPHGI_TILE, products[k]);
-}
-
 SPHGI_TEMPLATE void factors_as(const struct sphgi_shape *shape, real *a, int32_t count,
                                sphg_kernel kernel, sphg_method method)
 {

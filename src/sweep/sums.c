@@ -209,8 +209,6 @@ void sphgi_weigh_tile(struct sphgi_worker *w)
         p->sum_volume(&w->tile, sphgi_lane(w, w->reduced, plan->volume_sum));
     if (plan->differentiates || plan->computes) /* takes the place of the weights */
         p->shape_factors(&w->shape, w->tile.arrays, count);
-    if (plan->quadratic)
-        p->shape_products(&w->tile, plan->dimension);
 }
 
 void sphgi_evaluate_tile(struct sphgi_worker *w)
@@ -223,6 +221,8 @@ void sphgi_evaluate_tile(struct sphgi_worker *w)
         p->sum_classic(tile, plan->dimension, plan->weighted, moments);
     else if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->computes && plan->quadratic)
         p->sum_quadratic_moments(tile, plan->dimension, moments);
+    else if (plan->quadratic)
+        p->shape_products(tile, plan->dimension);
     else if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->computes)
         p->sum_moments(tile, plan->dimension, moments);
     if (w->batch.summing & SPHGI_SUM_SLOPES)

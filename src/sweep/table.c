@@ -5,13 +5,19 @@
 
 /* ---- Units ----------------------------------------------------------------------------------- */
 
+/* Shares that somebody reads: of order 2 the last one only for second derivatives. */
+static int shares_in_use(const struct sphgi_worker *w)
+{
+    return w->sweep->plan->quadratic && !w->second.whole ? SPHGI_SHARES - 1 : SPHGI_SHARES;
+}
+
 void sphgi_round_as_table(struct sphgi_worker *w, char *coefficients, bool wanted)
 {
     if (w->sweep->plan->graded) {
         sphgi_round_by_radius(w, wanted);
         return;
     }
-    for (int k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
+    for (int k = 0; k < shares_in_use(w) && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         const bool exact = share->mantissa == 1;
         char *ours = sphgi_lane(w, coefficients, share->first);

@@ -52,6 +52,10 @@ static void copy_steps(struct sphgi_worker *w, const struct sphgi_lane_lists *li
 static void gather_factors(struct sphgi_worker *w, int32_t begin)
 {
     const struct sphgi_passes *p = w->passes;
+    if (w->sweep->plan->quadratic) {
+        p->gather_quadratic(&w->gather, &w->shape, sphgi_places(w), &w->tile);
+        return;
+    }
     const size_t step = SPHGI_GROUP * sphgi_size_of_type(w->sweep->plan->type);
     char *kept = w->batch.kept ? w->batch.kept + (size_t)begin * step : NULL;
     if (kept && w->batch.kept_stand) {

@@ -105,6 +105,16 @@ size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
     return carve(&measured, sweep, NULL);
 }
 
+/* Of order 2: second derivatives, or a table of all numbers. */
+static bool wants_second(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    bool wanted = plan->correction.count || plan->lends || sweep->coefficients;
+    for (int32_t k = 0; k < plan->field_count; ++k)
+        wanted |= plan->fields[k].hessian[0].count || plan->fields[k].laplacian.count;
+    return wanted;
+}
+
 /* Linearised methods sum in the units of the positions, classic ones and order 2 in units of H:
  * their sums mix powers of the offsets. */
 static void open_scheme(struct sphgi_worker *w)
@@ -132,7 +142,6 @@ static void open_scheme(struct sphgi_worker *w)
         (struct sphgi_shape){.kernel = scheme->kernel,
                              .method = scheme->method == SPHG_PLAIN ? SPHG_KGC : scheme->method,
                              .dimension = d,
-                             .quadratic = plan->quadratic,
                              .inverse_h = scaled ? 1 : 1 / h,
                              .w_scale = sphgi_factor_of_h(scheme) / (plan->quadratic ? 1 : h),
                              .value_scale = sphgi_kernel_sigma(scheme->kernel, d)};
@@ -144,6 +153,7 @@ static void open_scheme(struct sphgi_worker *w)
                                             .unit = plan->quadratic ? 1 : 1 / h};
     if (plan->quadratic)
         w->second = sphgi_second_of(scheme);
+    w->second.whole = wants_second(w->sweep);
 }
 
 void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, int32_t number)

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/* Pairs and their factors in one loop (gather_factors.inl.h) for order 2, whose offsets are in
+ * units of H. Few sweeps are of this kind: what costs an instruction is asked in the loop, not
+ * before. */
+
+SPHGI_TEMPLATE void quadratic_of_pairs(const struct sphgi_gather *g,
+                                       const struct sphgi_shape *shape, const int32_t *targets,
+                                       struct sphgi_tile *tile, sphg_kernel kernel, bool slope,
+                                       bool three)
+{
+    const sphg_method method = slope ? SPHG_KGC : SPHG_RKPM;
+    const struct four own = target_rows(g, targets);
+    const vec scale = factor_scale(shape, method), inverse_h = inverse_radius(shape);
+    const vec volume = splat(R(g->volume)), unit = splat(R(g->unit)), one = splat(R(1));
+    const mask in_rows = first_lanes(g->volumes ? LANES : 0);
+    const mask weighed = first_lanes(shape->method == SPHG_MLS ? 0 : LANES);
+    const uint32_t *ids = tile->ids;
+    const int32_t steps = tile->steps;
+    const ptrdiff_t stride = tile->id_stride;
+    const ptrdiff_t ahead = ids == tile->own_ids ? 0 : AHEAD * stride;
+    real *at = tile->arrays;
+    for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride) {
+        __builtin_prefetch(ids + ahead);
+        const struct four row = gather_rows(g->rows, ids);
+        const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
+        const vec v = select(in_rows, row.w, volume);
+        vec square = plus(dx * dx, dy, dy);
+        if (three)
+            square = plus(square, dz, dz);
+        store(at + SPHGI_X * SPHGI_TILE, dx * unit);
+        store(at + SPHGI_Y * SPHGI_TILE, dy * unit);
+        if (three)
+            store(at + SPHGI_Z * SPHGI_TILE, dz * unit);
+        store(at + SPHGI_V * SPHGI_TILE, v);
+        store(at + SPHGI_S * SPHGI_TILE, factor_of(scale, inverse_h, vsqrt(square) * unit,
+                                                   select(weighed, v, one), kernel, method));
+    }
+}
+
+SPHGI_TEMPLATE void quadratic_by_method(const struct sphgi_gather *g,
+                                        const struct sphgi_shape *shape, const int32_t *targets,
+                                        struct sphgi_tile *tile, sphg_kernel kernel)
+{
+    const bool slope = shape->method == SPHG_KGC;
+    if (g->dimension == 3 && slope)
+        quadratic_of_pairs(g, shape, targets, tile, kernel, true, true);
+    else if (g->dimension == 3)
+        quadratic_of_pairs(g, shape, targets, tile, kernel, false, true);
+    else if (slope)
+        quadratic_of_pairs(g, shape, targets, tile, kernel, true, false);
+    else
+        quadratic_of_pairs(g, shape, targets, tile, kernel, false, false);
+}
+
+#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
+    static void prefix##_quadratic(const struct sphgi_gather *g, const struct sphgi_shape *shape,  \
+                                   const int32_t *targets, struct sphgi_tile *tile)                \
+    {                                                                                              \
+        quadratic_by_method(g, shape, targets, tile, SPHG_##name);                                 \
+    }
+SPHGI_KERNELS(SPHGI_INSTANCE)
+#undef SPHGI_INSTANCE
+
+static void gather_quadratic(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                             const int32_t *targets, struct sphgi_tile *tile)
+{
+    static void (*const instance[])(const struct sphgi_gather *, const struct sphgi_shape *,
+                                    const int32_t *, struct sphgi_tile *) = {
+#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_quadratic,
+        SPHGI_KERNELS(SPHGI_ENTRY)
+#undef SPHGI_ENTRY
+    };
+    instance[shape->kernel](gather, shape, targets, tile);
+}
