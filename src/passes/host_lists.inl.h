@@ -3,50 +3,6 @@
 
 /* ---- A list ---------------------------------------------------------------------------------- */
 
-#if defined(__AVX512F__)
-typedef __m512i some_ids;
-
-struct cleaning {
-    some_ids mask, sources, self, largest;
-};
-
-SPHGI_TEMPLATE some_ids all_ids(uint32_t number)
-{
-    return _mm512_set1_epi32((int)number);
-}
-
-/* Sixteen of the host's numbers, those that are there, to ids of rows: what is no source, and
- * `self`, becomes the dummy, the row behind the last source. */
-SPHGI_TEMPLATE void clean_sixteen(const int32_t *list, __mmask16 there, struct cleaning *how,
-                                  uint32_t *out)
-{
-    const __m512i number = _mm512_and_si512(_mm512_maskz_loadu_epi32(there, list), how->mask);
-    const __mmask16 others = _mm512_mask_cmpneq_epi32_mask(there, number, how->self);
-    const __m512i row = _mm512_mask_min_epu32(how->sources, others, how->sources, number);
-    how->largest = _mm512_max_epu32(how->largest, number);
-    _mm512_storeu_si512(out, _mm512_add_epi32(row, row)); /* SPHGI_ID_STEP */
-}
-
-SPHGI_TEMPLATE bool is_any_beyond(const struct cleaning *how)
-{
-    return _mm512_cmpge_epu32_mask(how->largest, how->sources);
-}
-
-/* `count` numbers; up to `steps` and the next multiple of sixteen the dummy follows. Behind the
- * list nothing is read. */
-SPHGI_TEMPLATE void clean_list(const int32_t *list, int32_t count, int32_t steps,
-                               struct cleaning *how, uint32_t *out)
-{
-    static const int32_t numbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const __m512i first = _mm512_loadu_si512(numbers), sixteen = _mm512_set1_epi32(16);
-    __m512i left = _mm512_sub_epi32(_mm512_set1_epi32(count), first);
-    for (int32_t k = 0; k < steps; k += 16) {
-        clean_sixteen(list + k, _mm512_cmpgt_epi32_mask(left, _mm512_setzero_si512()), how,
-                      out + k);
-        left = _mm512_sub_epi32(left, sixteen);
-    }
-}
-#else
 /* As many ids as an instruction takes, eight at most: where vectors are shorter than their type,
  * compilers compare number by number. */
 typedef uint32_t some_ids
@@ -110,7 +66,7 @@ SPHGI_TEMPLATE bool is_any_beyond(const struct cleaning *how)
     return all;
 }
 
-/* `count` numbers; up to `steps` the dummy follows. Both have room for multiples of SPHGI_PAD. */
+/* `count` numbers; up to `steps` the dummy follows. There is room for multiples of SPHGI_PAD. */
 SPHGI_TEMPLATE void clean_list(const int32_t *list, int32_t count, int32_t steps,
                                struct cleaning *how, uint32_t *out)
 {
@@ -131,7 +87,6 @@ SPHGI_TEMPLATE void clean_list(const int32_t *list, int32_t count, int32_t steps
             out[l] = clean[l];
     }
 }
-#endif
 
 SPHGI_TEMPLATE struct cleaning cleaning_by(const struct sphgi_cleaning *how)
 {
@@ -148,6 +103,80 @@ static bool clean_ids(const int32_t *list, int32_t count, const struct sphgi_cle
 }
 
 /* ---- Lists of a tile ------------------------------------------------------------------------- */
+
+/* What a slot is filled by. */
+#if defined(__AVX512F__)
+struct slot_cleaning {
+    __m512i mask, sources, self, largest;
+};
+
+SPHGI_TEMPLATE struct slot_cleaning slot_cleaning_by(const struct sphgi_cleaning *how)
+{
+    return (struct slot_cleaning){_mm512_set1_epi32((int)how->mask),
+                                  _mm512_set1_epi32((int)how->sources),
+                                  _mm512_set1_epi32((int)how->self), _mm512_setzero_si512()};
+}
+
+SPHGI_TEMPLATE void leave_out(struct slot_cleaning *how, int32_t self)
+{
+    how->self = _mm512_set1_epi32(self);
+}
+
+SPHGI_TEMPLATE void clean_sixteen(const int32_t *list, __mmask16 there, struct slot_cleaning *how,
+                                  uint32_t *out)
+{
+    const __m512i number = _mm512_and_si512(_mm512_maskz_loadu_epi32(there, list), how->mask);
+    const __mmask16 others = _mm512_mask_cmpneq_epi32_mask(there, number, how->self);
+    const __m512i row = _mm512_mask_min_epu32(how->sources, others, how->sources, number);
+    how->largest = _mm512_max_epu32(how->largest, number);
+    _mm512_storeu_si512(out, _mm512_add_epi32(row, row)); /* SPHGI_ID_STEP */
+}
+
+/* Behind a list's end nothing is read. Loads under a mask do not tell the machine what will be read
+ * next: somebody must have asked for it. */
+SPHGI_TEMPLATE void fill_slot(const int32_t *list, int32_t count, int32_t steps,
+                              struct slot_cleaning *how, uint32_t *slot)
+{
+    static const int32_t numbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const __m512i first = _mm512_loadu_si512(numbers), sixteen = _mm512_set1_epi32(16);
+    __m512i left = _mm512_sub_epi32(_mm512_set1_epi32(count), first);
+    for (int32_t k = 0; k < steps; k += 16) {
+        clean_sixteen(list + k, _mm512_cmpgt_epi32_mask(left, _mm512_setzero_si512()), how,
+                      slot + k);
+        left = _mm512_sub_epi32(left, sixteen);
+    }
+}
+
+SPHGI_TEMPLATE bool is_any_bad(const struct slot_cleaning *how)
+{
+    return _mm512_cmpge_epu32_mask(how->largest, how->sources);
+}
+#else
+struct slot_cleaning {
+    struct cleaning own;
+};
+
+SPHGI_TEMPLATE struct slot_cleaning slot_cleaning_by(const struct sphgi_cleaning *how)
+{
+    return (struct slot_cleaning){cleaning_by(how)};
+}
+
+SPHGI_TEMPLATE void leave_out(struct slot_cleaning *how, int32_t self)
+{
+    how->own.self = all_ids((uint32_t)self);
+}
+
+SPHGI_TEMPLATE void fill_slot(const int32_t *list, int32_t count, int32_t steps,
+                              struct slot_cleaning *how, uint32_t *slot)
+{
+    clean_list(list, count, steps, &how->own, slot);
+}
+
+SPHGI_TEMPLATE bool is_any_bad(const struct slot_cleaning *how)
+{
+    return is_any_beyond(&how->own);
+}
+#endif
 
 /* The lines of a list of usual length, or as many as the longest that comes takes: how many each
  * takes nobody could foresee. */
@@ -167,19 +196,19 @@ SPHGI_TEMPLATE void ask_ahead(const struct sphgi_slots *slots, int l)
 static bool fill_slots(const struct sphgi_lane_lists *lists, int32_t begin,
                        const struct sphgi_slots *slots, int32_t steps)
 {
-    struct cleaning own = cleaning_by(&slots->how);
+    struct slot_cleaning own = slot_cleaning_by(&slots->how);
     for (int l = 0; l < LANES; ++l) {
         uint32_t *slot = slots->ids + l * SPHGI_CHUNK;
         const int32_t left = lists->count[l] - begin;
         const int32_t count = left < 0 ? 0 : left < steps ? left : steps;
         if (slots->targets)
-            own.self = all_ids((uint32_t)slots->targets[l]);
-        clean_list((const int32_t *)(const void *)(count ? lists->ids[l] + begin : slot), count,
-                   steps, &own, slot);
+            leave_out(&own, slots->targets[l]);
+        fill_slot((const int32_t *)(const void *)(count ? lists->ids[l] + begin : slot), count,
+                  steps, &own, slot);
         if (slots->ahead)
             ask_ahead(slots, l);
     }
-    return is_any_beyond(&own);
+    return is_any_bad(&own);
 }
 
 /* Four steps of all slots. */

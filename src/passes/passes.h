@@ -310,8 +310,7 @@ struct sphgi_passes {
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,
                        struct sphgi_tile *tile);
 
-    /* A list of the host's becomes ids, padded to SPHGI_PAD; up to the next multiple of
-     * SPHGI_LANES_MOST there is room. True: it holds what is no source. */
+    /* A list of the host's becomes ids, padded to SPHGI_PAD. True: it holds what is no source. */
     bool (*clean_ids)(const int32_t *list, int32_t count, const struct sphgi_cleaning *how,
                       uint32_t *out);
     /* The same for steps [begin, begin + tile->steps) of lists of the host's, which become the ids

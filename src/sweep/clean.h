@@ -4,9 +4,8 @@
 #define SPHGI_CLEAN_H
 #include "worker.h"
 
-/* Ids of rows at out, padded to SPHGI_PAD, with room up to the next multiple of SPHGI_LANES_MOST:
- * the target itself, and what is no source, becomes the row behind the last source. What is no
- * source is noted. */
+/* Ids of rows at out, padded to SPHGI_PAD: the target itself, and what is no source, becomes the
+ * row behind the last source. What is no source is noted. */
 void sphgi_clean_list(struct sphgi_worker *worker, int32_t target, const uint32_t *list,
                       int32_t count, uint32_t *ids);
 
