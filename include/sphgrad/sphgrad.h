@@ -392,7 +392,7 @@ SPHG_API sphg_result sphg_neighbors_would_rebuild(sphg_context *context, const s
 /* Copies the positions and borrows your lists: leave them unchanged until the next build or
  * destroy. Pairs with r >= H add nothing. Indices are checked as operators read them.
  * With lists.copy they are checked and copied now, in about the time of a sweep, and take 4 bytes a
- * pair and some 50 a target. Each later sweep saves a fifth to a third of its time. row is asked
+ * pair and some 50 a target. Each later sweep saves a tenth to a fifth of its time. row is asked
  * several times a target.
  * Errors: ARGUMENT, TYPE, SIZE, NOT_FINITE, BUSY (old state kept); MEMORY, with copy INDEX (build
  * again). Cost: O(n), with copy O(n + pairs). */
