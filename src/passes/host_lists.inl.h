@@ -178,25 +178,12 @@ SPHGI_TEMPLATE bool is_any_bad(const struct slot_cleaning *how)
 }
 #endif
 
-/* The lines of a list of usual length, or as many as the longest that comes takes: how many each
- * takes nobody could foresee. */
-SPHGI_TEMPLATE void ask_ahead(const struct sphgi_slots *slots, int l)
-{
-    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */ };
-    const uintptr_t first = (uintptr_t)slots->ahead_begin * sizeof(uint32_t);
-    const uintptr_t bytes = (uintptr_t)slots->ahead_count * sizeof(uint32_t);
-    const uintptr_t list = (uintptr_t)slots->ahead[l] + first;
-    for (uintptr_t line = 0; line < USUAL; ++line)
-        __builtin_prefetch((const void *)(list + line * LINE));
-    for (uintptr_t line = USUAL; line < (bytes + LINE / 2) / LINE; ++line)
-        __builtin_prefetch((const void *)(list + line * LINE));
-}
-
 /* The numbers of each lane, from `begin` on, become ids in a slot of its own, as many for all. */
 static bool fill_slots(const struct sphgi_lane_lists *lists, int32_t begin,
                        const struct sphgi_slots *slots, int32_t steps)
 {
     struct slot_cleaning own = slot_cleaning_by(&slots->how);
+    const uintptr_t ahead = (uintptr_t)slots->ahead_begin * sizeof(uint32_t);
     for (int l = 0; l < LANES; ++l) {
         uint32_t *slot = slots->ids + l * SPHGI_CHUNK;
         const int32_t left = lists->count[l] - begin;
@@ -206,7 +193,7 @@ static bool fill_slots(const struct sphgi_lane_lists *lists, int32_t begin,
         fill_slot((const int32_t *)(const void *)(count ? lists->ids[l] + begin : slot), count,
                   steps, &own, slot);
         if (slots->ahead)
-            ask_ahead(slots, l);
+            sphgi_ask_for_numbers((uintptr_t)slots->ahead[l] + ahead, slots->ahead_count);
     }
     return is_any_bad(&own);
 }

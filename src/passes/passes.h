@@ -122,6 +122,18 @@ struct sphgi_slots {
     int32_t ahead_count;          /* and how many are of the longest */
 };
 
+/* Asks the memory for the numbers of a list of usual length, or for more if it may be longer: how
+ * many lines each list takes nobody could foresee. */
+static inline void sphgi_ask_for_numbers(uintptr_t list, int32_t count)
+{
+    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */ };
+    const uintptr_t bytes = (uintptr_t)count * sizeof(int32_t);
+    for (uintptr_t line = 0; line < USUAL; ++line)
+        __builtin_prefetch((const void *)(list + line * LINE));
+    for (uintptr_t line = USUAL; line < (bytes + LINE / 2) / LINE; ++line)
+        __builtin_prefetch((const void *)(list + line * LINE));
+}
+
 /* A smoothing kernel with everything multiplied into its two factors. */
 struct sphgi_shape {
     sphg_kernel kernel;

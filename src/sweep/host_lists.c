@@ -91,13 +91,9 @@ static void fill(struct reading *reading, struct lanes *lanes)
  * stand as far behind this one as this one does behind that of as many targets before. */
 static void ask_for_later(const struct host_list *list, uintptr_t *before)
 {
-    enum { LINE = SPHGI_ALIGNMENT, USUAL = 2 /* lines */, MOST = 4 * SPHGI_CHUNK /* numbers */ };
-    const uintptr_t here = (uintptr_t)list->numbers, later = here + (here - *before);
-    const uintptr_t bytes = (uintptr_t)sphgi_min32(list->count, MOST) * sizeof *list->numbers;
-    for (uintptr_t line = 0; line < USUAL; ++line)
-        __builtin_prefetch((const void *)(later + line * LINE));
-    for (uintptr_t line = USUAL; line < (bytes + LINE / 2) / LINE; ++line)
-        __builtin_prefetch((const void *)(later + line * LINE));
+    enum { MOST = 4 * SPHGI_CHUNK }; /* numbers that will be read soon */
+    const uintptr_t here = (uintptr_t)list->numbers;
+    sphgi_ask_for_numbers(here + (here - *before), sphgi_min32(list->count, MOST));
     *before = here;
 }
 
@@ -129,7 +125,6 @@ static void fill_by_function(struct reading *reading, struct lanes *lanes)
     reading->at = at;
 }
 
-/* bundle.count is a multiple of the lanes: those before were full. */
 static void run(struct sphgi_worker *w, struct lanes *lanes, const struct lanes *coming)
 {
     if (w->bundle.count > SPHGI_WIDTH - w->passes->lanes)
