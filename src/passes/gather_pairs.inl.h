@@ -46,7 +46,10 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
             dz = wrapped(dz, w.axis[2]);
         }
         if (how.masked) {
-            inside = less(square_distance(dx, dy, dz), cutoff);
+            vec limit = cutoff;
+            if (g->either)
+                limit = vmax(radius * radius, row.w * row.w);
+            inside = less(square_distance(dx, dy, dz), limit);
             keep_ids(inside, g->dummy, ids, kept);
             dx = where(inside, dx);
             dy = where(inside, dy);

@@ -101,6 +101,7 @@ struct sphgi_gather {
     bool volumes;  /* V_j differ: gather the 4th number of the rows */
     bool radii;    /* cutoff and unit are those of the targets: the 4th number of theirs */
     bool all;      /* ... but everybody in the list counts */
+    bool either;   /* ... or whom either radius reaches: rows hold those of the sources */
     double volume; /* V_j otherwise */
     int32_t dimension;
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */

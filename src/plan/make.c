@@ -233,7 +233,6 @@ static sphg_result check_counts(struct sphgi_plan_builder *builder)
 static sphg_result check_radii(struct sphgi_plan_builder *builder)
 {
     const struct sphgi_plan *plan = builder->plan;
-    const sphg_neighbors *first = plan->sets[0].neighbors;
     struct sphgi_scheme smallest = plan->scheme;
     smallest.radius = plan->least;
     const sphg_result result = sphgi_check_range(builder->checker, &plan->scheme, plan->type);
@@ -242,10 +241,6 @@ static sphg_result check_radii(struct sphgi_plan_builder *builder)
     if (plan->quadratic)
         SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                      "%s: scheme.order is 2, but the neighbours have a radius per particle",
-                     builder->checker.function);
-    if (builder->purpose != SPHGI_FOR_RESULTS && first->mutual && first->skin > 0)
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
-                     "%s: pairs of neighbours that are mutual and have a skin",
                      builder->checker.function);
     return sphgi_check_range(builder->checker, &smallest, plan->type);
 }

@@ -48,6 +48,12 @@ bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
            n->position_type == plan->type;
 }
 
+bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return sweep->pairs && sweep->plan->graded && n->mutual && n->skin > 0;
+}
+
 bool sphgi_weighs_both_at_once(const struct sphgi_sweep *sweep)
 {
     return !sphgi_is_masked(sweep) && sweep->set->neighbors->position_type == sweep->plan->type;

@@ -47,7 +47,8 @@ static void use_packed_rows(struct sphgi_worker *w)
         w->rows.at[k] = sweep->packed_rows + (size_t)k * rows * size;
     w->both = w->gather; /* rows as the search left them hold the radii of the sources */
     w->both.rows = n->sources.rows.data;
-    w->both.volumes = true;
+    w->both.either = sphgi_sorts_out_pairs(sweep);
+    w->both.volumes = !w->both.either;
 }
 
 void sphgi_use_rows(struct sphgi_worker *w)

@@ -89,7 +89,7 @@ static sphg_result sweep_set(struct sphgi_task *task, struct sphgi_selection *se
     const int32_t active = some ? selection->active_count : items;
     const int32_t groups = some ? selection->group_count : sphgi_group_count(n->target_count);
     const bool nothing_to_pack = !sweep->volumes && !sphgi_rows_read(sweep);
-    sweep->packed = nothing_to_pack || sweep->plan->both_sides ||
+    sweep->packed = nothing_to_pack || sweep->plan->both_sides || sphgi_sorts_out_pairs(sweep) ||
                     (int64_t)active * PACK_WORTH >= n->source_count;
     const bool ready =
         !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) && open_workers(sweep);

@@ -84,6 +84,9 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         sphgi_clean_lists(w, lists, begin);
     else
         w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
+    if (sphgi_sorts_out_pairs(w->sweep)) /* the others' ids become the dummy's */
+        w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
+            &w->both, sphgi_places(w), w->passes->lanes, &w->tile);
     if (w->factors_at_once)
         gather_factors(w, begin);
     else if (!w->sweep->plan->both_alone)
