@@ -156,11 +156,14 @@ template <class Errors> class basic_context
         return done(sphg_force(context_, &scheme, &made, which, shape, in, out));
     }
 
-    /* The counts of offsets, indices and gradient are those of the arrays: capacity is set here. */
+    /* The counts of offsets, indices and gradient are those of the arrays: capacity is set here.
+     * gradient, with a block: an item for each place, whose numbers stand as sphg_pairs says. */
     result pair_gradients(const sphg_scheme &scheme, const sources &set,
                           std::vector<std::int64_t> &offsets, std::vector<std::int32_t> *indices,
                           output gradient, std::int64_t &count, const subset &some = {},
-                          input target_correction = {}, bool any_order = false) const
+                          input target_correction = {}, bool any_order = false,
+                          std::int32_t block = 0,
+                          std::vector<std::int32_t> *lengths = nullptr) const
     {
         detail::checker check("pair_gradients");
         const int d = detail::dimension_of(scheme);
@@ -174,6 +177,11 @@ template <class Errors> class basic_context
         pairs.offsets = offsets.data();
         pairs.indices = indices ? indices->data() : nullptr;
         pairs.any_order = any_order;
+        pairs.block = block;
+        if (lengths) {
+            lengths->resize(offsets.size() - 1);
+            pairs.lengths = lengths->data();
+        }
         pairs.gradient = check.take(gradient, gradient.count(), d, "gradient", true);
         pairs.capacity = indices ? static_cast<std::int64_t>(indices->size()) : gradient.count();
         if (indices && !gradient.absent() && gradient.count() < pairs.capacity)

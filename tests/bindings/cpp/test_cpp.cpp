@@ -192,6 +192,18 @@ static void all_operators()
     const auto one = sphgrad::pair_gradient(
         scheme, {x[0][0] - x[j][0], x[0][1] - x[j][1], x[0][2] - x[j][2]}, 1, table[0].data());
     CHECK(near(one[0], g[0][0]) && near(one[1], g[0][1]) && near(one[2], g[0][2]));
+    const vec first = g[0];
+    std::vector<std::int32_t> lengths;
+    context.pair_gradients(scheme, set, offsets, nullptr, {}, count, {}, {}, false, 8);
+    indices.resize(static_cast<std::size_t>(count));
+    g.resize(static_cast<std::size_t>(count));
+    context.pair_gradients(scheme, set, offsets, &indices, g, count, {}, {}, false, 8, &lengths);
+    CHECK(offsets[1] % 8 == 0 && lengths.size() == n && lengths[0] <= offsets[1]);
+    const double *numbers = g[0].data();
+    CHECK(near(numbers[0], first[0]) && near(numbers[8], first[1]) && near(numbers[16], first[2]));
+    context.pair_gradients(scheme, set, offsets, nullptr, {}, count);
+    indices.resize(static_cast<std::size_t>(count));
+    context.pair_gradients(scheme, set, offsets, &indices, {}, count);
     g.resize(10);
     check_throws(SPHG_ERROR_CAPACITY, "capacity",
                  [&] { context.pair_gradients(scheme, set, offsets, &indices, g, count); });

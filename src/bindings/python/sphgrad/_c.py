@@ -257,6 +257,8 @@ NOT_SET = {
     "sphg_lists.lengths": "as rows",
     "sphg_lists.row": "a Python function in each of a million rows would take minutes",
     "sphg_lists.user": "handed to row alone",
+    "sphg_pairs.block": "vectors of a host's own loops: NumPy has its own, over all pairs at once",
+    "sphg_pairs.lengths": "differences of offsets, without a block",
 }
 
 
