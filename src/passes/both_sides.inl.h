@@ -69,14 +69,8 @@ SPHGI_TEMPLATE void both_by_method(const struct sphgi_gather *g, const struct sp
                                    sphg_kernel kernel)
 {
     const bool slope = shape->method == SPHG_KGC;
-    if (g->dimension == 3 && slope)
-        both_of_pairs(g, shape, targets, tile, kernel, true, true);
-    else if (g->dimension == 3)
-        both_of_pairs(g, shape, targets, tile, kernel, false, true);
-    else if (slope)
-        both_of_pairs(g, shape, targets, tile, kernel, true, false);
-    else
-        both_of_pairs(g, shape, targets, tile, kernel, false, false);
+    WITH(three, g->dimension == 3,
+         WITH(by_slope, slope, both_of_pairs(g, shape, targets, tile, kernel, by_slope, three)));
 }
 
 #define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \

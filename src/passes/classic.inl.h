@@ -40,14 +40,8 @@ SPHGI_TEMPLATE void classic_moments_as(const struct sphgi_tile *tile, void *sums
 /* w, w x, w xx */
 static void sum_classic(const struct sphgi_tile *tile, int32_t dimension, bool weighted, void *sums)
 {
-    if (dimension == 3 && weighted)
-        classic_moments_as(tile, sums, true, true);
-    else if (dimension == 3)
-        classic_moments_as(tile, sums, false, true);
-    else if (weighted)
-        classic_moments_as(tile, sums, true, false);
-    else
-        classic_moments_as(tile, sums, false, false);
+    WITH(three, dimension == 3,
+         WITH(by_volume, weighted, classic_moments_as(tile, sums, by_volume, three)));
 }
 
 /* p.y of a pair, or p.z_k */
@@ -82,14 +76,8 @@ SPHGI_TEMPLATE void classic_slopes_as(const struct sphgi_tile *tile, const real 
 static void sum_classic_slopes(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                                const void *solution, void *sums)
 {
-    if (dimension == 3 && weighted)
-        classic_slopes_as(tile, solution, sums, true, true);
-    else if (dimension == 3)
-        classic_slopes_as(tile, solution, sums, false, true);
-    else if (weighted)
-        classic_slopes_as(tile, solution, sums, true, false);
-    else
-        classic_slopes_as(tile, solution, sums, false, false);
+    WITH(three, dimension == 3,
+         WITH(by_volume, weighted, classic_slopes_as(tile, solution, sums, by_volume, three)));
 }
 
 /* G_ij = D x (p.y) + S (p.z_k) from the coefficients [y0 y | z_x0 z_x | ..], and PHI = S (p.y). */
@@ -131,14 +119,8 @@ SPHGI_TEMPLATE void classic_vectors_as(const struct sphgi_tile *tile, const real
 static void classic_vectors(const struct sphgi_tile *tile, int32_t dimension, bool weighted,
                             const void *coefficients)
 {
-    if (dimension == 3 && weighted)
-        classic_vectors_as(tile, coefficients, true, true);
-    else if (dimension == 3)
-        classic_vectors_as(tile, coefficients, false, true);
-    else if (weighted)
-        classic_vectors_as(tile, coefficients, true, false);
-    else
-        classic_vectors_as(tile, coefficients, false, false);
+    WITH(three, dimension == 3,
+         WITH(by_volume, weighted, classic_vectors_as(tile, coefficients, by_volume, three)));
 }
 
 /* sum_field over G_ij that nobody else needs. */
@@ -183,14 +165,10 @@ static void sum_classic_field(const struct sphgi_tile *tile, int32_t dimension, 
                               const void *coefficients, const void *rows, int32_t count,
                               const void *at_target, void *sums)
 {
-    if (dimension == 3 && weighted)
-        classic_field_of(tile, coefficients, rows, count, at_target, sums, true, true);
-    else if (dimension == 3)
-        classic_field_of(tile, coefficients, rows, count, at_target, sums, false, true);
-    else if (weighted)
-        classic_field_of(tile, coefficients, rows, count, at_target, sums, true, false);
-    else
-        classic_field_of(tile, coefficients, rows, count, at_target, sums, false, false);
+    WITH(
+        three, dimension == 3,
+        WITH(by_volume, weighted,
+             classic_field_of(tile, coefficients, rows, count, at_target, sums, by_volume, three)));
 }
 
 /* T = - weight G_ji with j's coefficients in rows (y_j, z_x,j, ...: one row each): the offset seen
@@ -229,8 +207,6 @@ static void transposed_classic(const struct sphgi_tile *tile, int32_t dimension,
                                const void *target_volume, const void *density,
                                enum sphgi_weight kind)
 {
-    if (dimension == 3)
-        transposed_classic_as(tile, rows, scales, target_volume, density, kind, true);
-    else
-        transposed_classic_as(tile, rows, scales, target_volume, density, kind, false);
+    WITH(three, dimension == 3,
+         transposed_classic_as(tile, rows, scales, target_volume, density, kind, three));
 }

@@ -85,10 +85,7 @@ static void sum_divergence(const struct sphgi_tile *tile, int32_t dimension, sph
                            enum sphgi_vectors vectors, const void *const *rows,
                            const void *at_target, void *sums)
 {
-    if (dimension == 3)
-        divergence_in(tile, shape, vectors, rows, at_target, sums, true);
-    else
-        divergence_in(tile, shape, vectors, rows, at_target, sums, false);
+    WITH(three, dimension == 3, divergence_in(tile, shape, vectors, rows, at_target, sums, three));
 }
 
 /* What add_outer is to a gradient. */
@@ -159,10 +156,7 @@ static void sum_squares(const struct sphgi_tile *tile, int32_t dimension,
                         enum sphgi_vectors vectors, int32_t count, const void *rows,
                         const void *at_target, void *sums)
 {
-    if (dimension == 3)
-        squares_in(tile, vectors, count, rows, at_target, sums, true);
-    else
-        squares_in(tile, vectors, count, rows, at_target, sums, false);
+    WITH(three, dimension == 3, squares_in(tile, vectors, count, rows, at_target, sums, three));
 }
 
 /* sum_ab C_ab (C S)_ab */

@@ -306,8 +306,5 @@ SPHGI_TEMPLATE void eigen_as(int32_t width, const real *matrices, real *values, 
 static void eigen_lanes(int32_t width, int32_t dimension, const void *matrices, void *values,
                         void *vectors)
 {
-    if (dimension == 3)
-        eigen_as(width, matrices, values, vectors, true);
-    else
-        eigen_as(width, matrices, values, vectors, false);
+    WITH(three, dimension == 3, eigen_as(width, matrices, values, vectors, three));
 }

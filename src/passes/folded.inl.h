@@ -85,14 +85,11 @@ SPHGI_TEMPLATE void folded_by(const struct sphgi_tile *tile, enum sphgi_fold fol
                               enum sphgi_array factors, const void *const *rows, void *sums,
                               void *vectors, int d)
 {
-    if (factors == SPHGI_D && dense)
-        folded_in(tile, fold, true, true, rows, sums, vectors, d);
-    else if (factors == SPHGI_D) /* what others carry */
-        folded_in(tile, fold, false, true, rows, sums, NULL, d);
-    else if (dense)
-        folded_in(tile, fold, true, false, rows, sums, vectors, d);
-    else
-        folded_in(tile, fold, false, false, rows, sums, vectors, d);
+    /* Where sources have radii of their own, `vectors` are what others carry. */
+    WITH(both, factors == SPHGI_D,
+         WITH(carries, dense,
+              folded_in(tile, fold, carries, both, rows, sums, both && !carries ? NULL : vectors,
+                        d)));
 }
 
 static void sum_folded(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_fold fold,

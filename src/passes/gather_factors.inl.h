@@ -63,24 +63,17 @@ SPHGI_TEMPLATE void factors_by_mask(const struct sphgi_gather *g, const struct s
                                     sphg_kernel kernel, sphg_method method, bool three,
                                     bool volumes)
 {
-    if (g->masked)
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, true);
-    else
-        factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, false);
+    WITH(masked, g->masked,
+         factors_of_pairs(g, shape, targets, tile, kernel, method, three, volumes, masked));
 }
 
 SPHGI_TEMPLATE void factors_by_shape(const struct sphgi_gather *g, const struct sphgi_shape *shape,
                                      const int32_t *targets, struct sphgi_tile *tile,
                                      sphg_kernel kernel, sphg_method method)
 {
-    if (g->dimension == 3 && g->volumes)
-        factors_by_mask(g, shape, targets, tile, kernel, method, true, true);
-    else if (g->dimension == 3)
-        factors_by_mask(g, shape, targets, tile, kernel, method, true, false);
-    else if (g->volumes)
-        factors_by_mask(g, shape, targets, tile, kernel, method, false, true);
-    else
-        factors_by_mask(g, shape, targets, tile, kernel, method, false, false);
+    WITH(three, g->dimension == 3,
+         WITH(volumes, g->volumes,
+              factors_by_mask(g, shape, targets, tile, kernel, method, three, volumes)));
 }
 
 SPHGI_TEMPLATE void factors_by_method(const struct sphgi_gather *g, const struct sphgi_shape *shape,

@@ -93,28 +93,18 @@ SPHGI_TEMPLATE void OUT_NAME(gather_as)(const struct sphgi_gather *g, const int3
 static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *targets, int32_t lanes,
                              struct sphgi_tile *tile)
 {
-    struct OUT_NAME(how) how = {.masked = false};
-#define WITH(name, value, call)                                                                    \
-    do                                                                                             \
-        if (value) {                                                                               \
-            how.name = true;                                                                       \
-            call;                                                                                  \
-        } else {                                                                                   \
-            how.name = false;                                                                      \
-            call;                                                                                  \
-        }                                                                                          \
-    while (0)
-#define GATHER  OUT_NAME(gather_as)(g, targets, lanes, tile, how)
-#define SHAPED  WITH(three, g->dimension == 3, WITH(scaled, g->unit != 1, GATHER))
-#define WEIGHED WITH(volumes, g->volumes, SHAPED)
-    if (!g->masked)
-        WEIGHED;
-    else {
-        how.masked = true;
-        WITH(periodic, g->periodic, WEIGHED);
+#define GATHER                                                                                     \
+    OUT_NAME(gather_as)                                                                            \
+    (g, targets, lanes, tile, (struct OUT_NAME(how)){masked, periodic, three, scaled, volumes})
+#define SHAPED                                                                                     \
+    WITH(three, g->dimension == 3, WITH(scaled, g->unit != 1, WITH(volumes, g->volumes, GATHER)))
+    if (!g->masked) {
+        enum { masked = false, periodic = false };
+        SHAPED;
+    } else {
+        enum { masked = true };
+        WITH(periodic, g->periodic, SHAPED);
     }
-#undef WEIGHED
 #undef SHAPED
 #undef GATHER
-#undef WITH
 }

@@ -42,14 +42,9 @@ SPHGI_TEMPLATE void quadratic_by_method(const struct sphgi_gather *g,
                                         struct sphgi_tile *tile, sphg_kernel kernel)
 {
     const bool slope = shape->method == SPHG_KGC;
-    if (g->dimension == 3 && slope)
-        quadratic_of_pairs(g, shape, targets, tile, kernel, true, true);
-    else if (g->dimension == 3)
-        quadratic_of_pairs(g, shape, targets, tile, kernel, false, true);
-    else if (slope)
-        quadratic_of_pairs(g, shape, targets, tile, kernel, true, false);
-    else
-        quadratic_of_pairs(g, shape, targets, tile, kernel, false, false);
+    WITH(three, g->dimension == 3,
+         WITH(by_slope, slope,
+              quadratic_of_pairs(g, shape, targets, tile, kernel, by_slope, three)));
 }
 
 #define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \

@@ -233,10 +233,8 @@ static __attribute__((noinline)) void decompose_open(const struct sphgi_threshol
                                                      real *c, real *lambda_min,
                                                      struct sphgi_verdict *verdict)
 {
-    if (threshold->dimension == 3)
-        decompose_as(threshold, m, open, low, c, lambda_min, verdict, true);
-    else
-        decompose_as(threshold, m, open, low, c, lambda_min, verdict, false);
+    WITH(three, threshold->dimension == 3,
+         decompose_as(threshold, m, open, low, c, lambda_min, verdict, three));
 }
 
 SPHGI_TEMPLATE real highest_touched(const struct sphgi_threshold *threshold)

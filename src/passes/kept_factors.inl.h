@@ -28,14 +28,8 @@ SPHGI_TEMPLATE void offsets_of_pairs(const struct sphgi_gather *g, const real *k
 static void gather_offsets(const struct sphgi_gather *g, const void *kept, const int32_t *targets,
                            struct sphgi_tile *tile)
 {
-    if (g->dimension == 3 && g->volumes)
-        offsets_of_pairs(g, kept, targets, tile, true, true);
-    else if (g->dimension == 3)
-        offsets_of_pairs(g, kept, targets, tile, true, false);
-    else if (g->volumes)
-        offsets_of_pairs(g, kept, targets, tile, false, true);
-    else
-        offsets_of_pairs(g, kept, targets, tile, false, false);
+    WITH(three, g->dimension == 3,
+         WITH(volumes, g->volumes, offsets_of_pairs(g, kept, targets, tile, three, volumes)));
 }
 
 static void keep_factors(const struct sphgi_tile *tile, void *kept)

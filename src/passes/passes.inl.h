@@ -8,6 +8,19 @@
 #include "passes.h"
 #include "kernel_list.h"
 
+/* `call` with a constant of that name, true or false as the value is: branches on it are decided
+ * when the call is compiled, once for each. */
+#define WITH(name, value, call)                                                                    \
+    do                                                                                             \
+        if (value) {                                                                               \
+            enum { name = true };                                                                  \
+            call;                                                                                  \
+        } else {                                                                                   \
+            enum { name = false };                                                                 \
+            call;                                                                                  \
+        }                                                                                          \
+    while (0)
+
 #include "vec.inl.h"
 #include "lanes.inl.h"
 #include "kernels.inl.h"

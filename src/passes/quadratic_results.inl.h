@@ -64,18 +64,11 @@ static void invert_quadratic(int32_t width, int32_t dimension, const struct sphg
                              const struct sphgi_borrowing *borrowing, void *coefficients,
                              uint8_t *directions)
 {
-    if (dimension == 3 && borrowing)
-        invert_quadratic_as(width, second, sums, scale, kept, lanes, borrowing, coefficients,
-                            directions, true, true);
-    else if (dimension == 3)
-        invert_quadratic_as(width, second, sums, scale, kept, lanes, NULL, coefficients, directions,
-                            false, true);
-    else if (borrowing)
-        invert_quadratic_as(width, second, sums, scale, kept, lanes, borrowing, coefficients,
-                            directions, true, false);
-    else
-        invert_quadratic_as(width, second, sums, scale, kept, lanes, NULL, coefficients, directions,
-                            false, false);
+    WITH(three, dimension == 3,
+         WITH(borrows, borrowing,
+              invert_quadratic_as(width, second, sums, scale, kept, lanes,
+                                  borrows ? borrowing : NULL, coefficients, directions, borrows,
+                                  three)));
 }
 
 /* ---- Pairs ----------------------------------------------------------------------------------- */
@@ -106,10 +99,7 @@ SPHGI_TEMPLATE void quadratic_gradients_as(const struct sphgi_tile *tile, const 
 static void quadratic_gradients(const struct sphgi_tile *tile, int32_t dimension,
                                 const void *correction, double scale)
 {
-    if (dimension == 3)
-        quadratic_gradients_as(tile, correction, splat(R(scale)), true);
-    else
-        quadratic_gradients_as(tile, correction, splat(R(scale)), false);
+    WITH(three, dimension == 3, quadratic_gradients_as(tile, correction, splat(R(scale)), three));
 }
 
 /* Minus the gradient seen from j, times the weight: T = weight (P_j s x + Q_j s x x), the products
@@ -151,10 +141,8 @@ static void transposed_quadratic(const struct sphgi_tile *tile, int32_t dimensio
                                  const void *const *rows, double between, const void *density,
                                  enum sphgi_weight kind)
 {
-    if (dimension == 3)
-        transposed_quadratic_as(tile, rows, R(between), density, kind, true);
-    else
-        transposed_quadratic_as(tile, rows, R(between), density, kind, false);
+    WITH(three, dimension == 3,
+         transposed_quadratic_as(tile, rows, R(between), density, kind, three));
 }
 
 /* ---- Results -------------------------------------------------------------------------------- */

@@ -55,10 +55,7 @@ SPHGI_TEMPLATE void products_as(const struct sphgi_tile *tile, bool three)
 
 static void shape_products(const struct sphgi_tile *tile, int32_t dimension)
 {
-    if (dimension == 3)
-        products_as(tile, true);
-    else
-        products_as(tile, false);
+    WITH(three, dimension == 3, products_as(tile, three));
 }
 
 /* The sums of third order, from these products. */
@@ -160,10 +157,7 @@ SPHGI_TEMPLATE void quadratic_moments_as(const struct sphgi_tile *tile, real *su
 
 static void sum_quadratic_moments(const struct sphgi_tile *tile, int32_t dimension, void *sums)
 {
-    if (dimension == 3)
-        quadratic_moments_as(tile, sums, true);
-    else
-        quadratic_moments_as(tile, sums, false);
+    WITH(three, dimension == 3, quadratic_moments_as(tile, sums, three));
 }
 
 /* What sum G_ij is made of: sums of s x, and of -s x x behind them, times the density of the source
@@ -190,10 +184,7 @@ SPHGI_TEMPLATE void quadratic_vectors_as(const struct sphgi_tile *tile, const re
 static void sum_quadratic_vectors(const struct sphgi_tile *tile, int32_t dimension,
                                   const void *rows, void *sums)
 {
-    if (dimension == 3)
-        quadratic_vectors_as(tile, rows, sums, true);
-    else
-        quadratic_vectors_as(tile, rows, sums, false);
+    WITH(three, dimension == 3, quadratic_vectors_as(tile, rows, sums, three));
 }
 
 /* ---- Fields --------------------------------------------------------------------------------- */
@@ -274,8 +265,6 @@ SPHGI_TEMPLATE void quadratic_field_of(const struct sphgi_tile *tile, const void
 static void sum_quadratic_field(const struct sphgi_tile *tile, int32_t dimension, const void *rows,
                                 int32_t count, const void *at_target, void *sums, void *second)
 {
-    if (dimension == 3)
-        quadratic_field_of(tile, rows, count, at_target, sums, second, true);
-    else
-        quadratic_field_of(tile, rows, count, at_target, sums, second, false);
+    WITH(three, dimension == 3,
+         quadratic_field_of(tile, rows, count, at_target, sums, second, three));
 }

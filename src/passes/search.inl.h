@@ -358,8 +358,6 @@ SPHGI_TEMPLATE void find_as(const struct sphgi_find *find, const struct sphgi_ru
 static void find(const struct sphgi_find *find, const struct sphgi_runs *runs, const void *targets,
                  int32_t count, int32_t self, uint32_t *const *lists, int32_t *lengths)
 {
-    if (find->periodic)
-        find_as(find, runs, targets, count, self, lists, lengths, true);
-    else
-        find_as(find, runs, targets, count, self, lists, lengths, false);
+    WITH(periodic, find->periodic,
+         find_as(find, runs, targets, count, self, lists, lengths, periodic));
 }

@@ -119,14 +119,9 @@ static void pack_by_radii(const struct sphgi_find *find, const struct sphgi_runs
                           const void *targets, int32_t count, int32_t self,
                           struct sphgi_packed *packed)
 {
-    if (find->mutual && find->periodic)
-        pack_as(find, runs, targets, count, self, packed, true, true);
-    else if (find->mutual)
-        pack_as(find, runs, targets, count, self, packed, false, true);
-    else if (find->periodic)
-        pack_as(find, runs, targets, count, self, packed, true, false);
-    else
-        pack_as(find, runs, targets, count, self, packed, false, false);
+    WITH(mutual, find->mutual,
+         WITH(periodic, find->periodic,
+              pack_as(find, runs, targets, count, self, packed, periodic, mutual)));
 }
 
 /* ---- A few of them --------------------------------------------------------------------------- */
@@ -202,12 +197,7 @@ static void find_by_radii(const struct sphgi_find *find, const struct sphgi_pack
                           const void *targets, int32_t count, int32_t self, uint32_t *const *lists,
                           int32_t *lengths)
 {
-    if (find->mutual && find->periodic)
-        find_radii_as(find, packed, targets, count, self, lists, lengths, true, true);
-    else if (find->mutual)
-        find_radii_as(find, packed, targets, count, self, lists, lengths, false, true);
-    else if (find->periodic)
-        find_radii_as(find, packed, targets, count, self, lists, lengths, true, false);
-    else
-        find_radii_as(find, packed, targets, count, self, lists, lengths, false, false);
+    WITH(mutual, find->mutual,
+         WITH(periodic, find->periodic,
+              find_radii_as(find, packed, targets, count, self, lists, lengths, periodic, mutual)));
 }

@@ -121,10 +121,7 @@ SPHGI_TEMPLATE void moments_as(const struct sphgi_tile *tile, void *sums, bool t
 
 static void sum_moments(const struct sphgi_tile *tile, int32_t dimension, void *sums)
 {
-    if (dimension == 3)
-        moments_as(tile, sums, true);
-    else
-        moments_as(tile, sums, false);
+    WITH(three, dimension == 3, moments_as(tile, sums, three));
 }
 
 /* sum (A_j - A_i) g, A_i at_target[c][lane], for `count` components of one row; sums in the order
@@ -184,10 +181,7 @@ SPHGI_TEMPLATE void field_in(const struct sphgi_tile *tile, enum sphgi_vectors v
 static void sum_field(const struct sphgi_tile *tile, int32_t dimension, enum sphgi_vectors vectors,
                       const void *rows, int32_t count, const void *at_target, void *sums)
 {
-    if (dimension == 3)
-        field_in(tile, vectors, rows, count, at_target, sums, true);
-    else
-        field_in(tile, vectors, rows, count, at_target, sums, false);
+    WITH(three, dimension == 3, field_in(tile, vectors, rows, count, at_target, sums, three));
 }
 
 /* sum (A_j - at_target) PHI_j */
@@ -240,14 +234,8 @@ SPHGI_TEMPLATE void vectors_as(const struct sphgi_tile *tile, enum sphgi_vectors
 static void sum_vectors(const struct sphgi_tile *tile, int32_t dimension,
                         enum sphgi_vectors vectors, const void *rows, void *sums)
 {
-    if (dimension == 3 && rows)
-        vectors_as(tile, vectors, rows, sums, true, true);
-    else if (dimension == 3)
-        vectors_as(tile, vectors, rows, sums, true, false);
-    else if (rows)
-        vectors_as(tile, vectors, rows, sums, false, true);
-    else
-        vectors_as(tile, vectors, rows, sums, false, false);
+    WITH(three, dimension == 3,
+         WITH(from_rows, rows, vectors_as(tile, vectors, rows, sums, three, from_rows)));
 }
 
 /* sum V_j W and sum W: their quotient is the mean volume */
@@ -311,14 +299,8 @@ SPHGI_TEMPLATE void transposed_as(const struct sphgi_tile *tile, const void *con
 static void transposed(const struct sphgi_tile *tile, int32_t dimension, const void *const rows[4],
                        const void *density, enum sphgi_weight kind)
 {
-    if (dimension == 3 && rows[0])
-        transposed_as(tile, rows, density, kind, true, false);
-    else if (dimension == 3)
-        transposed_as(tile, rows, density, kind, true, true);
-    else if (rows[0])
-        transposed_as(tile, rows, density, kind, false, false);
-    else
-        transposed_as(tile, rows, density, kind, false, true);
+    WITH(three, dimension == 3,
+         WITH(plain, !rows[0], transposed_as(tile, rows, density, kind, three, plain)));
 }
 
 static void scale_pairs(const struct sphgi_tile *tile, enum sphgi_array first, int32_t count,
