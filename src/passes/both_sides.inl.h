@@ -73,42 +73,22 @@ SPHGI_TEMPLATE void both_by_method(const struct sphgi_gather *g, const struct sp
          WITH(by_slope, slope, both_of_pairs(g, shape, targets, tile, kernel, by_slope, three)));
 }
 
-#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
-    static void prefix##_both(const struct sphgi_gather *g, const struct sphgi_shape *shape,       \
-                              const int32_t *targets, struct sphgi_tile *tile)                     \
-    {                                                                                              \
-        both_by_method(g, shape, targets, tile, SPHG_##name);                                      \
-    }                                                                                              \
-    static void prefix##_both_of_tile(const struct sphgi_shape *shape,                             \
-                                      const struct sphgi_tile *tile)                               \
-    {                                                                                              \
-        if (shape->method == SPHG_KGC)                                                             \
-            both_of_tile(shape, tile, SPHG_##name, true);                                          \
-        else                                                                                       \
-            both_of_tile(shape, tile, SPHG_##name, false);                                         \
-    }
-SPHGI_KERNELS(SPHGI_INSTANCE)
-#undef SPHGI_INSTANCE
-
-static void gather_both(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
-                        const int32_t *targets, struct sphgi_tile *tile)
+SPHGI_TEMPLATE void both_of_tile_by_method(const struct sphgi_shape *shape,
+                                           const struct sphgi_tile *tile, sphg_kernel kernel)
 {
-    static void (*const instance[])(const struct sphgi_gather *, const struct sphgi_shape *,
-                                    const int32_t *, struct sphgi_tile *) = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_both,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](gather, shape, targets, tile);
+    WITH(by_slope, shape->method == SPHG_KGC, both_of_tile(shape, tile, kernel, by_slope));
 }
 
-static void weigh_both(const struct sphgi_shape *shape, const struct sphgi_tile *tile)
-{
-    static void (*const instance[])(const struct sphgi_shape *, const struct sphgi_tile *) = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                    \
-    [SPHG_##name] = prefix##_both_of_tile,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](shape, tile);
-}
+#define BY_KERNEL gather_both
+#define PARAMETERS                                                                                 \
+    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
+     struct sphgi_tile *tile)
+#define ARGUMENTS    (gather, shape, targets, tile)
+#define CALL(kernel) both_by_method(gather, shape, targets, tile, kernel)
+#include "by_kernel.inl.h"
+
+#define BY_KERNEL    weigh_both
+#define PARAMETERS   (const struct sphgi_shape *shape, const struct sphgi_tile *tile)
+#define ARGUMENTS    (shape, tile)
+#define CALL(kernel) both_of_tile_by_method(shape, tile, kernel)
+#include "by_kernel.inl.h"

@@ -51,13 +51,6 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
     }
 }
 
-#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
-    static void prefix##_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,      \
-                               const int32_t *targets, struct sphgi_tile *tile)                    \
-    {                                                                                              \
-        factors_by_method(g, shape, targets, tile, SPHG_##name);                                   \
-    }
-
 SPHGI_TEMPLATE void factors_by_mask(const struct sphgi_gather *g, const struct sphgi_shape *shape,
                                     const int32_t *targets, struct sphgi_tile *tile,
                                     sphg_kernel kernel, sphg_method method, bool three,
@@ -88,17 +81,10 @@ SPHGI_TEMPLATE void factors_by_method(const struct sphgi_gather *g, const struct
         factors_by_shape(g, shape, targets, tile, kernel, SPHG_KGC);
 }
 
-SPHGI_KERNELS(SPHGI_INSTANCE)
-#undef SPHGI_INSTANCE
-
-static void gather_factors(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
-                           const int32_t *targets, struct sphgi_tile *tile)
-{
-    static void (*const instance[])(const struct sphgi_gather *, const struct sphgi_shape *,
-                                    const int32_t *, struct sphgi_tile *) = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_pairs,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](gather, shape, targets, tile);
-}
+#define BY_KERNEL gather_factors
+#define PARAMETERS                                                                                 \
+    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
+     struct sphgi_tile *tile)
+#define ARGUMENTS    (gather, shape, targets, tile)
+#define CALL(kernel) factors_by_method(gather, shape, targets, tile, kernel)
+#include "by_kernel.inl.h"

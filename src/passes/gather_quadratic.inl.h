@@ -47,23 +47,10 @@ SPHGI_TEMPLATE void quadratic_by_method(const struct sphgi_gather *g,
               quadratic_of_pairs(g, shape, targets, tile, kernel, by_slope, three)));
 }
 
-#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
-    static void prefix##_quadratic(const struct sphgi_gather *g, const struct sphgi_shape *shape,  \
-                                   const int32_t *targets, struct sphgi_tile *tile)                \
-    {                                                                                              \
-        quadratic_by_method(g, shape, targets, tile, SPHG_##name);                                 \
-    }
-SPHGI_KERNELS(SPHGI_INSTANCE)
-#undef SPHGI_INSTANCE
-
-static void gather_quadratic(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
-                             const int32_t *targets, struct sphgi_tile *tile)
-{
-    static void (*const instance[])(const struct sphgi_gather *, const struct sphgi_shape *,
-                                    const int32_t *, struct sphgi_tile *) = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_quadratic,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](gather, shape, targets, tile);
-}
+#define BY_KERNEL gather_quadratic
+#define PARAMETERS                                                                                 \
+    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
+     struct sphgi_tile *tile)
+#define ARGUMENTS    (gather, shape, targets, tile)
+#define CALL(kernel) quadratic_by_method(gather, shape, targets, tile, kernel)
+#include "by_kernel.inl.h"

@@ -30,23 +30,9 @@ SPHGI_TEMPLATE void other_by_method(const struct sphgi_shape *shape, const struc
         other_as(shape, tile, rows, kernel, SPHG_KGC);
 }
 
-#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
-    static void prefix##_other(const struct sphgi_shape *shape, const struct sphgi_tile *tile,     \
-                               const void *rows)                                                   \
-    {                                                                                              \
-        other_by_method(shape, tile, rows, SPHG_##name);                                           \
-    }
-SPHGI_KERNELS(SPHGI_INSTANCE)
-#undef SPHGI_INSTANCE
-
-static void shape_other(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
-                        const void *rows)
-{
-    static void (*const instance[])(const struct sphgi_shape *, const struct sphgi_tile *,
-                                    const void *) = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_other,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](shape, tile, rows);
-}
+#define BY_KERNEL shape_other
+#define PARAMETERS                                                                                 \
+    (const struct sphgi_shape *shape, const struct sphgi_tile *tile, const void *rows)
+#define ARGUMENTS    (shape, tile, rows)
+#define CALL(kernel) other_by_method(shape, tile, rows, kernel)
+#include "by_kernel.inl.h"

@@ -50,17 +50,6 @@ SPHGI_TEMPLATE void weights_as(const struct sphgi_shape *shape, real *a, int32_t
     }
 }
 
-/* One instance per kernel, and inside it per method. */
-#define SPHGI_INSTANCE(name, prefix, sigma2, sigma3, mu2_2, mu2_3)                                 \
-    static void prefix##_factors(const struct sphgi_shape *shape, void *arrays, int32_t count)     \
-    {                                                                                              \
-        factors_of(shape, arrays, count, SPHG_##name);                                             \
-    }                                                                                              \
-    static void prefix##_weights(const struct sphgi_shape *shape, void *arrays, int32_t count)     \
-    {                                                                                              \
-        weights_as(shape, arrays, count, SPHG_##name);                                             \
-    }
-
 SPHGI_TEMPLATE void factors_of(const struct sphgi_shape *shape, real *arrays, int32_t count,
                                sphg_kernel kernel)
 {
@@ -72,30 +61,17 @@ SPHGI_TEMPLATE void factors_of(const struct sphgi_shape *shape, real *arrays, in
         factors_as(shape, arrays, count, kernel, SPHG_KGC);
 }
 
-SPHGI_KERNELS(SPHGI_INSTANCE)
-#undef SPHGI_INSTANCE
+#define BY_KERNEL    shape_factors
+#define PARAMETERS   (const struct sphgi_shape *shape, void *arrays, int32_t count)
+#define ARGUMENTS    (shape, arrays, count)
+#define CALL(kernel) factors_of(shape, arrays, count, kernel)
+#include "by_kernel.inl.h"
 
-typedef void shape_function(const struct sphgi_shape *shape, void *arrays, int32_t count);
-
-static void shape_factors(const struct sphgi_shape *shape, void *arrays, int32_t count)
-{
-    static shape_function *const instance[] = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_factors,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](shape, arrays, count);
-}
-
-static void shape_weights(const struct sphgi_shape *shape, void *arrays, int32_t count)
-{
-    static shape_function *const instance[] = {
-#define SPHGI_ENTRY(name, prefix, sigma2, sigma3, mu2_2, mu2_3) [SPHG_##name] = prefix##_weights,
-        SPHGI_KERNELS(SPHGI_ENTRY)
-#undef SPHGI_ENTRY
-    };
-    instance[shape->kernel](shape, arrays, count);
-}
+#define BY_KERNEL    shape_weights
+#define PARAMETERS   (const struct sphgi_shape *shape, void *arrays, int32_t count)
+#define ARGUMENTS    (shape, arrays, count)
+#define CALL(kernel) weights_as(shape, arrays, count, kernel)
+#include "by_kernel.inl.h"
 
 /* PHI = V_j W; needs shape_weights. */
 static void shape_values(void *arrays, int32_t count)
