@@ -79,10 +79,8 @@ SPHGI_TEMPLATE void both_of_tile_by_method(const struct sphgi_shape *shape,
     WITH(by_slope, shape->method == SPHG_KGC, both_of_tile(shape, tile, kernel, by_slope));
 }
 
-#define BY_KERNEL gather_both
-#define PARAMETERS                                                                                 \
-    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
-     struct sphgi_tile *tile)
+#define BY_KERNEL    gather_both
+#define PARAMETERS   GATHER_PARAMETERS
 #define ARGUMENTS    (gather, shape, targets, tile)
 #define CALL(kernel) both_by_method(gather, shape, targets, tile, kernel)
 #include "by_kernel.inl.h"

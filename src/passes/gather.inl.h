@@ -81,3 +81,8 @@ SPHGI_TEMPLATE struct four target_rows(const struct sphgi_gather *g, const int32
         row[l] = (const real *)g->target_rows + SPHGI_ROW * (ptrdiff_t)targets[l];
     return transpose(row);
 }
+
+/* Of loops that gather pairs and weigh them (by_kernel.inl.h). */
+#define GATHER_PARAMETERS                                                                          \
+    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
+     struct sphgi_tile *tile)

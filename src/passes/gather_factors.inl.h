@@ -81,10 +81,8 @@ SPHGI_TEMPLATE void factors_by_method(const struct sphgi_gather *g, const struct
         factors_by_shape(g, shape, targets, tile, kernel, SPHG_KGC);
 }
 
-#define BY_KERNEL gather_factors
-#define PARAMETERS                                                                                 \
-    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
-     struct sphgi_tile *tile)
+#define BY_KERNEL    gather_factors
+#define PARAMETERS   GATHER_PARAMETERS
 #define ARGUMENTS    (gather, shape, targets, tile)
 #define CALL(kernel) factors_by_method(gather, shape, targets, tile, kernel)
 #include "by_kernel.inl.h"

@@ -47,10 +47,8 @@ SPHGI_TEMPLATE void quadratic_by_method(const struct sphgi_gather *g,
               quadratic_of_pairs(g, shape, targets, tile, kernel, by_slope, three)));
 }
 
-#define BY_KERNEL gather_quadratic
-#define PARAMETERS                                                                                 \
-    (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \
-     struct sphgi_tile *tile)
+#define BY_KERNEL    gather_quadratic
+#define PARAMETERS   GATHER_PARAMETERS
 #define ARGUMENTS    (gather, shape, targets, tile)
 #define CALL(kernel) quadratic_by_method(gather, shape, targets, tile, kernel)
 #include "by_kernel.inl.h"
