@@ -2,6 +2,7 @@
 #include "core/check.h"
 #include "entries.h"
 #include "search/build.h"
+#include "search/check_targets.h"
 #include "search/radii.h"
 #include "search/targets_of.h"
 #include <string.h>
@@ -72,8 +73,10 @@ static sphg_result check_build(struct sphgi_checker checker, const sphg_neighbor
     const bool radii = sphgi_has_radii(given) || (given->targets_of && given->targets_of->radii);
     result = radii ? sphgi_check_scheme_beside_radii(checker, scheme, checked)
                    : sphgi_check_scheme(checker, scheme, checked);
-    if (!result)
-        result = sphgi_take_targets_of(checker, neighbors, checked, searched, given);
+    if (!result && given->targets_of)
+        result = sphgi_check_targets_of(checker, neighbors, checked, searched, given);
+    if (!result && given->targets_of)
+        sphgi_put_targets_of(given);
     if (!result)
         result = sphgi_check_geometry(checker, given, checked, searched);
     return result || radii ? result : sphgi_check_extent(checker, given, checked);

@@ -129,20 +129,6 @@ static struct sphgi_raster raster_for(const struct sphgi_geometry *g,
     return raster;
 }
 
-/* Targets of another object: its grid serves as it is, or they are sorted once more. */
-static void find_targets(sphg_context *context, const sphg_geometry *given,
-                         const struct sphgi_scheme *scheme, struct sphgi_geometry *g)
-{
-    const sphg_neighbors *other = given->targets_of;
-    const bool known = sphgi_knows_targets_of(other, given, g);
-    if (known) {
-        g->raster = raster_for(g, scheme, given->skin);
-        g->shares = sphgi_may_share_targets(other, &g->raster);
-    }
-    if (!g->shares)
-        sphgi_copy_targets(context, other, g);
-}
-
 static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
                                  const struct sphgi_scheme *scheme, struct sphgi_geometry *g)
 {
@@ -155,9 +141,11 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
     g->target_rows = g->source_rows + (size_t)g->source_count * g->row_size;
     sphg_result result = read_positions(checker, &given->sources, "geometry.sources",
                                         g->source_count, g->source_rows, g);
-    if (!result && given->targets_of)
-        find_targets(context, given, scheme, g);
-    else if (!result && !g->part_of)
+    const sphg_neighbors *other = given->targets_of;
+    const bool known = other && sphgi_knows_targets_of(other, given, g);
+    if (!result && other && !known)
+        sphgi_copy_targets(context, other, g);
+    else if (!result && !other && !g->part_of)
         result = read_positions(checker, &given->targets, "geometry.targets", g->target_count,
                                 g->target_rows, g);
     if (g->part_of)
@@ -166,6 +154,9 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
         return result;
     take_radii(context, given, g);
     g->raster = raster_for(g, scheme, given->skin);
+    g->shares = known && sphgi_may_share_targets(other, &g->raster);
+    if (known && !g->shares)
+        sphgi_copy_targets(context, other, g);
     return SPHG_OK;
 }
 

@@ -2,15 +2,11 @@
 /* Targets that are those of another object: they are not read and sorted again. */
 #ifndef SPHGI_TARGETS_OF_H
 #define SPHGI_TARGETS_OF_H
-#include "core/check.h"
 #include "geometry.h"
 
 /* geometry becomes what it would be had the host handed over the targets, their radii and their
- * number, but that these stand in the other object's order of storage. Refuses what does not fit
- * that object. */
-sphg_result sphgi_take_targets_of(struct sphgi_checker checker, const sphg_neighbors *neighbors,
-                                  const struct sphgi_scheme *scheme, bool searched,
-                                  sphg_geometry *geometry);
+ * number, but that these stand in the other object's order of storage. */
+void sphgi_put_targets_of(sphg_geometry *geometry);
 
 /* What is known without looking at the targets: g->largest. True: it is enough. */
 bool sphgi_knows_targets_of(const sphg_neighbors *other, const sphg_geometry *given,
