@@ -15,8 +15,8 @@ INLINE row load_row(const float *p)
 INLINE vec two_rows(const float (*rows)[4], const int32_t *indices, int k)
 {
 #if VECTOR_BYTES == 32
-    return __builtin_shufflevector(load_row(rows[indices[k]]), load_row(rows[indices[k + 4]]), 0, 1,
-                                   2, 3, 4, 5, 6, 7);
+    return (vec)_mm256_set_m128((__m128)load_row(rows[indices[k + 4]]),
+                                (__m128)load_row(rows[indices[k]]));
 #else
     return load_row(rows[indices[k]]);
 #endif
@@ -28,23 +28,21 @@ INLINE void load_columns(const float (*rows)[4], const int32_t *indices, vec col
     const vec a = two_rows(rows, indices, 0), b = two_rows(rows, indices, 1),
               c = two_rows(rows, indices, 2), d = two_rows(rows, indices, 3);
 #if VECTOR_BYTES == 32
-    const vec p = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
-              q = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
-              r = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
-              s = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
-    columns[0] = __builtin_shufflevector(p, r, 0, 1, 8, 9, 4, 5, 12, 13);
-    columns[1] = __builtin_shufflevector(p, r, 2, 3, 10, 11, 6, 7, 14, 15);
-    columns[2] = __builtin_shufflevector(q, s, 0, 1, 8, 9, 4, 5, 12, 13);
-    columns[3] = __builtin_shufflevector(q, s, 2, 3, 10, 11, 6, 7, 14, 15);
+    const vec p = SHUFFLED(a, b, 0, 8, 1, 9, 4, 12, 5, 13),
+              q = SHUFFLED(a, b, 2, 10, 3, 11, 6, 14, 7, 15),
+              r = SHUFFLED(c, d, 0, 8, 1, 9, 4, 12, 5, 13),
+              s = SHUFFLED(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+    columns[0] = SHUFFLED(p, r, 0, 1, 8, 9, 4, 5, 12, 13);
+    columns[1] = SHUFFLED(p, r, 2, 3, 10, 11, 6, 7, 14, 15);
+    columns[2] = SHUFFLED(q, s, 0, 1, 8, 9, 4, 5, 12, 13);
+    columns[3] = SHUFFLED(q, s, 2, 3, 10, 11, 6, 7, 14, 15);
 #else
-    const vec p = __builtin_shufflevector(a, b, 0, 4, 1, 5),
-              q = __builtin_shufflevector(a, b, 2, 6, 3, 7),
-              r = __builtin_shufflevector(c, d, 0, 4, 1, 5),
-              s = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-    columns[0] = __builtin_shufflevector(p, r, 0, 1, 4, 5);
-    columns[1] = __builtin_shufflevector(p, r, 2, 3, 6, 7);
-    columns[2] = __builtin_shufflevector(q, s, 0, 1, 4, 5);
-    columns[3] = __builtin_shufflevector(q, s, 2, 3, 6, 7);
+    const vec p = SHUFFLED(a, b, 0, 4, 1, 5), q = SHUFFLED(a, b, 2, 6, 3, 7),
+              r = SHUFFLED(c, d, 0, 4, 1, 5), s = SHUFFLED(c, d, 2, 6, 3, 7);
+    columns[0] = SHUFFLED(p, r, 0, 1, 4, 5);
+    columns[1] = SHUFFLED(p, r, 2, 3, 6, 7);
+    columns[2] = SHUFFLED(q, s, 0, 1, 4, 5);
+    columns[3] = SHUFFLED(q, s, 2, 3, 6, 7);
 #endif
 }
 
@@ -55,21 +53,19 @@ INLINE vec sum_lanes(const vec v[LANES])
 #if VECTOR_BYTES == 32
     vec f[4];
     for (int k = 0; k < 4; ++k)
-        f[k] = __builtin_shufflevector(v[k], v[k + 4], 0, 1, 2, 3, 12, 13, 14, 15) +
-               __builtin_shufflevector(v[k], v[k + 4], 4, 5, 6, 7, 8, 9, 10, 11);
+        f[k] = SHUFFLED(v[k], v[k + 4], 0, 1, 2, 3, 12, 13, 14, 15) +
+               SHUFFLED(v[k], v[k + 4], 4, 5, 6, 7, 8, 9, 10, 11);
     vec g[2];
     for (int k = 0; k < 2; ++k)
-        g[k] = __builtin_shufflevector(f[k], f[k + 2], 0, 1, 10, 11, 4, 5, 14, 15) +
-               __builtin_shufflevector(f[k], f[k + 2], 2, 3, 8, 9, 6, 7, 12, 13);
-    return __builtin_shufflevector(g[0], g[1], 0, 9, 2, 11, 4, 13, 6, 15) +
-           __builtin_shufflevector(g[0], g[1], 1, 8, 3, 10, 5, 12, 7, 14);
+        g[k] = SHUFFLED(f[k], f[k + 2], 0, 1, 10, 11, 4, 5, 14, 15) +
+               SHUFFLED(f[k], f[k + 2], 2, 3, 8, 9, 6, 7, 12, 13);
+    return SHUFFLED(g[0], g[1], 0, 9, 2, 11, 4, 13, 6, 15) +
+           SHUFFLED(g[0], g[1], 1, 8, 3, 10, 5, 12, 7, 14);
 #else
     vec g[2];
     for (int k = 0; k < 2; ++k)
-        g[k] = __builtin_shufflevector(v[k], v[k + 2], 0, 1, 6, 7) +
-               __builtin_shufflevector(v[k], v[k + 2], 2, 3, 4, 5);
-    return __builtin_shufflevector(g[0], g[1], 0, 5, 2, 7) +
-           __builtin_shufflevector(g[0], g[1], 1, 4, 3, 6);
+        g[k] = SHUFFLED(v[k], v[k + 2], 0, 1, 6, 7) + SHUFFLED(v[k], v[k + 2], 2, 3, 4, 5);
+    return SHUFFLED(g[0], g[1], 0, 5, 2, 7) + SHUFFLED(g[0], g[1], 1, 4, 3, 6);
 #endif
 }
 

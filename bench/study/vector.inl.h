@@ -12,6 +12,14 @@
 typedef float vec __attribute__((vector_size(VECTOR_BYTES), may_alias));
 typedef int32_t mask __attribute__((vector_size(VECTOR_BYTES), may_alias));
 
+/* Lanes of two vectors by their numbers, those of b following those of a: GCC has the function of
+ * Clang since 12. */
+#if defined(__clang__) || __GNUC__ >= 12
+#define SHUFFLED(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define SHUFFLED(a, b, ...) __builtin_shuffle(a, b, (mask){__VA_ARGS__})
+#endif
+
 INLINE vec load(const float *p) /* aligned to a vector, as all arrays here */
 {
     return *(const vec *)p;
