@@ -292,6 +292,44 @@ static void subsets_have_the_bits_of_the_full_run(const test_case *test)
         require_share(&on, &field, &full, shares[k], &random);
 }
 
+/* So many targets that follow one another, of which several share a group in storage. */
+static void each_target_is_counted_once(const test_case *test)
+{
+    static const int counts[] = {2, 5, 20, 200, 1000};
+    const int d = test->dimension;
+    random_state random = random_seeded(54);
+    const cloud points = cloud_jittered(d, d == 2 ? 40 : 12, 1, .3, &random);
+    comparison on = comparison_of(test, "several blocks", points, 2.25);
+    comparison_field field = {SPHG_VECTOR, SPHG_DIFFERENCE,
+                              comparison_random_field(&on, SPHG_VECTOR, 6)};
+    comparison_result results = comparison_outputs(&on, &field, on.points.count);
+    setup_array numbers = setup_numbers(test_field_type(test), points.count, d, field.numbers);
+    const sphg_view values = setup_view(&numbers);
+    const sphg_sources sources = comparison_sources(&on);
+    int32_t *indices = test_memory((size_t)points.count * sizeof *indices);
+    for (size_t k = 0; k < sizeof counts / sizeof counts[0]; ++k) {
+        const int begin = points.count / 3;
+        for (int i = 0; i < counts[k]; ++i)
+            indices[i] = begin + i;
+        const sphg_subset subsets[] = {sphg_range(begin, begin + counts[k]),
+                                       sphg_listed(indices, counts[k])};
+        for (int kind = 0; kind < 2; ++kind) {
+            sphg_field asked = {.shape = SPHG_VECTOR, .at_sources = &values};
+            comparison_ask_for(&results, &asked);
+            sphg_stats stats;
+            const sphg_request request = {.sources = &sources,
+                                          .set_count = 1,
+                                          .fields = &asked,
+                                          .field_count = 1,
+                                          .subset = &subsets[kind],
+                                          .stats = &stats};
+            SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+            const int64_t counted = stats.rank[0] + stats.rank[1] + stats.rank[2] + stats.rank[3];
+            TEST_REQUIRE(counted == counts[k], "%lld of %d", (long long)counted, counts[k]);
+        }
+    }
+}
+
 static void threads_do_not_change_a_bit(const test_case *test)
 {
     comparison on = comparison_of(test, "block", unit_block(test->dimension), 2.25);
@@ -453,6 +491,8 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, TEST_ALL_KERNELS),
     TEST_ENTRY(subsets_have_the_bits_of_the_full_run, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(each_target_is_counted_once, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CORRECTED, 0),
     TEST_ENTRY(threads_do_not_change_a_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(order_of_particles_matters_within_the_bound, TEST_ALL_PRECISIONS,

@@ -8,7 +8,7 @@ struct sphgi_selection {
     const sphg_subset *subset; /* NULL: all targets */
     int32_t target_count;
     int32_t begin, end;  /* of the items to look at: targets, or entries of indices */
-    uint8_t *active;     /* by place in grid order; NULL: the subset says it target by target */
+    uint16_t *active;    /* by group in grid order: a bit for each target of it that is selected */
     int32_t *groups;     /* that hold an active target; NULL: all */
     int32_t group_count; /* of the list */
     int32_t active_count;
@@ -24,23 +24,10 @@ static inline int32_t sphgi_selected(const struct sphgi_selection *selection, in
     return subset && subset->mask && !subset->mask[target] ? -1 : target;
 }
 
-/* Is that target, which has this place in grid order, selected? After sphgi_selection_open(). */
-static inline bool sphgi_is_selected(const struct sphgi_selection *selection, int32_t place,
-                                     int32_t target)
-{
-    const sphg_subset *subset = selection->subset;
-    if (!subset)
-        return true;
-    if (selection->active)
-        return selection->active[place];
-    return target >= selection->begin && target < selection->end &&
-           (!subset->mask || subset->mask[target]);
-}
-
 /* Lists the groups of a searched object that hold a selected target. Costs as much as is selected
  * where that is little, else a look at each place. False: out of memory. */
 bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selection,
                           const sphg_neighbors *neighbors);
-void sphgi_selection_close(struct sphgi_selection *selection, const sphg_neighbors *neighbors);
+void sphgi_selection_close(struct sphgi_selection *selection);
 
 #endif

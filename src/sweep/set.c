@@ -96,7 +96,7 @@ sphg_result sphgi_sweep_set(struct sphgi_task *task, struct sphgi_selection *sel
     else if (ready)
         sphgi_parallel_for(context, sphgi_list_task, task, items, LEAST_TARGETS);
     if (some)
-        sphgi_selection_close(selection, n);
+        sphgi_selection_close(selection);
     if (!ready)
         return SPHG_ERROR_MEMORY;
     close_workers(sweep, tally);

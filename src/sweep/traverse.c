@@ -15,22 +15,19 @@ static int32_t target_at(const sphg_neighbors *n, int32_t place)
     return ((const int32_t *)sphgi_target_grid(n)->order.data)[place];
 }
 
-static bool is_active(const struct sphgi_task *task, int32_t place)
-{
-    const int32_t target = target_at(task->sweep.set->neighbors, place);
-    return sphgi_is_selected(task->selection, place, target) && sphgi_is_turn(&task->sweep, target);
-}
-
-/* A bit for each target of a group; set without a branch that nobody could foresee. */
+/* A bit for each target of a group that is selected, and whose turn it is. */
 static uint32_t active_of(const struct sphgi_task *task, int32_t group)
 {
-    const int32_t first = group * SPHGI_GROUP;
-    const int32_t count = sphgi_targets_in(task->sweep.set->neighbors, group);
-    if (!task->selection->subset && !task->sweep.turn.waits)
-        return (1u << count) - 1;
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const uint32_t all = (1u << sphgi_targets_in(n, group)) - 1;
+    const uint32_t selected = task->selection->subset ? task->selection->active[group] : all;
+    if (!task->sweep.turn.waits)
+        return selected;
     uint32_t active = 0;
-    for (int32_t k = 0; k < count; ++k)
-        active |= (uint32_t)is_active(task, first + k) << k;
+    for (uint32_t left = selected; left; left &= left - 1) {
+        const int32_t k = __builtin_ctz(left);
+        active |= (uint32_t)sphgi_is_turn(&task->sweep, target_at(n, group * SPHGI_GROUP + k)) << k;
+    }
     return active;
 }
 
@@ -147,7 +144,7 @@ static void add_kept(struct sphgi_worker *w, int32_t place, const uint32_t *ids,
  * finished when the others are gone. */
 static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_worker *w)
 {
-    enum { WORTH = 9 }; /* active targets of the sixteen, on average */
+    enum { WORTH = 7 }; /* active targets of the sixteen, on average */
     const struct sphgi_selection *selection = task->selection;
     const bool corrections = w->held.room && !(w->sweep->steps & SPHGI_SUM_FIELDS);
     return selection->groups && (!w->coefficients_first || corrections) && !w->sweep->pairs &&
@@ -159,9 +156,10 @@ static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, i
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const uint32_t *lengths = sphgi_kept_ids(n, group), *ids = lengths + SPHGI_GROUP;
+    const uint32_t active = active_of(task, group);
     const int32_t first = group * SPHGI_GROUP;
     for (int32_t k = 0; k < sphgi_targets_in(n, group); ++k) {
-        if (is_active(task, first + k))
+        if (active >> k & 1)
             add_kept(w, first + k, ids, (int32_t)lengths[k], 1);
         ids += sphgi_round_up(lengths[k], SPHGI_PAD);
     }
