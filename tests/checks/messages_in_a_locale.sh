@@ -5,7 +5,7 @@
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 localedef -i de_DE -f UTF-8 "$work/de_DE.UTF-8" >"$work/log" 2>&1
-if [ ! -d "$work/de_DE.UTF-8" ]; then
+if [ "$(LOCPATH=$work LC_ALL=de_DE.UTF-8 locale decimal_point 2>/dev/null)" != , ]; then
     echo "skipped: localedef makes no de_DE: $(head -c 200 "$work/log")"
     exit 77
 fi

@@ -10,6 +10,7 @@ done
 rm -rf "$work" "$build/wheels"
 "$cmake" --build "$build" --target python_wheel
 [ "$(ls "$build/wheels" | wc -l | tr -d ' ')" = 1 ]
-"$python" -m pip install --quiet --no-index --no-deps --root-user-action=ignore --target "$work" "$build"/wheels/*.whl
+# An option that pip has since 22.1; older ones do not mind a variable that they do not know.
+PIP_ROOT_USER_ACTION=ignore "$python" -m pip install --quiet --no-index --no-deps --target "$work" "$build"/wheels/*.whl
 cd /
 env -u SPHGRAD_LIBRARY PYTHONPATH="$work" "$python" -B "$program" "$work"
