@@ -89,9 +89,10 @@ static void sum_divergence(const struct sphgi_tile *tile, int32_t dimension, sph
 }
 
 /* What add_outer is to a gradient. */
-SPHGI_TEMPLATE void add_product_as(int32_t l, int d, sphg_shape shape, const real *a, const real *b,
-                                   const real *each, real *divergence)
+SPHGI_TEMPLATE void add_product_as(int32_t l, bool three, sphg_shape shape, const real *a,
+                                   const real *b, const real *each, real *divergence)
 {
+    const int d = three ? 3 : 2;
     const int count = components_of(shape, d), results = shape == SPHG_VECTOR ? 1 : d;
     const vec factor = each ? load(each + l) : splat(R(1));
     vec tensor[9], vector[3], sum[3];
@@ -110,7 +111,7 @@ static void add_product(int32_t width, int32_t dimension, sphg_shape shape, cons
                         const void *b, const void *each, void *divergence)
 {
     for (int32_t l = 0; l < width; l += LANES)
-        add_product_as(l, dimension, shape, a, b, each, divergence);
+        add_product_as(l, dimension == 3, shape, a, b, each, divergence);
 }
 
 /* ---- Squares -------------------------------------------------------------------------------- */

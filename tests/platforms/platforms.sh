@@ -12,7 +12,7 @@ hash_of_fused=1267d0618bc354ef
 platform_table() {
     sed 's/ *| */|/g' <<'END'
 native   | cc                        |                | -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF | | base
-gcc-11   | gcc-11                    |                | -DBUILD_SHARED_LIBS=ON -DCMAKE_CXX_COMPILER=g++-11 -DSPHG_BUILD_BENCH=ON -DSPHG_BUILD_TESTS=ON -DSPHG_BUILD_EXAMPLES=ON | | base
+gcc-11   | gcc-11                    |                | -DBUILD_SHARED_LIBS=ON -DCMAKE_CXX_COMPILER=g++-11 -DALL_PARTS=ON | | base
 native-march | cc                    |                | -DCMAKE_C_FLAGS=-march=native -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF | | base
 clang    | clang                     |                | -DSPHG_OPENMP=OFF | | base
 musl     | musl-gcc                  |                | -DSPHG_OPENMP=OFF -DSPHG_COMPILER_HAS_V3=OFF -DSPHG_COMPILER_HAS_V4=OFF -DCMAKE_EXE_LINKER_FLAGS=-static | | base
