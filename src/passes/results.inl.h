@@ -44,7 +44,7 @@ static void apply(int32_t width, int32_t dimension, int32_t count, const void *c
 static void pair_gradients(const struct sphgi_tile *tile, int32_t dimension,
                            enum sphgi_vectors vectors, const void *correction, double scale)
 {
-    const int32_t d = dimension;
+    const int32_t d = dimension == 3 ? 3 : 2;
     const real *c = correction;
     const vec factor = splat(R(scale));
     vec matrix[3][3];
