@@ -17,22 +17,29 @@ static void destroy_neighbors(void *neighbors)
     sphg_neighbors_destroy(neighbors);
 }
 
-static sphg_result create(int32_t threads, sphg_isa isa, sphg_context **context)
+sphg_context *library_open_isa(int32_t threads, sphg_isa isa)
 {
+    sphg_context *context = NULL;
     const sphg_config config = {.threads = threads, .isa = isa};
-    const sphg_result result = sphg_context_create(SPHG_VERSION, &config, context);
+    const sphg_result result = sphg_context_create(SPHG_VERSION, &config, &context);
     if (result == SPHG_OK)
-        hold(*context, destroy_context);
-    return result;
+        hold(context, destroy_context);
+    else if (result != SPHG_ERROR_UNSUPPORTED)
+        library_check(NULL, result);
+    return context;
+}
+
+sphg_context *library_open(int32_t threads)
+{
+    return library_open_isa(threads, chosen);
 }
 
 bool library_runs(sphg_isa isa)
 {
     struct held *mark = held_so_far();
-    sphg_context *context = NULL;
-    const sphg_result result = create(1, isa, &context);
+    const bool runs = library_open_isa(1, isa) != NULL;
     release_held(mark);
-    return result == SPHG_OK;
+    return runs;
 }
 
 bool library_choose_isa(sphg_isa isa)
@@ -52,22 +59,11 @@ const char *library_isa(void)
     return isa_names[chosen == SPHG_ISA_BEST ? best_first[k] : chosen];
 }
 
-sphg_context *library_open(int32_t threads)
-{
-    sphg_context *context = NULL;
-    const sphg_result result = create(threads, chosen, &context);
-    if (result != SPHG_OK) {
-        fprintf(stderr, "sphgrad-bench: no context: %s\n", sphg_result_string(result));
-        exit(EXIT_FAILURE);
-    }
-    return context;
-}
-
 void library_check(const sphg_context *context, sphg_result result)
 {
     if (result == SPHG_OK)
         return;
-    fprintf(stderr, "sphgrad-bench: %s (%s)\n", sphg_last_message(context),
+    fprintf(stderr, "sphgrad-bench: %s (%s)\n", context ? sphg_last_message(context) : "no context",
             sphg_result_string(result));
     exit(result > 0 ? EXIT_REFUSED : EXIT_FAILURE); /* positive: what it was given is at fault */
 }
@@ -78,17 +74,6 @@ const char *library_version(void)
     const int version = sphg_version();
     snprintf(text, sizeof text, "%d.%d.%d", version / 10000, version / 100 % 100, version % 100);
     return text;
-}
-
-const char *library_path_name(int path)
-{
-    return isa_names[path + 1];
-}
-
-sphg_context *library_open_path(int32_t threads, int path)
-{
-    sphg_context *context = NULL;
-    return create(threads, (sphg_isa)(path + 1), &context) == SPHG_OK ? context : NULL;
 }
 
 sphg_neighbors *library_neighbors(sphg_context *context)
@@ -106,17 +91,19 @@ sphg_neighbors_info library_info(sphg_context *context, const sphg_neighbors *ne
     return info;
 }
 
+/* The first call says how many pairs there are. */
 struct library_lists library_lists(sphg_context *context, const sphg_scheme *scheme,
                                    const sphg_neighbors *neighbors, int32_t particles)
 {
     enum { BEYOND = 16 };
     const sphg_sources sources = {.neighbors = neighbors};
     sphg_pairs pairs = {.offsets = allocate_held((size_t)particles + 1, sizeof *pairs.offsets)};
-    library_check(context,
-                  sphg_pair_gradients(context, scheme, &sources, NULL, sphg_absent(), &pairs));
-    pairs.indices = allocate_held((size_t)pairs.count + BEYOND, sizeof *pairs.indices);
-    pairs.capacity = pairs.count;
-    library_check(context,
-                  sphg_pair_gradients(context, scheme, &sources, NULL, sphg_absent(), &pairs));
+    for (int call = 0; call < 2; ++call) {
+        library_check(context,
+                      sphg_pair_gradients(context, scheme, &sources, NULL, sphg_absent(), &pairs));
+        if (call == 0)
+            pairs.indices = allocate_held((size_t)pairs.count + BEYOND, sizeof *pairs.indices);
+        pairs.capacity = pairs.count;
+    }
     return (struct library_lists){pairs.count, pairs.offsets, pairs.indices};
 }

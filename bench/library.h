@@ -6,17 +6,12 @@
 #include "numbers.h"
 #include <stdbool.h>
 
-sphg_context *library_open(int32_t threads); /* 0: the library's default */
+sphg_context *library_open(int32_t threads);                   /* 0: the library's default */
+sphg_context *library_open_isa(int32_t threads, sphg_isa isa); /* NULL: it does not run here */
+bool library_runs(sphg_isa isa);
 void library_check(const sphg_context *context, sphg_result result);
-
-bool library_runs(sphg_isa isa); /* here */
-
-/* Path p is the instruction set p + 1 of the header; not all of them run here. */
-enum { LIBRARY_PATHS = SPHG_ISA_NEON };
-const char *library_path_name(int path);
-sphg_context *library_open_path(int32_t threads, int path); /* or NULL */
-
 const char *library_version(void);
+
 /* The instruction set of contexts opened from here on; false: it does not run here. */
 bool library_choose_isa(sphg_isa isa);
 const char *library_isa(void); /* the one chosen, at first the best that runs here */

@@ -2,7 +2,7 @@
 /* sphgrad-bench: finds the command and hands over. */
 #include "commands.h"
 #include "command_line.h"
-#include <sphgrad/sphgrad.h>
+#include "library.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 struct command {
     const char *name, *summary;
     const char *meaning; /* what its tables say, in the last line of what it prints */
-    int (*run)(int argc, char **argv);
+    command_function *run;
 };
 
 /* The first is the default. Durations are those of two cores. */
@@ -27,8 +27,7 @@ static const struct command commands[] = {
      command_limit},
     {"forces", "time the operators that a solver iterates: forces and divergences (15 s)",
      "an iteration costs what its operators take; forces add up to nothing where their error is "
-     "one "
-     "of rounding",
+     "one of rounding",
      command_forces},
     {"lists", "time a pair of sums over a host's own lists, and of pairs written out (5 s)",
      "a host with lists of its own saves the build and pays what its rows take more than kept "
@@ -53,21 +52,14 @@ static const struct command commands[] = {
      "nothing can be faster than the copy, which moves the same numbers and computes nothing",
      command_solver},
 };
-static const int command_count = (int)(sizeof commands / sizeof commands[0]);
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static int print_overview(void)
 {
     printf("Usage: sphgrad-bench [COMMAND] [OPTIONS]\n\n");
-    for (int k = 0; k < command_count; ++k)
+    for (int k = 0; k < COMMANDS; ++k)
         printf("  %-10s %s\n", commands[k].name, commands[k].summary);
     printf("\nsphgrad-bench COMMAND --help lists the options of a command.\n");
-    return EXIT_SUCCESS;
-}
-
-static int print_version(void)
-{
-    const int version = sphg_version();
-    printf("sphgrad-bench %d.%d.%d\n", version / 10000, version / 100 % 100, version % 100);
     return EXIT_SUCCESS;
 }
 
@@ -89,10 +81,10 @@ int main(int argc, char **argv)
     if (strcmp(first, "--help") == 0 || strcmp(first, "-?") == 0 || strcmp(first, "-h") == 0)
         return print_overview();
     if (strcmp(first, "--version") == 0 || strcmp(first, "-V") == 0)
-        return print_version();
+        return printf("sphgrad-bench %s\n", library_version()) < 0;
     if (argc < 2 || first[0] == '-')
         return run(&commands[0], argc, argv);
-    for (int k = 0; k < command_count; ++k)
+    for (int k = 0; k < COMMANDS; ++k)
         if (strcmp(first, commands[k].name) == 0)
             return run(&commands[k], argc - 1, argv + 1);
     command_line_refuse("there is no command '%s' (sphgrad-bench --help lists them)", first);

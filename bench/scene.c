@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "scene.h"
-#include "particles/linear_field.h"
+#include "particles/errors.h"
 
 struct scene scene_open(sphg_context *context, const sphg_scheme *scheme, struct numbers positions,
                         struct numbers volumes)
@@ -27,6 +27,20 @@ struct scene scene_beside(const struct scene *scene)
     struct scene other = *scene;
     other.neighbors = library_neighbors(scene->context);
     return other;
+}
+
+struct scene scene_keeping_weights(const struct scene *scene)
+{
+    struct scene other = scene_beside(scene);
+    other.geometry.keep_weights = 1;
+    other.same_volumes = true;
+    scene_run(&other, WORK_SEARCH);
+    return other;
+}
+
+bool keeps_weights(sphg_method method)
+{
+    return method == SPHG_KGC || method == SPHG_MLS || method == SPHG_RKPM;
 }
 
 sphg_sources scene_sources(const struct scene *scene)
@@ -64,20 +78,29 @@ void scene_evaluate(const struct scene *scene, const sphg_request *request)
     library_check(scene->context, sphg_evaluate(scene->context, &scene->scheme, request));
 }
 
+void scene_use_lists(const struct scene *scene, const sphg_lists *lists)
+{
+    library_check(scene->context,
+                  sphg_neighbors_use_lists(scene->context, scene->neighbors, &scene->scheme,
+                                           &scene->geometry, lists));
+}
+
 void scene_run(const struct scene *scene, enum work work)
 {
+    sphg_context *context = scene->context;
     sphg_sources sources = scene_sources(scene);
-    if (work == WORK_GRADIENT)
-        sources.correction = scene_corrections(scene);
-    if (work == WORK_SEARCH)
-        library_check(scene->context, sphg_neighbors_search(scene->context, scene->neighbors,
-                                                            &scene->scheme, &scene->geometry));
-    else if (work == WORK_MATRICES)
+    if (work == WORK_SEARCH) {
+        library_check(context, sphg_neighbors_search(context, scene->neighbors, &scene->scheme,
+                                                     &scene->geometry));
+    } else if (work == WORK_MATRICES) {
         scene_correct(scene, NULL);
-    else
-        library_check(scene->context,
-                      sphg_jacobian(scene->context, &scene->scheme, &sources, NULL,
+    } else {
+        if (work == WORK_GRADIENT)
+            sources.correction = scene_corrections(scene);
+        library_check(context,
+                      sphg_jacobian(context, &scene->scheme, &sources, NULL,
                                     numbers_view(&scene->field), numbers_view(&scene->jacobians)));
+    }
 }
 
 struct numbers scene_volumes(const struct scene *scene)

@@ -27,13 +27,16 @@ struct scene {
     bool same_volumes; /* as in the sweep before, so that weights that were kept hold */
 };
 
-/* Of particles: the field is linear (linear_field.h), and nothing is searched for yet. The scheme's
+/* Of particles: the field is linear (errors.h), and nothing is searched for yet. The scheme's
  * method is the one with the widest corrections that is to come. */
 struct scene scene_open(sphg_context *context, const sphg_scheme *scheme, struct numbers positions,
                         struct numbers volumes);
 
 /* The same with neighbours of its own. */
 struct scene scene_beside(const struct scene *scene);
+/* ... which are found, and keep the weights of pairs of the last scheme that swept them. */
+struct scene scene_keeping_weights(const struct scene *scene);
+bool keeps_weights(sphg_method method); /* or none are formed that could be kept */
 
 /* What is read of the particles: neighbours and volumes. */
 sphg_sources scene_sources(const struct scene *scene);
@@ -41,6 +44,7 @@ sphg_view scene_corrections(const struct scene *scene); /* those of the method *
 double scene_pairs(const struct scene *scene);          /* a particle, once they are found */
 
 void scene_run(const struct scene *scene, enum work work);
+void scene_use_lists(const struct scene *scene, const sphg_lists *lists); /* in place of a search */
 void scene_correct(const struct scene *scene, uint8_t *ranks); /* where they go, or NULL */
 void scene_evaluate(const struct scene *scene, const sphg_request *request);
 

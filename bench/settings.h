@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Options that the commands share: a command's table of options begins with those it takes. */
+/* What most commands can be told on the command line. */
 #ifndef SPHGRAD_BENCH_SETTINGS_H
 #define SPHGRAD_BENCH_SETTINGS_H
 #include "command_line.h"
@@ -16,63 +16,31 @@ struct settings {
     enum precision precision;
 };
 
-#define THREADS_OPTION(s)                                                                          \
-    {                                                                                              \
-        "threads", 0, "N", "(OMP_NUM_THREADS, or one per processor)", OPTION_WHOLE, &(s).threads,  \
-            1, 1024, NULL, NULL                                                                    \
-    }
-#define REPETITIONS_OPTION(s)                                                                      \
-    {                                                                                              \
-        "repetitions", 0, "N", "rounds through everything, after a warm-up", OPTION_WHOLE,         \
-            &(s).repetitions, 1, 10000, NULL, NULL                                                 \
-    }
-#define JSON_OPTION(s)                                                                             \
-    {                                                                                              \
-        "json", 0, "FILE", "write all repetitions in Google Benchmark's format", OPTION_FILE,      \
-            &(s).json, 0, 0, NULL, NULL                                                            \
-    }
-#define ISA_OPTION(s)                                                                              \
-    {                                                                                              \
-        "isa", 0, "NAME", "baseline, x86-64-v3, x86-64-v4 or neon (the best)", OPTION_CHOICE,      \
-            &(s).isa, 0, 0, isa_names, NULL                                                        \
-    }
-#define PRECISION_OPTION(s, default_name)                                                          \
-    {                                                                                              \
-        "precision", 0, "TYPE",                                                                    \
-            "f32, f64, or mixed: positions f64, the rest f32 (" default_name ")", OPTION_CHOICE,   \
-            &(s).precision, 0, 0, precision_names, NULL                                            \
-    }
-#define KERNEL_OPTION(s)                                                                           \
-    {                                                                                              \
-        "kernel", 0, "NAME",                                                                       \
-            "cubic, quintic, wendland-c2, wendland-c4, wendland-c6, poly6 or spiky (cubic)",       \
-            OPTION_CHOICE, &(s).kernel, 0, 0, kernel_names, NULL                                   \
-    }
-#define OUTPUT_OPTION(s, what, default_name)                                                       \
-    {                                                                                              \
-        "output", 0, "FOLDER", "where " what " go (" default_name ")", OPTION_FOLDER, &(s).output, \
-            0, 0, NULL, NULL                                                                       \
-    }
-/* Those of every command that times calls; and of those whose particles are a jittered lattice. */
-#define RUN_OPTIONS(s) THREADS_OPTION(s), REPETITIONS_OPTION(s), JSON_OPTION(s)
-#define LATTICE_OPTIONS(s)                                                                         \
-    {"particles", 0,    "N", "in the nearest cube or square", OPTION_WHOLE, &(s).particles, 1,     \
-     1e9,         NULL, NULL},                                                                     \
-        {"support", 0,    "H", "support radius in spacings", OPTION_REAL, &(s).support, 1.25,      \
-         8,         NULL, NULL},                                                                   \
-        {"jitter",    0,                                                                           \
-         "SHARE",     "move each coordinate by up to this share of the spacing",                   \
-         OPTION_REAL, &(s).jitter,                                                                 \
-         0,           1,                                                                           \
-         NULL,        NULL},                                                                       \
-        ISA_OPTION(s), RUN_OPTIONS(s)
-
 /* What they are where nothing is said; output: a folder, or NULL. */
 struct settings settings_default(int32_t particles, int32_t repetitions, const char *output);
 
-/* Reads them, and refuses an instruction set that does not run here. */
-void settings_read(const struct settings *settings, const struct command_option *options,
+/* Which of these a command has options for. */
+enum {
+    TAKES_RUN = 1,     /* threads, repetitions, json: all that time calls */
+    TAKES_LATTICE = 2, /* particles, support, jitter, isa: all on a jittered lattice */
+    TAKES_PRECISION = 4,
+    TAKES_KERNEL = 8
+};
+
+/* Reads them and the command's own options, and refuses an instruction set that does not run here.
+ */
+void settings_read(struct settings *settings, int takes, const struct command_option *own,
                    const char *about, int argc, char **argv);
+
+/* The last columns of a row of own options: of what kind, and where its value goes. */
+#define AS_FLAG(value)               OPTION_FLAG, &(value), 0, 0, NULL, NULL
+#define AS_WHOLE(value, least, most) OPTION_WHOLE, &(value), least, most, NULL, NULL
+#define AS_REAL(value, least, most)  OPTION_REAL, &(value), least, most, NULL, NULL
+#define AS_POSITIVE(value)           OPTION_POSITIVE, &(value), 0, 0, NULL, NULL
+#define AS_CHOICE(value, words)      OPTION_CHOICE, &(value), 0, 0, words, NULL
+#define AS_TEXT(value)               OPTION_TEXT, &(value), 0, 0, NULL, NULL
+#define AS_FILE(value)               OPTION_FILE, &(value), 0, 0, NULL, NULL
+#define AS_FOLDER(value)             OPTION_FOLDER, &(value), 0, 0, NULL, NULL
 
 /* The side of the square or cube nearest to so many particles. */
 int32_t settings_side(int32_t particles, int32_t dimension);

@@ -1,7 +1,31 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE /* sysconf */
 #include "team.h"
-
 #ifdef _OPENMP
+#include <omp.h>
+#else
+#include <unistd.h>
+#endif
+
+/* Not the affinity of this thread: with OMP_PROC_BIND that is one processor. */
+int32_t team_processors(void)
+{
+#ifdef _OPENMP
+    return omp_get_num_procs();
+#else
+    return (int32_t)sysconf(_SC_NPROCESSORS_ONLN);
+#endif
+}
+
+int32_t team_threads(void)
+{
+#ifdef _OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
 static int32_t boundary(int32_t share, int32_t threads, int32_t count, int32_t grain)
 {
     const int64_t grains = ((int64_t)count + grain - 1) / grain;
@@ -11,15 +35,10 @@ static int32_t boundary(int32_t share, int32_t threads, int32_t count, int32_t g
 
 void team_run(int32_t threads, team_task *task, void *data, int32_t count, int32_t grain)
 {
+#ifdef _OPENMP
 #pragma omp parallel for num_threads(threads) schedule(static, 1)
+#endif
     for (int32_t share = 0; share < threads; ++share)
         task(data, boundary(share, threads, count, grain),
              boundary(share + 1, threads, count, grain));
 }
-#else
-void team_run(int32_t threads, team_task *task, void *data, int32_t count, int32_t grain)
-{
-    (void)threads, (void)grain;
-    task(data, 0, count);
-}
-#endif

@@ -5,6 +5,9 @@
 #define SPHGRAD_BENCH_TEAM_H
 #include <stdint.h>
 
+int32_t team_processors(void); /* that this process may run on */
+int32_t team_threads(void);    /* that the library uses if nothing is said */
+
 /* Work on the items [begin, end). */
 typedef void team_task(void *data, int32_t begin, int32_t end);
 

@@ -2,12 +2,10 @@
 /* The command `forces`: time of the operators that a solver iterates, forces and divergences, with
  * lists alone and with weights that neighbours keep. */
 #include "commands.h"
-#include "particles/linear_field.h"
 #include "particles/particles.h"
 #include "report/report.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 struct force_case {
     const char *name;
@@ -45,11 +43,6 @@ struct forces {
 
 /* ---- One case -------------------------------------------------------------------------------- */
 
-static const struct numbers *results_of(const struct forces *forces, const struct force_case *one)
-{
-    return &forces->results[!one->divergence];
-}
-
 static double run(void *data, int32_t item)
 {
     const struct forces *forces = data;
@@ -57,16 +50,12 @@ static double run(void *data, int32_t item)
     const struct scene *scene = &forces->scenes[one->method][item % SUPPLIES];
     const sphg_view given = numbers_view(
         one->shape == SPHG_VECTOR ? &scene->field : &forces->tensors); /* pressure: a component */
-    const sphg_view result = numbers_view(results_of(forces, one));
+    const sphg_view result = numbers_view(&forces->results[!one->divergence]);
     sphg_field field = {.shape = one->shape, .form = one->form, .at_sources = &given};
-    if (one->shape == SPHG_SCALAR)
-        field.gradient = result;
-    else
-        field.divergence = result;
+    *(one->shape == SPHG_SCALAR ? &field.gradient : &field.divergence) = result;
     sphg_sources sources = scene_sources(scene);
     sources.density = numbers_view(&forces->densities);
     sources.correction = scene_corrections(scene);
-    sources.same_volumes = 1;
     const sphg_request request = {
         .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
     scene_evaluate(scene, &request);
@@ -102,9 +91,9 @@ static double momentum_error(const struct numbers *results)
 static double error_of(struct forces *forces, int32_t item)
 {
     const struct force_case *one = &cases[item / SUPPLIES];
+    const struct numbers *results = &forces->results[!one->divergence];
     run(forces, item);
-    return one->form == SPHG_DIFFERENCE ? divergence_error(results_of(forces, one))
-                                        : momentum_error(results_of(forces, one));
+    return one->form == SPHG_DIFFERENCE ? divergence_error(results) : momentum_error(results);
 }
 
 /* ---- The whole ------------------------------------------------------------------------------- */
@@ -127,62 +116,61 @@ static struct forces open_scenes(const struct settings *settings)
     const sphg_type type = scene.field.type;
     struct forces forces = {
         .results = {numbers_create(type, scene.count, 1), numbers_create(type, scene.count, 3)}};
-    sphg_neighbors *const weighted = library_neighbors(scene.context), *const kept =
-                                                                           scene.neighbors;
     scene_run(&scene, WORK_SEARCH);
-    scene.neighbors = weighted;
-    scene.geometry.keep_weights = 1;
-    scene_run(&scene, WORK_SEARCH);
+    const struct scene weighted = scene_keeping_weights(&scene);
     fill_fields(&forces, &scene.positions, type);
     for (int method = 0; method < METHODS; ++method) {
-        scene.neighbors = kept;
-        scene.scheme.method = (sphg_method)method;
-        scene.corrections = numbers_create(type, scene.count, sphg_correction_width(&scene.scheme));
+        struct scene *scenes = forces.scenes[method];
+        scenes[0] = scene;
+        scenes[0].scheme.method = (sphg_method)method;
+        scenes[0].corrections =
+            numbers_create(type, scene.count, sphg_correction_width(&scenes[0].scheme));
         if (method != SPHG_PLAIN)
-            scene_run(&scene, WORK_MATRICES);
-        forces.scenes[method][0] = forces.scenes[method][1] = scene;
-        forces.scenes[method][1].neighbors = weighted;
+            scene_run(&scenes[0], WORK_MATRICES);
+        scenes[1] = scenes[0];
+        scenes[1].neighbors = weighted.neighbors;
+        scenes[1].same_volumes = true;
     }
     return forces;
+}
+
+static int show(const struct settings *settings, const struct forces *forces,
+                const struct samples times[ITEMS], const double errors[CASES])
+{
+    report_begin("forces", settings, forces->results[0].count, scene_pairs(&forces->scenes[0][0]),
+                 text_of("cubic spline, %s", precision_names[settings->precision]));
+    printf("times      ms, median (min-max) of %d rounds; corrections are there\n"
+           "error      adjoint and symmetric: |sum f| / sum |f|, which conservation makes 0; "
+           "difference: largest\n           relative error of div (-y, x, 2z)\n",
+           settings->repetitions);
+    report_if_busy(settings, &times[0]);
+    REPORT("table", "forces");
+    for (int k = 0; k < CASES; ++k)
+        TABLE_ROW(cell_text("operator", "operator", cases[k].name),
+                  cell_text("method", "method", method_names[cases[k].method]),
+                  cell_ms("kept lists", "lists", &times[k * SUPPLIES]),
+                  cell_ms("kept weights", "lists and weights", &times[k * SUPPLIES + 1]),
+                  cell_number("error", "error", "%.1e", errors[k]));
+    REPORT("print");
+    REPORT("times");
+    return report_close();
 }
 
 int command_forces(int argc, char **argv)
 {
     struct settings settings = settings_default(1000000, 9, NULL);
-    struct samples *times = allocate_to_the_end(ITEMS, sizeof *times);
-    const struct command_option options[] = {
-        PRECISION_OPTION(settings, "f32"), LATTICE_OPTIONS(settings), {0}};
-    settings_read(&settings, options,
+    struct samples times[ITEMS] = {{0}};
+    double errors[CASES] = {0};
+    settings_read(&settings, TAKES_LATTICE | TAKES_RUN | TAKES_PRECISION, NULL,
                   "Times the operators that a solver iterates: forces in the adjoint and the "
                   "symmetric form and divergences, with lists alone and with weights that "
                   "neighbours keep. Takes some ten seconds.",
                   argc, argv);
     struct forces forces = open_scenes(&settings);
-    double errors[CASES] = {0};
     for (int32_t item = 0; item < ITEMS; ++item)
         errors[item / SUPPLIES] = numbers_larger(errors[item / SUPPLIES], error_of(&forces, item));
     /* Weights are written by the first sweep, and belong to the scheme of the last. */
-    rounds_measure(
-        &(struct rounds){"forces", settings.repetitions, ITEMS, run, .prepare = run, &forces},
-        times);
-
-    struct table *table = table_create("forces");
-    for (int k = 0; k < CASES; ++k)
-        TABLE_ROW(table, cell_text("operator", "operator", cases[k].name),
-                  cell_text("method", "method", method_names[cases[k].method]),
-                  cell_ms("kept lists", "lists", &times[k * SUPPLIES]),
-                  cell_ms("kept weights", "lists and weights", &times[k * SUPPLIES + 1]),
-                  cell_number("error", "error", "%.1e", errors[k]));
-    struct report *report = report_create(&settings);
-    report_lattice(report, forces.results[0].count, scene_pairs(&forces.scenes[0][0]));
-    printf("; cubic spline, %s\n", precision_names[settings.precision]);
-    report_machine(report);
-    printf("times      ms, median (min-max) of %d rounds; corrections are there\n"
-           "error      adjoint and symmetric: |sum f| / sum |f|, which conservation makes 0; "
-           "difference: largest\n           relative error of div (-y, x, 2z)\n",
-           settings.repetitions);
-    report_if_busy(report, &times[0]);
-    report_table(report, table);
-    report_write(report);
-    return EXIT_SUCCESS;
+    rounds_measure(&(struct rounds){"forces", settings.repetitions, ITEMS, run, run, &forces},
+                   times);
+    return show(&settings, &forces, times, errors);
 }

@@ -1,158 +1,235 @@
 /* SPDX-License-Identifier: MIT */
-/* The command `frontier`. */
-#include "frontier.h"
+/* The command `frontier`: run time against error of every way to a velocity gradient. A round goes
+ * once through all ways. frontier.py finds who is on a frontier. */
 #include "commands.h"
-#include "numbers.h"
-#include "report/machine.h"
-#include "report/plot.h"
+#include "fields/fields_measure.h"
+#include "frontier_order.h"
+#include "particles/errors.h"
+#include "particles/particles.h"
 #include "report/report.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Every way; plain SPH has no matrices and so no table of them. */
-static void create_points(struct frontier *frontier)
+enum path { PATH_KEPT, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
+static const char *const path_names[PATHS] = {"kept lists", "list-free", "host's lists"};
+
+enum { WAVES, LINEAR, FIELDS };
+enum {
+    METHODS = 6,
+    KERNELS = 7,
+    PRECISIONS = 3,
+    WAYS_MOST = METHODS * KERNELS * PRECISIONS * PATHS * 2
+};
+
+static const double wave_length = 20 * 1.0 / 128; /* 20 spacings */
+
+struct way {
+    sphg_method method;
+    sphg_kernel kernel;
+    enum precision precision;
+    enum path path;
+    bool by_table; /* matrices first, then the gradient by their table; else in one sweep */
+    /* |J_i - J|_F over the root mean square of |J|_F, over all particles. */
+    double mean[FIELDS], most[FIELDS];
+};
+
+struct frontier {
+    struct settings settings;
+    struct ground { /* what all ways of one precision share */
+        struct scene scenes[PATHS];
+        struct numbers fields[FIELDS];
+        struct library_lists lists; /* the host's */
+    } grounds[PRECISIONS];
+    int way_count;
+    struct way ways[WAYS_MOST];
+    struct samples times[WAYS_MOST]; /* [ms] search or taking over lists, matrices, gradient */
+};
+
+/* Plain SPH has no matrices and so no table of them. */
+static void list_ways(struct frontier *frontier)
 {
-    const int room = FRONTIER_METHODS * FRONTIER_KERNELS * FRONTIER_PRECISIONS * PATHS * 2;
-    frontier->points = allocate_to_the_end((size_t)room, sizeof *frontier->points);
-    for (int k = 0; k < room; ++k) {
-        const struct frontier_point point = {
-            .by_table = k % 2,
-            .path = (enum frontier_path)(k / 2 % PATHS),
-            .precision = (enum precision)(k / 2 / PATHS % FRONTIER_PRECISIONS),
-            .kernel = (sphg_kernel)(k / 2 / PATHS / FRONTIER_PRECISIONS % FRONTIER_KERNELS),
-            .method = (sphg_method)(k / 2 / PATHS / FRONTIER_PRECISIONS / FRONTIER_KERNELS)};
-        if (point.method != SPHG_PLAIN || !point.by_table)
-            frontier->points[frontier->point_count++] = point;
+    for (int k = 0; k < WAYS_MOST; ++k) {
+        const struct way way = {.by_table = k % 2,
+                                .path = (enum path)(k / 2 % PATHS),
+                                .precision = (enum precision)(k / 2 / PATHS % PRECISIONS),
+                                .kernel = (sphg_kernel)(k / 2 / PATHS / PRECISIONS % KERNELS),
+                                .method = (sphg_method)(k / 2 / PATHS / PRECISIONS / KERNELS)};
+        if (way.method != SPHG_PLAIN || !way.by_table)
+            frontier->ways[frontier->way_count++] = way;
     }
 }
 
-/* ---- Tables ---------------------------------------------------------------------------------- */
+/* ---- Measuring ------------------------------------------------------------------------------- */
 
-static void add_point(struct table *table, const struct frontier *frontier,
-                      const struct frontier_point *point)
+static void exact_at(const struct scene *scene, int field, int32_t i, double v[3], double j[9])
 {
-    static const char *const paths[PATHS] = {"kept lists", "list-free", "host's lists"};
-    TABLE_ROW(table, cell_text("method", "method", method_names[point->method]),
-              cell_text("kernel", "kernel", kernel_names[point->kernel]),
-              cell_text("type", "precision", precision_names[point->precision]),
-              cell_text("path", "path", paths[point->path]),
-              cell_text("option", "option",
-                        point->method == SPHG_PLAIN ? "one sweep"
-                        : point->by_table           ? "table"
-                                                    : "fused"),
-              cell_time("ns", "", &point->time, 1e6 / frontier->count, "ns_per_particle",
-                        "%.1f (%.0f-%.0f)"),
-              cell_number("trig. mean", "trigonometric_mean", "%.2e", point->mean[0]),
-              cell_number("max", "trigonometric_max", "%.1e", point->most[0]),
-              cell_number("lin. mean", "linear_mean", "%.1e", point->mean[1]),
-              cell_number("max", "linear_max", "%.1e", point->most[1]),
-              cell_number(NULL, "trigonometric_frontier", NULL, point->on_frontier[0]),
-              cell_number(NULL, "linear_frontier", NULL, point->on_frontier[1]));
+    double x[3];
+    for (int axis = 0; axis < 3; ++axis)
+        x[axis] = numbers_get(&scene->positions, i, axis);
+    study_field_at(field == LINEAR ? FIELD_ROTATION : FIELD_WAVES, 3, wave_length, x, v, j);
 }
 
-/* Points lie in the order of their times: the first is the fastest. */
-static void add_fastest(struct table *table, const struct frontier *frontier, sphg_method method,
-                        enum precision precision, enum frontier_side side)
+static struct ground open_ground(sphg_context *context, struct settings settings,
+                                 enum precision precision)
 {
-    for (int k = 0; k < frontier->point_count; ++k) {
-        const struct frontier_point *point = &frontier->points[k];
-        if (point->method == method && point->precision == precision &&
-            frontier_side(point) == side) {
-            add_point(table, frontier, point);
-            return;
-        }
+    static const sphg_scheme widest = {.method = SPHG_CMLS, .support_radius = 1};
+    settings.precision = precision;
+    struct scene scene = scene_of_lattice(context, &settings, 3);
+    struct ground ground = {
+        .fields = {numbers_create(scene.field.type, scene.count, 3), scene.field}};
+    double v[3], j[9];
+    for (int32_t i = 0; i < scene.count; ++i) {
+        exact_at(&scene, WAVES, i, v, j);
+        for (int axis = 0; axis < 3; ++axis)
+            numbers_set(&ground.fields[WAVES], i, axis, v[axis]);
     }
+    scene.corrections =
+        numbers_create(scene.field.type, scene.count, sphg_correction_width(&widest));
+    for (int path = 0; path < PATHS; ++path)
+        ground.scenes[path] = scene_beside(&scene);
+    ground.scenes[PATH_LIST_FREE].geometry.list_free = 1;
+    scene_run(&ground.scenes[PATH_KEPT], WORK_SEARCH);
+    ground.lists =
+        library_lists(context, &scene.scheme, ground.scenes[PATH_KEPT].neighbors, scene.count);
+    return ground;
 }
 
-static void print_fastest(const struct frontier *frontier)
+/* From positions to Jacobians. */
+static struct scene take(const struct frontier *frontier, const struct way *way, int field)
 {
-    struct table *table = table_create("frontier");
-    printf("\nfastest way of each method and precision, whatever its error\n");
-    for (int k = 0; k < FRONTIER_METHODS * FRONTIER_PRECISIONS * SIDES; ++k)
-        add_fastest(table, frontier, (sphg_method)(k / SIDES / FRONTIER_PRECISIONS),
-                    (enum precision)(k / SIDES % FRONTIER_PRECISIONS),
-                    (enum frontier_side)(k % SIDES));
-    table_print(table);
+    const struct ground *ground = &frontier->grounds[way->precision];
+    const sphg_lists lists = {.offsets = ground->lists.offsets, .indices = ground->lists.indices};
+    struct scene scene = ground->scenes[way->path];
+    scene.field = ground->fields[field];
+    scene.scheme.method = way->method;
+    scene.scheme.kernel = way->kernel;
+    if (way->path == PATH_HOST_LISTS)
+        scene_use_lists(&scene, &lists);
+    else
+        scene_run(&scene, WORK_SEARCH);
+    if (way->by_table)
+        scene_run(&scene, WORK_MATRICES);
+    scene_run(&scene, way->by_table ? WORK_GRADIENT : WORK_FUSED);
+    return scene;
 }
 
-static void print_frontier(const struct frontier *frontier, enum frontier_field field,
-                           enum frontier_side side, const char *title)
+static double run(void *data, int32_t item)
 {
-    struct table *table = table_create("frontier");
-    for (int k = 0; k < frontier->point_count; ++k)
-        if (frontier->points[k].on_frontier[field] && frontier_side(&frontier->points[k]) == side)
-            add_point(table, frontier, &frontier->points[k]);
-    printf("\n%s\n", title);
-    table_print(table);
+    const struct frontier *frontier = data;
+    take(frontier, &frontier->ways[item], WAVES);
+    return 1;
+}
+
+static void measure_error(const struct frontier *frontier, struct way *way, int field)
+{
+    const struct scene scene = take(frontier, way, field);
+    double v[3], expected[9], sum = 0, most = 0, squares = 0;
+    for (int32_t i = 0; i < scene.count; ++i) {
+        exact_at(&scene, field, i, v, expected);
+        const double error = norm_of(&scene.jacobians, i, expected);
+        sum += error;
+        most = numbers_larger(most, error);
+        for (int k = 0; k < 9; ++k)
+            squares += expected[k] * expected[k];
+    }
+    const double size = sqrt(squares / scene.count);
+    way->mean[field] = sum / scene.count / size;
+    way->most[field] = most / size;
+}
+
+static void measure(struct frontier *frontier)
+{
+    const struct settings *settings = &frontier->settings;
+    sphg_context *context = library_open(settings->threads);
+    for (int precision = 0; precision < PRECISIONS; ++precision)
+        frontier->grounds[precision] = open_ground(context, *settings, (enum precision)precision);
+    for (int k = 0; k < frontier->way_count; ++k) {
+        progress_show("errors: %d of %d", k + 1, frontier->way_count);
+        for (int field = 0; field < FIELDS; ++field)
+            measure_error(frontier, &frontier->ways[k], field);
+    }
+    rounds_measure(
+        &(struct rounds){"ways", settings->repetitions, frontier->way_count, run, NULL, frontier},
+        frontier->times);
 }
 
 /* ---- The whole ------------------------------------------------------------------------------- */
 
-static void print_results(const struct frontier *frontier, const struct report *report)
+static void add_ways(const struct frontier *frontier, int32_t count)
 {
-    const struct settings *settings = &frontier->settings;
-    printf("particles  %s, a block with free surfaces, jittered by %g spacings, H = %g spacings, "
-           "%.1f pairs a particle\n",
-           text_grouped(frontier->count), settings->jitter, settings->support, frontier->pairs);
-    report_machine(report);
-    printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
-           "through %d ways;\n           host's lists: taken over, not searched for\n",
-           settings->repetitions, frontier->point_count);
-    printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
-           "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");
-    report_if_busy(report, &frontier->points[0].time);
-    print_fastest(frontier);
-    print_frontier(
-        frontier, FRONTIER_TRIGONOMETRIC, SIDE_SEARCH,
-        "frontier: nothing is faster and, on average, nearer to the trigonometric field");
-    print_frontier(frontier, FRONTIER_LINEAR, SIDE_SEARCH,
-                   "frontier: nothing is faster and, at worst, nearer to the linear field");
-    print_frontier(frontier, FRONTIER_TRIGONOMETRIC, SIDE_HOST,
-                   "the first frontier of those who search for themselves");
-    print_frontier(frontier, FRONTIER_LINEAR, SIDE_HOST, "and the second");
+    REPORT("table", "frontier");
+    for (int k = 0; k < frontier->way_count; ++k) {
+        const struct way *way = &frontier->ways[k];
+        TABLE_ROW(cell_text("method", "method", method_names[way->method]),
+                  cell_text("kernel", "kernel", kernel_names[way->kernel]),
+                  cell_text("type", "precision", precision_names[way->precision]),
+                  cell_text("path", "path", path_names[way->path]),
+                  cell_text("option", "option",
+                            way->method == SPHG_PLAIN ? "one sweep"
+                            : way->by_table           ? "table"
+                                                      : "fused"),
+                  cell_time("ns", "", &frontier->times[k], 1e6 / count, "ns_per_particle",
+                            "%.1f (%.0f-%.0f)"),
+                  cell_number("trig. mean", "trigonometric_mean", "%.2e", way->mean[WAVES]),
+                  cell_number("max", "trigonometric_max", "%.1e", way->most[WAVES]),
+                  cell_number("lin. mean", "linear_mean", "%.1e", way->mean[LINEAR]),
+                  cell_number("max", "linear_max", "%.1e", way->most[LINEAR]));
+    }
 }
 
-static void write_results(const struct frontier *frontier, struct report *report)
+static void show(const struct frontier *frontier)
 {
     const struct settings *settings = &frontier->settings;
-    struct table *all = table_create("frontier");
-    for (int k = 0; k < frontier->point_count; ++k)
-        add_point(all, frontier, &frontier->points[k]);
-    table_write_csv(all, settings->output, "frontier.csv");
-    plot_written(settings->output, "frontier/frontier", "frontier.csv",
-                 table_text("title = \"%d particles, H = %g spacings, %d thread%s, %s\"\n",
-                            frontier->count, settings->support, settings->threads,
-                            settings->threads > 1 ? "s" : "", machine_cpu()));
-    report_lattice_numbers(report, frontier->count, frontier->pairs);
-    report_times(report, all);
+    const int32_t count = frontier->grounds[0].scenes[0].count;
+    const double pairs = (double)frontier->grounds[0].lists.count / count;
+    report_lattice(settings, count, pairs);
+    printf("particles  %s, a block with free surfaces, jittered by %g spacings, H = %g spacings, "
+           "%.1f pairs a particle\n",
+           text_grouped(count), settings->jitter, settings->support, pairs);
+    REPORT("machine");
+    printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
+           "through %d ways;\n           host's lists: taken over, not searched for\n",
+           settings->repetitions, frontier->way_count);
+    printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
+           "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");
+    report_if_busy(settings, &frontier->times[0]);
+    add_ways(frontier, count);
+    REPORT("show", "frontiers");
+    REPORT("csv", settings->output, "frontier.csv");
+    REPORT("draw", settings->output, "frontier.gp", "frontier/frontier.gp",
+           text_of("title = '%d particles, H = %g spacings, %d thread%s, '.machine", count,
+                   settings->support, settings->threads, settings->threads > 1 ? "s" : ""));
+    REPORT("drawn", settings->output, "frontier.csv, frontier.gp", ", frontier.png");
+    REPORT("times");
 }
 
 int command_frontier(int argc, char **argv)
 {
-    struct frontier frontier = {.settings = settings_default(27000, 7, "frontier")};
-    const struct settings *settings = &frontier.settings;
+    struct frontier *frontier = allocate_to_the_end(1, sizeof *frontier);
+    struct settings *settings = &frontier->settings;
+    *settings = settings_default(27000, 7, "frontier");
     bool order_alone = false;
     const struct command_option options[] = {
-        OUTPUT_OPTION(frontier.settings, "CSV, script and picture", "frontier"),
-        {"order", 0, NULL, "order 2 beside order 1 alone", OPTION_FLAG, &order_alone, 0, 0, NULL,
-         NULL},
-        LATTICE_OPTIONS(frontier.settings),
+        {"output", 0, "FOLDER", "where CSV, script and picture go (frontier)",
+         AS_FOLDER(settings->output)},
+        {"order", 0, NULL, "order 2 beside order 1 alone", AS_FLAG(order_alone)},
         {0}};
-    settings_read(settings, options,
+    settings_read(settings, TAKES_LATTICE | TAKES_RUN, options,
                   "Times every way to a velocity gradient (method, kernel, precision, path, "
                   "option) from positions to result, and measures its error on a block with free "
                   "surfaces: which are worth their time.",
                   argc, argv);
-    struct report *report = report_create(settings);
-    if (order_alone) {
-        report_machine(report);
-    } else {
-        create_points(&frontier);
-        frontier_measure(&frontier);
-        print_results(&frontier, report);
-        write_results(&frontier, report);
-    }
-    frontier_order(settings, report);
-    report_write(report);
-    return EXIT_SUCCESS;
+    struct held *mark = held_so_far();
+    list_ways(frontier);
+    if (!order_alone)
+        measure(frontier);
+    report_open("frontier", settings);
+    if (order_alone)
+        REPORT("machine");
+    else
+        show(frontier);
+    release_held(mark);
+    frontier_order(settings);
+    return report_close();
 }

@@ -2,9 +2,8 @@
 /* Order 2 beside order 1, over H and N: time from positions to Jacobians against the error at the
  * boundary and inside, of one field on a cube of ever finer particles. */
 #include "fields/fields_measure.h"
-#include "frontier.h"
-#include "report/machine.h"
-#include "report/plot.h"
+#include "frontier_order.h"
+#include "report/report.h"
 #include <stdio.h>
 
 enum { WAYS = 4, SUPPORTS = 3, CUBES = 3 * SUPPORTS, POINTS = WAYS * CUBES };
@@ -37,19 +36,18 @@ static double run(void *cubes, int32_t item)
     return 1;
 }
 
-static struct table *table_of_points(const struct study cubes[CUBES],
-                                     const struct study_errors errors[POINTS],
-                                     const struct samples times[POINTS])
+static void add_points(const struct study cubes[CUBES], const struct study_errors errors[POINTS],
+                       const struct samples times[POINTS])
 {
-    struct table *table = table_create("order");
+    REPORT("table", "order");
     for (int k = 0; k < POINTS; ++k) {
         const struct study *cube = &cubes[k / WAYS];
         if (k > 0 && k % WAYS == 0)
-            table_section(table, NULL);
+            REPORT("section");
         TABLE_ROW(
-            table, cell_text("", "way", ways[k % WAYS].name),
-            cell_text("H", "support", table_text("%g", cube->setting.support)),
-            cell_text("N", "side", table_text("%d", cube->setting.side)),
+            cell_text("", "way", ways[k % WAYS].name),
+            cell_text("H", "support", text_of("%g", cube->setting.support)),
+            cell_text("N", "side", text_of("%d", cube->setting.side)),
             cell_time("ns", "", &times[k], 1e6 / cube->scene.count, "ns_per_particle",
                       "%.0f (%.0f-%.0f)"),
             cell_time("ms", "all", &times[k], 1, NULL, "%.2f (%.2f-%.2f)"),
@@ -58,14 +56,13 @@ static struct table *table_of_points(const struct study cubes[CUBES],
             cell_number("inside max", "inside_max", "%.2e", errors[k].most[STUDY_INSIDE]),
             cell_number("mean", "inside_mean", "%.2e", errors[k].mean[STUDY_INSIDE]));
     }
-    return table;
 }
 
-void frontier_order(const struct settings *settings, struct report *report)
+void frontier_order(const struct settings *settings)
 {
     struct study cubes[CUBES];
     struct study_errors errors[POINTS];
-    struct samples *times = allocate_to_the_end(POINTS, sizeof *times);
+    struct samples times[POINTS] = {{0}};
     for (int k = 0; k < CUBES; ++k)
         cubes[k] = open_cube(settings, k);
     for (int k = 0; k < POINTS; ++k) {
@@ -74,14 +71,16 @@ void frontier_order(const struct settings *settings, struct report *report)
     }
     rounds_measure(&(struct rounds){"order 2", settings->repetitions, POINTS, run, NULL, cubes},
                    times);
-    const struct table *table = table_of_points(cubes, errors, times);
     printf("\norder 2 beside order 1: N^3 particles in [-1, 1]^3, v = (cos 2x, cos y - sin 3x, cos "
            "2z), KGC (classic: CMLS), f32;\nerror |J_i - J|_F of the two outermost layers, and "
            "inside\n");
-    report_table(report, table);
-    table_write_csv(table, settings->output, "frontier_order.csv");
-    plot_written(settings->output, "frontier/frontier_order", "frontier_order.csv",
-                 table_text("title = \"order 2 beside order 1: jitter %g, %d thread%s, %s\"\n",
-                            settings->jitter, settings->threads, settings->threads > 1 ? "s" : "",
-                            machine_cpu()));
+    add_points(cubes, errors, times);
+    REPORT("print");
+    REPORT("times");
+    REPORT("csv", settings->output, "frontier_order.csv");
+    REPORT("draw", settings->output, "frontier_order.gp", "frontier/frontier_order.gp",
+           text_of("title = 'order 2 beside order 1: jitter %g, %d thread%s, '.machine",
+                   settings->jitter, settings->threads, settings->threads > 1 ? "s" : ""));
+    REPORT("drawn", settings->output, "frontier_order.csv, frontier_order.gp",
+           ", frontier_order.png");
 }

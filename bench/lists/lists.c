@@ -2,11 +2,10 @@
 /* The command `lists`: time a pair where a host's own arrays meet the library. Sums over lists that
  * a host brings, and pairs that the library writes out for loops of a host's own. */
 #include "commands.h"
-#include "particles/linear_field.h"
+#include "particles/errors.h"
 #include "particles/particles.h"
 #include "report/report.h"
 #include <stdio.h>
-#include <stdlib.h>
 
 /* Who says which pairs there are. */
 enum supply {
@@ -70,9 +69,7 @@ static void use_lists(struct lists *lists, enum supply supply)
         host = (sphg_lists){.offsets = lists->host.offsets,
                             .indices = lists->host.indices,
                             .copy = supply == SUPPLY_COPIED};
-    library_check(scene->context,
-                  sphg_neighbors_use_lists(scene->context, scene->neighbors, &scene->scheme,
-                                           &scene->geometry, &host));
+    scene_use_lists(scene, &host);
 }
 
 static int32_t targets_of(const struct lists *lists, const struct export *one)
@@ -191,41 +188,40 @@ static struct cell cell_per_pair(const char *name, const char *key, const struct
     return cell_time(name, key, time, 1e6 / (double)pairs, "ns_per_pair", "%.3f (%.3f-%.3f)");
 }
 
-static struct table *table_of_sums(const struct samples *times, const double *errors, int64_t pairs)
+static void add_sums(const struct samples *times, const double *errors, int64_t pairs)
 {
-    struct table *table = table_create("lists/sums");
+    REPORT("table", "lists/sums");
     for (int k = 0; k < SUMS; k += WORKS)
-        TABLE_ROW(table, cell_text("sums over", "supply", supply_names[k / WORKS]),
+        TABLE_ROW(cell_text("sums over", "supply", supply_names[k / WORKS]),
                   cell_per_pair("build", "build", &times[k + WORK_SEARCH], pairs),
                   cell_per_pair("matrices", "matrices", &times[k + WORK_MATRICES], pairs),
                   cell_per_pair("gradient", "gradient", &times[k + WORK_GRADIENT], pairs),
                   cell_per_pair("fused", "fused", &times[k + WORK_FUSED], pairs),
                   cell_number("error", "error_max", "%.1e", errors[k + WORK_FUSED]),
                   cell_count(NULL, "pairs", pairs));
-    return table;
+    REPORT("print");
+    REPORT("times");
 }
 
-static struct table *table_of_exports(const struct samples *times, const double *errors,
-                                      int64_t pairs)
+static void add_exports(const struct samples *times, const double *errors, int64_t pairs)
 {
-    struct table *table = table_create("lists/pairs");
+    REPORT("table", "lists/pairs");
     for (int k = 0; k < EXPORTS; ++k)
         TABLE_ROW(
-            table, cell_text("pairs written out", "what", exports[k].name),
+            cell_text("pairs written out", "what", exports[k].name),
             cell_per_pair("time", "", &times[k], pairs),
             cell_if(exports[k].gradients, cell_number("error", "error_max", "%.1e", errors[k])));
-    return table;
+    REPORT("print");
+    REPORT("times");
 }
 
 int command_lists(int argc, char **argv)
 {
     enum { ITEMS = SUMS + EXPORTS };
     struct settings settings = settings_default(100000, 15, NULL);
-    struct samples *times = allocate_to_the_end(ITEMS, sizeof *times);
+    struct samples times[ITEMS] = {{0}};
     double errors[ITEMS];
-    const struct command_option options[] = {
-        PRECISION_OPTION(settings, "f32"), LATTICE_OPTIONS(settings), {0}};
-    settings_read(&settings, options,
+    settings_read(&settings, TAKES_LATTICE | TAKES_RUN | TAKES_PRECISION, NULL,
                   "Times a pair of sums over the library's lists and over a host's (arrays, "
                   "pointers, a function), and of pairs that are written out: indices, gradients, "
                   "sorted or in any order. Takes some seconds.",
@@ -235,18 +231,14 @@ int command_lists(int argc, char **argv)
         errors[item] = error_of(&lists, item);
     rounds_measure(&(struct rounds){"lists", settings.repetitions, ITEMS, run, NULL, &lists},
                    times);
-
-    struct report *report = report_create(&settings);
-    report_lattice(report, lists.scenes[0].count, scene_pairs(&lists.scenes[0]));
-    printf("; KGC, cubic spline, %s\n", precision_names[settings.precision]);
-    report_machine(report);
+    report_begin("lists", &settings, lists.scenes[0].count, scene_pairs(&lists.scenes[0]),
+                 text_of("KGC, cubic spline, %s", precision_names[settings.precision]));
     printf("times      ns a pair, median (min-max) of %d rounds through everything; gradient and "
            "pairs written out:\n           with matrices that are there; error: largest |J_i - "
            "J|_F / |J|_F of v = (-y, x, 2z)\n",
            settings.repetitions);
-    report_if_busy(report, &times[WORK_FUSED]);
-    report_table(report, table_of_sums(times, errors, lists.host.count));
-    report_table(report, table_of_exports(times + SUMS, errors + SUMS, lists.host.count));
-    report_write(report);
-    return EXIT_SUCCESS;
+    report_if_busy(&settings, &times[WORK_FUSED]);
+    add_sums(times, errors, lists.host.count);
+    add_exports(times + SUMS, errors + SUMS, lists.host.count);
+    return report_close();
 }

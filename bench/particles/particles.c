@@ -14,7 +14,7 @@ static struct particles create_lattice(const struct particle_source *source)
                                     .side = source->side,
                                     .spacing = lattice_spacing,
                                     .jitter = source->jitter,
-                                    .shuffled = source->shuffled};
+                                    .shuffled = source->order == ORDER_SHUFFLED};
     const int32_t count = lattice_count(&lattice);
     struct particles particles = {
         .count = count,
@@ -159,7 +159,7 @@ static struct particles read_particles(const struct particle_source *source)
     if (csv.columns[QUANTITY_VOLUME] >= 0 || csv.columns[QUANTITY_DENSITY] >= 0)
         particles.volumes = read_volumes(source, &csv);
     csv_destroy(&csv);
-    if (source->shuffled) {
+    if (source->order == ORDER_SHUFFLED) {
         shuffle_rows(&particles.positions);
         shuffle_rows(&particles.velocities);
         shuffle_rows(&particles.volumes);

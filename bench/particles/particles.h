@@ -6,13 +6,15 @@
 #include "settings.h"
 #include <stdbool.h>
 
+enum particle_order { ORDER_AS_THEY_ARE, ORDER_SHUFFLED }; /* in memory */
+
 struct particle_source {
     const char *input; /* text file; NULL: a lattice */
     double mass;       /* of each particle in a file with densities; 0: as the file says */
     int32_t dimension; /* of the lattice */
     int32_t side;      /* of the lattice, in particles */
     double jitter;     /* share of the spacing */
-    bool shuffled;     /* random order in memory */
+    enum particle_order order;
     enum precision precision;
 };
 

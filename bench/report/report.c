@@ -1,81 +1,109 @@
 /* SPDX-License-Identifier: MIT */
+#define _POSIX_C_SOURCE 200809L /* popen, dup2, setenv */
 #include "report.h"
 #include "library.h"
-#include "machine.h"
-#include "numbers.h"
-#include <cjson/cJSON.h>
-#include <errno.h>
+#include "team.h"
+#include <signal.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-struct report {
-    cJSON *root, *context, *benchmarks;
-    const struct settings *settings;
-    int32_t families;
-};
+/* What no text has: before a line for report.py and in place of what is not there; and between. */
+#define MARK  "\036"
+#define COMMA "\037"
 
-struct report *report_create(const struct settings *settings)
+static FILE *reader;     /* report.py */
+static int own_output;   /* what standard output was */
+static bool has_columns; /* the table has a row */
+
+void report_tell(const char *word, ...)
 {
-    struct report *report = allocate_to_the_end(1, sizeof *report);
-    report->settings = settings;
-    report->root = cJSON_CreateObject();
-    report->context = cJSON_AddObjectToObject(report->root, "context");
-    report->benchmarks = cJSON_AddArrayToObject(report->root, "benchmarks");
-    report_text(report, "date", machine_date());
-    report_text(report, "host_name", machine_host());
-    report_text(report, "executable", "sphgrad-bench");
-    report_number(report, "num_cpus", machine_cpus());
-    report_text(report, "library_build_type", machine_build());
-    report_text(report, "library_version", library_version());
-    report_text(report, "cpu_model", machine_cpu());
-    report_text(report, "isa", library_isa());
-    report_text(report, "compiler", machine_compiler());
-    report_number(report, "threads", settings->threads);
-    return report;
+    va_list arguments;
+    printf(MARK "%s", word);
+    va_start(arguments, word);
+    for (const char *text; (text = va_arg(arguments, const char *)) != NULL;)
+        printf(COMMA "%s", text);
+    va_end(arguments);
+    putchar('\n');
+    has_columns = has_columns && strcmp(word, "table") != 0;
 }
 
-void report_text(struct report *report, const char *name, const char *value)
+static const char *name_of_compiler(void)
 {
-    cJSON_AddStringToObject(report->context, name, value);
+#if defined(__clang__)
+    return __VERSION__;
+#else
+    return "GCC " __VERSION__;
+#endif
 }
 
-void report_number(struct report *report, const char *name, double value)
+static const char *name_of_build(void)
 {
-    cJSON_AddNumberToObject(report->context, name, value);
+#ifdef NDEBUG
+    return "release";
+#else
+    return "debug";
+#endif
 }
 
-/* ---- On the terminal ------------------------------------------------------------------------ */
-
-void report_lattice(struct report *report, int32_t count, double pairs)
+void report_open(const char *command, const struct settings *settings)
 {
-    const struct settings *settings = report->settings;
-    printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, %.2f pairs a particle",
-           text_grouped(count), settings->jitter, settings->support, pairs);
-    report_lattice_numbers(report, count, pairs);
+    setenv("SPHG_BENCH_REPORT", BENCH_FOLDER "/report/report.py", 1);
+    signal(SIGPIPE, SIG_IGN); /* where report.py ends early, that is seen in report_close */
+    fflush(stdout);
+    own_output = dup(STDOUT_FILENO);
+    reader = popen("exec python3 -B -X utf8 \"$SPHG_BENCH_REPORT\"", "w");
+    if (own_output < 0 || !reader || dup2(fileno(reader), STDOUT_FILENO) < 0) {
+        perror("sphgrad-bench: python3");
+        exit(EXIT_FAILURE);
+    }
+    REPORT("open", command, settings->json ? settings->json : "");
+    report_number("num_cpus", team_processors());
+    REPORT("text", "library_build_type", name_of_build());
+    REPORT("text", "library_version", library_version());
+    REPORT("text", "isa", library_isa());
+    REPORT("text", "compiler", name_of_compiler());
+    report_number("threads", settings->threads);
 }
 
-void report_lattice_numbers(struct report *report, int32_t count, double pairs)
+int report_close(void)
 {
-    report_number(report, "particles", count);
-    report_number(report, "support_spacings", report->settings->support);
-    report_number(report, "jitter", report->settings->jitter);
-    report_number(report, "pairs_per_particle", pairs);
+    REPORT("close");
+    fflush(stdout);
+    dup2(own_output, STDOUT_FILENO);
+    return pclose(reader) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
-void report_machine(const struct report *report)
+void report_number(const char *name, double value)
 {
-    const int32_t threads = report->settings->threads;
-    printf("machine    %s, %d processor%s; %d thread%s, %s\n", machine_cpu(), machine_cpus(),
-           machine_cpus() > 1 ? "s" : "", threads, threads > 1 ? "s" : "", library_isa());
-    printf("program    sphgrad %s, %s, %s, %s\n", library_version(), machine_compiler(),
-           machine_build(), machine_date());
+    REPORT("number", name, text_of("%.17g", value));
 }
 
-void report_if_busy(const struct report *report, const struct samples *samples)
+void report_lattice(const struct settings *settings, int32_t count, double pairs)
 {
-    const int32_t threads = report->settings->threads;
-    const int32_t processors = machine_cpus() < threads ? machine_cpus() : threads;
+    report_number("particles", count);
+    report_number("support_spacings", settings->support);
+    report_number("jitter", settings->jitter);
+    report_number("pairs_per_particle", pairs);
+}
+
+void report_begin(const char *command, const struct settings *settings, int32_t count, double pairs,
+                  const char *more)
+{
+    report_open(command, settings);
+    report_lattice(settings, count, pairs);
+    printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, %.2f pairs a "
+           "particle; %s\n",
+           text_grouped(count), settings->jitter, settings->support, pairs, more);
+    REPORT("machine");
+}
+
+void report_if_busy(const struct settings *settings, const struct samples *samples)
+{
+    const int32_t threads = settings->threads;
+    const int32_t processors = team_processors() < threads ? team_processors() : threads;
     const double had = samples_cpu(samples).median / (samples_wall(samples).median * processors);
     if (had < 0.8)
         printf("BUSY       others ran: the program had %.0f %% of its processors' time, and the "
@@ -83,115 +111,62 @@ void report_if_busy(const struct report *report, const struct samples *samples)
                100 * had);
 }
 
-void report_table(struct report *report, const struct table *table)
+/* ---- Rows ----------------------------------------------------------------------------------- */
+
+static void tell_column(const struct cell *cell)
 {
-    table_print(table);
-    report_times(report, table);
+    const char *const names[] = {cell->head, cell->key, cell->format, cell->unit};
+    printf(MARK "column");
+    for (int k = 0; k < 4; ++k)
+        printf(COMMA "%s", names[k] ? names[k] : MARK);
+    putchar('\n');
 }
 
-/* ---- For programs --------------------------------------------------------------------------- */
-
-/* A time of a row: what all its entries say. */
-struct benchmark {
-    struct report *report;
-    const char *name;
-    const struct cell *cells, *time; /* of the row */
-    int32_t cell_count;
-};
-
-/* Counters are the numbers of the row, and the median in the unit. */
-static cJSON *add_entry(const struct benchmark *one, const char *name, const char *type,
-                        double real, double cpu)
+static void tell_cell(const struct cell *cell)
 {
-    const struct cell *time = one->time;
-    cJSON *entry = cJSON_CreateObject();
-    cJSON_AddItemToArray(one->report->benchmarks, entry);
-    cJSON_AddStringToObject(entry, "name", name);
-    cJSON_AddNumberToObject(entry, "family_index", one->report->families);
-    cJSON_AddNumberToObject(entry, "per_family_instance_index", 0);
-    cJSON_AddStringToObject(entry, "run_name", one->name);
-    cJSON_AddStringToObject(entry, "run_type", type);
-    cJSON_AddNumberToObject(entry, "threads", one->report->settings->threads);
-    cJSON_AddNumberToObject(entry, "repetitions", time->samples->count);
-    cJSON_AddNumberToObject(entry, "real_time", real);
-    cJSON_AddNumberToObject(entry, "cpu_time", cpu);
-    cJSON_AddStringToObject(entry, "time_unit", "ms");
-    for (int32_t c = 0; c < one->cell_count; ++c)
-        if (one->cells[c].key &&
-            (one->cells[c].kind == CELL_NUMBER || one->cells[c].kind == CELL_COUNT))
-            cJSON_AddNumberToObject(entry, one->cells[c].key, one->cells[c].number);
-    if (time->unit)
-        cJSON_AddNumberToObject(entry, time->unit, time->number * samples_median(time->samples));
-    return entry;
+    printf(COMMA "%c", "-tncs"[cell->kind]);
+    if (cell->kind == CELL_TEXT)
+        printf("%s", cell->text);
+    else if (cell->kind != CELL_NONE)
+        printf("%.17g", cell->number);
+    for (int32_t k = 0; cell->kind == CELL_TIME && k < cell->samples->count; ++k)
+        printf(" %.17g %.17g", cell->samples->values[k].wall, cell->samples->values[k].cpu);
 }
 
-static void add_benchmark(const struct benchmark *one)
+void table_add(const struct cell *cells, size_t count)
 {
-    const struct samples *samples = one->time->samples;
-    const struct spread wall = samples_wall(samples), cpu = samples_cpu(samples);
-    const struct {
-        const char *name;
-        double wall, cpu;
-    } aggregates[] = {{"mean", wall.mean, cpu.mean},
-                      {"median", wall.median, cpu.median},
-                      {"stddev", wall.deviation, cpu.deviation},
-                      {"cv", wall.mean > 0 ? wall.deviation / wall.mean : 0,
-                       cpu.mean > 0 ? cpu.deviation / cpu.mean : 0},
-                      {"min", wall.min, cpu.min},
-                      {"max", wall.max, cpu.max}};
-    for (int32_t k = 0; k < samples->count; ++k) {
-        cJSON *entry =
-            add_entry(one, one->name, "iteration", samples->values[k].wall, samples->values[k].cpu);
-        cJSON_AddNumberToObject(entry, "repetition_index", k);
-        cJSON_AddNumberToObject(entry, "iterations", 1);
-    }
-    for (size_t k = 0; samples->count > 1 && k < sizeof aggregates / sizeof aggregates[0]; ++k) {
-        const bool is_ratio = strcmp(aggregates[k].name, "cv") == 0;
-        cJSON *entry = add_entry(one, table_text("%s_%s", one->name, aggregates[k].name),
-                                 "aggregate", aggregates[k].wall, aggregates[k].cpu);
-        cJSON_AddNumberToObject(entry, "iterations", samples->count);
-        cJSON_AddStringToObject(entry, "aggregate_name", aggregates[k].name);
-        cJSON_AddStringToObject(entry, "aggregate_unit", is_ratio ? "percentage" : "time");
-    }
-    ++one->report->families;
+    for (size_t c = 0; c < count && !has_columns; ++c)
+        tell_column(&cells[c]);
+    has_columns = true;
+    printf(MARK "row");
+    for (size_t c = 0; c < count; ++c)
+        tell_cell(&cells[c]);
+    putchar('\n');
 }
 
-void report_times(struct report *report, const struct table *table)
+/* ---- Texts ---------------------------------------------------------------------------------- */
+
+const char *text_of(const char *format, ...)
 {
-    for (int32_t row = 0; row < table->row_count; ++row) {
-        const struct cell *cells = table_row(table, row);
-        const char *name = table->name;
-        for (int32_t c = 0; c < table->column_count; ++c)
-            if (cells[c].key && cells[c].kind == CELL_TEXT)
-                name = table_text("%s/%s", name, cells[c].text);
-        for (int32_t c = 0; c < table->column_count; ++c)
-            if (cells[c].key && cells[c].kind == CELL_TIME)
-                add_benchmark(&(struct benchmark){
-                    .report = report,
-                    .name = *cells[c].key ? table_text("%s/%s", name, cells[c].key) : name,
-                    .cells = cells,
-                    .time = &cells[c],
-                    .cell_count = table->column_count});
-    }
+    va_list arguments;
+    va_start(arguments, format);
+    const size_t size = (size_t)vsnprintf(NULL, 0, format, arguments) + 1;
+    va_end(arguments);
+    char *text = allocate_to_the_end(1, size);
+    va_start(arguments, format);
+    vsnprintf(text, size, format, arguments);
+    va_end(arguments);
+    return text;
 }
 
-static bool write_text(const char *text, const char *path)
+const char *text_grouped(int64_t value)
 {
-    FILE *file = fopen(path, "w");
-    if (!file)
-        return false;
-    const bool written = fprintf(file, "%s\n", text) > 0;
-    return fclose(file) == 0 && written;
+    return value < 1000 ? text_of("%d", (int)value)
+                        : text_of("%s %03d", text_grouped(value / 1000), (int)(value % 1000));
 }
 
-void report_write(struct report *report)
+const char *text_time(double milliseconds)
 {
-    const char *path = report->settings->json;
-    char *text = path ? cJSON_Print(report->root) : NULL;
-    if (path && (!text || !write_text(text, path))) {
-        fprintf(stderr, "sphgrad-bench: cannot write %s: %s\n", path, strerror(errno));
-        exit(EXIT_FAILURE);
-    }
-    cJSON_free(text);
-    cJSON_Delete(report->root);
+    const int decimals = milliseconds < 1 ? 3 : milliseconds < 100 ? 2 : milliseconds < 1000;
+    return text_of("%.*f", decimals, milliseconds);
 }

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#define _POSIX_C_SOURCE 200809L /* clock_gettime */
+#define _POSIX_C_SOURCE 200809L /* clock_gettime, isatty */
 #include "timing.h"
 #include "numbers.h"
-#include "progress.h"
 #include <math.h>
+#include <stdarg.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 static double read_clock(clockid_t clock)
 {
@@ -86,6 +88,27 @@ double samples_median(const struct samples *samples)
 {
     return samples_wall(samples).median;
 }
+
+/* ---- On the terminal ------------------------------------------------------------------------- */
+
+void progress_clear(void)
+{
+    if (isatty(STDERR_FILENO))
+        fputs("\r\033[K", stderr);
+}
+
+void progress_show(const char *format, ...)
+{
+    va_list arguments;
+    progress_clear();
+    va_start(arguments, format);
+    if (isatty(STDERR_FILENO))
+        vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fflush(stderr);
+}
+
+/* ---- Rounds ---------------------------------------------------------------------------------- */
 
 void rounds_measure(const struct rounds *rounds, struct samples *times)
 {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Clocks, and the statistics of repeated measurements. */
+/* Clocks, rounds of measurements and their statistics; and one line on a terminal that says how far
+ * they are. */
 #ifndef SPHGRAD_BENCH_TIMING_H
 #define SPHGRAD_BENCH_TIMING_H
 #include <stdint.h>
@@ -41,4 +42,8 @@ void rounds_measure(const struct rounds *rounds, struct samples *times);
 
 /* Sorts the values. */
 double median_of(double *values, int32_t count);
+
+/* Nothing at all in a pipe. */
+__attribute__((format(printf, 1, 2))) void progress_show(const char *format, ...);
+void progress_clear(void);
 #endif

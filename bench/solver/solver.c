@@ -1,108 +1,279 @@
 /* SPDX-License-Identifier: MIT */
-/* The command `solver`. */
-#include "solver.h"
+/* The command `solver`: time a matrix of the library's batches, in batches that stay in the
+ * second-level cache and batches that do not, on every instruction set. */
 #include "commands.h"
+#include "library.h"
 #include "report/report.h"
+#include "solver_batch.h"
+#include "team.h"
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <string.h>
 
-static void find_paths(struct solver *solver)
+enum work { INVERSION, EIGEN, SVD };
+
+static const struct solver_case {
+    enum work work;
+    const char *what;
+    enum spectrum spectrum;
+    double share; /* of moments that fall back to the decomposition */
+} cases[] = {{INVERSION, "copy", SPECTRUM_NONE, 0},
+             {INVERSION, "all certified", SPECTRUM_MOMENTS, 0},
+             {INVERSION, "1 % fall back", SPECTRUM_MOMENTS, 0.01},
+             {INVERSION, "8.5 % fall back", SPECTRUM_MOMENTS, 0.085},
+             {INVERSION, "all fall back", SPECTRUM_MOMENTS, 1},
+             {EIGEN, "copy", SPECTRUM_NONE, 0},
+             {EIGEN, "random", SPECTRUM_RANDOM, 0},
+             {EIGEN, "near the identity", SPECTRUM_NEAR, 0},
+             {EIGEN, "graded", SPECTRUM_GRADED, 0},
+             {SVD, "copy", SPECTRUM_NONE, 0}, /* SVD is 3D only */
+             {SVD, "random", SPECTRUM_RANDOM, 0},
+             {SVD, "near a rotation", SPECTRUM_NEAR, 0},
+             {SVD, "graded", SPECTRUM_GRADED, 0}};
+
+enum {
+    CASES = sizeof cases / sizeof cases[0],
+    PATHS = SPHG_ISA_NEON, /* path p is the instruction set p + 1 of the header */
+    SMALL = 4096           /* matrices that stay in the second-level cache */
+};
+
+struct solver {
+    struct settings settings;
+    int32_t matrices;    /* of the large batches */
+    int path, precision; /* the only one wanted, or -1 */
+    bool runs[PATHS];
+};
+
+/* What is measured in turn, round by round. All cases share the results' memory. */
+struct group {
+    sphg_type type;
+    int32_t dimension, count, threads;
+    sphg_context *contexts[PATHS]; /* NULL: not measured */
+    struct numbers batches[CASES], results[3];
+    int32_t calls[CASES][PATHS]; /* that make a sample; 0: not measured */
+    double deviation[CASES];     /* worst of C M - 1, A - Q L Q^T, A - U S V^T, over |A| */
+    double decomposed[CASES];    /* share that the call says it sent there, the worst path's */
+    struct samples times[CASES][PATHS]; /* of one call; a copy: only of path 0 */
+};
+
+/* Result k of the work, packed as a host would have it. */
+static struct numbers result_of(const struct group *group, enum work work, int k)
 {
-    int found = 0;
-    for (int path = 0; path < LIBRARY_PATHS; ++path) {
-        solver->available[path] =
-            library_open_path(1, path) && (solver->path < 0 || solver->path == path);
-        found += solver->available[path];
+    const int32_t d = group->dimension, symmetric = d * (d + 1) / 2;
+    const int32_t widths[3][3] = {{symmetric, 0, 0}, {d, d * d, 0}, {d * d, d, d * d}};
+    struct numbers result = group->results[k];
+    result.width = widths[work][k];
+    return result;
+}
+
+/* ---- What is timed -------------------------------------------------------------------------- */
+
+struct copy {
+    const struct group *group;
+    int k;
+};
+
+/* Bytes of items [begin, end) of a table. */
+static char *items(const struct numbers *table, int32_t begin, int32_t end, size_t *size)
+{
+    const size_t item = (size_t)numbers_view(table).stride;
+    *size = item * (size_t)(end - begin);
+    return (char *)table->data + item * (size_t)begin;
+}
+
+/* Results wider than the input take some of it twice. In pieces as the library's. */
+static void copy_share(void *data, int32_t begin, int32_t end)
+{
+    enum { PIECE = 32 };
+    const struct copy *copy = data;
+    for (int32_t first = begin; first < end; first += PIECE)
+        for (int k = 0; k < 3; ++k) {
+            const struct numbers out = result_of(copy->group, cases[copy->k].work, k);
+            const int32_t last = end - first < PIECE ? end : first + PIECE;
+            size_t in_size, out_size;
+            const char *from = items(&copy->group->batches[copy->k], first, last, &in_size);
+            char *to = items(&out, first, last, &out_size);
+            memcpy(to, from, out_size < in_size ? out_size : in_size);
+            if (out_size > in_size)
+                memcpy(to + in_size, from, out_size - in_size);
+        }
+}
+
+static void run_case(const struct group *group, int k, int path, sphg_stats *stats)
+{
+    const sphg_scheme scheme = {.dimension = group->dimension, .support_radius = 1};
+    sphg_context *context = group->contexts[path];
+    const sphg_view matrices = numbers_view(&group->batches[k]);
+    sphg_view out[3];
+    for (int r = 0; r < 3; ++r) {
+        const struct numbers result = result_of(group, cases[k].work, r);
+        out[r] = numbers_view(&result);
     }
-    if (found == 0)
-        command_line_refuse("--isa: %s does not run here", library_path_name(solver->path));
+    const sphg_inversion wanted = {.correction = out[0], .stats = stats};
+    if (cases[k].spectrum == SPECTRUM_NONE) {
+        struct copy copy = {group, k};
+        team_run(group->threads, copy_share, &copy, group->count, SMALL / 8);
+    } else if (cases[k].work == INVERSION) {
+        library_check(context, sphg_invert_moments(context, &scheme, group->count, matrices,
+                                                   sphg_absent(), &wanted));
+    } else if (cases[k].work == EIGEN) {
+        library_check(
+            context, sphg_eigen(context, group->dimension, group->count, matrices, out[0], out[1]));
+    } else {
+        library_check(context, sphg_svd(context, group->count, matrices, out[0], out[1], out[2]));
+    }
 }
 
-static void list_groups(struct solver *solver)
+static double run(void *data, int32_t item)
 {
-    static const sphg_type types[] = {SPHG_F32, SPHG_F64};
-    const int32_t counts[] = {SOLVER_SMALL, solver->matrices};
-    for (int size = 0; size < 2; ++size)
-        for (int type = 0; type < 2; ++type)
-            for (int32_t d = 3; d >= 2; --d)
-                if (counts[size] > 0 && (solver->precision < 0 || solver->precision == type))
-                    solver->groups[solver->group_count++] = (struct solver_group){
-                        .type = types[type], .dimension = d, .count = counts[size]};
+    const struct group *group = data;
+    const int32_t calls = group->calls[item / PATHS][item % PATHS];
+    for (int32_t call = 0; call < calls; ++call)
+        run_case(group, item / PATHS, item % PATHS, NULL);
+    return calls;
 }
 
-/* The worst path's. */
-static double most(const double *values, const bool *available)
+/* ---- What came out -------------------------------------------------------------------------- */
+
+/* |C M - 1|, |Q L Q^T - A| or |U S V^T - A|, the largest entry, over that of A. M is its own
+ * transpose. */
+static double deviation_of(const struct group *group, int k, int32_t item)
 {
-    double largest = 0;
-    for (int path = 0; path < LIBRARY_PATHS; ++path)
-        if (available[path])
-            largest = numbers_larger(largest, values[path]);
-    return largest;
+    const int32_t d = group->dimension;
+    const enum work work = cases[k].work;
+    const bool inverse = work == INVERSION, eigen = work == EIGEN;
+    const struct numbers *matrices = &group->batches[k];
+    const struct numbers results[3] = {result_of(group, work, 0), result_of(group, work, 1),
+                                       result_of(group, work, 2)};
+    double a[3][3], p[3][3], q[3][3], worst = 0, largest = 0;
+    batch_matrix(matrices, item, d, a);
+    batch_matrix(&results[eigen], item, d, p);
+    batch_matrix(inverse ? matrices : &results[eigen ? 1 : 2], item, d, q);
+    for (int32_t r = 0; r < d; ++r)
+        for (int32_t c = 0; c < d; ++c) {
+            double off = inverse ? r == c : a[r][c];
+            for (int32_t n = 0; n < d; ++n)
+                off -= p[r][n] * q[c][n] * (inverse ? 1 : numbers_get(&results[!eigen], item, n));
+            worst = numbers_larger(worst, fabs(off));
+            largest = fmax(largest, fabs(a[r][c]));
+        }
+    return worst / largest;
 }
 
-static struct cell cell_per_matrix(const char *name, const struct solver_group *group, int k,
-                                   int path)
+/* Runs the case once, which also warms up, and looks at its first results, NaN until they are
+ * written. Corrections that the threshold touched are no inverses. Short calls are repeated until a
+ * sample takes 2 ms. */
+static void check_case(struct group *group, int k, int path)
+{
+    sphg_stats stats = {.decomposed = 0};
+    for (int r = 0; r < 3; ++r)
+        memset(group->results[r].data, 0xff,
+               (size_t)group->count * (size_t)numbers_view(&group->results[r]).stride);
+    run_case(group, k, path, cases[k].spectrum == SPECTRUM_MOMENTS ? &stats : NULL);
+    group->decomposed[k] = fmax(group->decomposed[k], (double)stats.decomposed / group->count);
+    for (int32_t i = 0;
+         cases[k].spectrum != SPECTRUM_NONE && cases[k].share == 0 && i < group->count && i < SMALL;
+         ++i)
+        group->deviation[k] = numbers_larger(group->deviation[k], deviation_of(group, k, i));
+    const struct moment start = now();
+    run_case(group, k, path, NULL);
+    group->calls[k][path] = (int32_t)fmin(ceil(2 / fmax(since(start).wall, 1e-4)), 1e5);
+}
+
+/* A copy is by no path, and only once. */
+static void measure_group(const struct solver *solver, struct group *group)
+{
+    group->threads = solver->settings.threads;
+    for (int path = 0; path < PATHS; ++path)
+        if (solver->runs[path])
+            group->contexts[path] = library_open_isa(group->threads, (sphg_isa)(path + 1));
+    for (int k = 0; k < 3; ++k)
+        group->results[k] = numbers_create(group->type, group->count, 9);
+    for (int k = 0; k < CASES && (group->dimension == 3 || cases[k].work != SVD); ++k) {
+        group->batches[k] = batch_create(cases[k].spectrum, cases[k].share, cases[k].work != SVD,
+                                         group->type, group->dimension, group->count);
+        for (int path = 0; path < PATHS; ++path)
+            if (cases[k].spectrum == SPECTRUM_NONE ? path == 0 : group->contexts[path] != NULL)
+                check_case(group, k, path);
+    }
+    rounds_measure(&(struct rounds){text_of("%dD, %d", group->dimension, group->count),
+                                    solver->settings.repetitions, CASES * PATHS, run, NULL, group},
+                   &group->times[0][0]);
+}
+
+/* ---- The whole ------------------------------------------------------------------------------ */
+
+static struct cell cell_per_matrix(const char *name, const struct group *group, int k, int path)
 {
     return cell_time(name, name, &group->times[k][path], 1e6 / group->count, "ns_per_matrix",
                      "%.2f (%.2f-%.2f)");
 }
 
-static void add_case(struct table *table, const struct solver *solver,
-                     const struct solver_group *group, int k)
+static void add_case(const struct solver *solver, const struct group *group, int k)
 {
     static const char *const works[] = {"invert moments", "eigen", "SVD"};
-    const struct solver_case *one = &solver_cases[k];
-    const struct solver_result *result = &group->results[k];
-    const bool copied = one->spectrum == SOLVER_COPIED;
-    struct cell cells[8 + LIBRARY_PATHS] = {
-        cell_text(NULL, "dimension", table_text("%dD", (int)group->dimension)),
-        cell_text(NULL, "precision", group->type == SPHG_F64 ? "f64" : "f32"),
-        cell_text(NULL, "matrices", table_text("%d", (int)group->count)),
-        cell_text("", "work", works[one->work]),
-        cell_text("", "what", one->what),
+    const bool copied = cases[k].spectrum == SPECTRUM_NONE;
+    struct cell cells[8 + PATHS] = {
+        cell_text(NULL, "dimension", text_of("%dD", (int)group->dimension)),
+        cell_text(NULL, "precision", precision_names[group->type == SPHG_F64]),
+        cell_text(NULL, "matrices", text_of("%d", (int)group->count)),
+        cell_text("", "work", works[cases[k].work]),
+        cell_text("", "what", cases[k].what),
         cell_if(copied, cell_per_matrix("memcpy", group, k, 0))};
     size_t count = 6;
-    for (int path = 0; path < LIBRARY_PATHS; ++path)
-        if (solver->available[path])
-            cells[count++] =
-                cell_if(!copied, cell_per_matrix(library_path_name(path), group, k, path));
-    cells[count++] = cell_if(one->spectrum == SOLVER_MOMENTS,
-                             cell_number("fell %", "decomposed_percent", "%.2f",
-                                         100 * most(result->decomposed, solver->available)));
-    cells[count++] = cell_if(
-        !copied && one->share == 0,
-        cell_number("off by", "deviation", "%.1e", most(result->deviation, solver->available)));
-    table_add(table, cells, count);
+    for (int path = 0; path < PATHS; ++path)
+        if (solver->runs[path])
+            cells[count++] = cell_if(!copied, cell_per_matrix(isa_names[path + 1], group, k, path));
+    cells[count++] =
+        cell_if(cases[k].spectrum == SPECTRUM_MOMENTS,
+                cell_number("fell %", "decomposed_percent", "%.2f", 100 * group->decomposed[k]));
+    cells[count++] = cell_if(!copied && cases[k].share == 0,
+                             cell_number("off by", "deviation", "%.1e", group->deviation[k]));
+    table_add(cells, count);
 }
 
-static struct table *table_of(const struct solver *solver)
+static void find_paths(struct solver *solver)
 {
-    struct table *table = table_create("solver");
-    for (int g = 0; g < solver->group_count; ++g) {
-        const struct solver_group *group = &solver->groups[g];
-        table_section(table, table_text("%dD, %s, %s", (int)group->dimension,
-                                        group->type == SPHG_F64 ? "f64" : "f32",
-                                        text_grouped(group->count)));
-        for (int k = 0; k < SOLVER_CASES; ++k)
-            if (solver_has(group, k))
-                add_case(table, solver, group, k);
-    }
-    return table;
+    int found = 0;
+    for (int path = 0; path < PATHS; ++path)
+        found += solver->runs[path] =
+            library_runs((sphg_isa)(path + 1)) && (solver->path < 0 || solver->path == path);
+    if (found == 0)
+        command_line_refuse("--isa: %s does not run here", isa_names[solver->path + 1]);
 }
 
-static void report_results(const struct solver *solver)
+static void begin_report(const struct solver *solver)
 {
-    struct report *report = report_create(&solver->settings);
+    report_open("solver", &solver->settings);
     printf("matrices   3 x 3 and 2 x 2, items packed, so many in a batch; memcpy: their numbers "
            "moved from the input\n           to the results, no arithmetic; fell: share that the "
            "call sent to the decomposition\n");
-    report_machine(report);
+    REPORT("machine");
     printf("times      ns a matrix, median (min-max) of %d rounds through the cases and "
            "instruction sets of a group;\n           off by: C M - 1 of the certified, else "
            "what the factors miss of A, the largest entry over that of A\n",
            solver->settings.repetitions);
-    report_table(report, table_of(solver));
-    report_write(report);
+    REPORT("table", "solver");
+}
+
+/* Small and large batches, f32 and f64, 3D and 2D. */
+static void measure(const struct solver *solver)
+{
+    for (int n = 0; n < 8; ++n) {
+        struct held *mark = held_so_far();
+        struct group group = {.count = n / 4 ? solver->matrices : SMALL,
+                              .type = n / 2 % 2 ? SPHG_F64 : SPHG_F32,
+                              .dimension = 3 - n % 2};
+        if (group.count == 0 || (solver->precision >= 0 && solver->precision != n / 2 % 2))
+            continue;
+        measure_group(solver, &group);
+        REPORT("section", text_of("%dD, %s, %s", (int)group.dimension, precision_names[n / 2 % 2],
+                                  text_grouped(group.count)));
+        for (int k = 0; k < CASES; ++k)
+            if (group.dimension == 3 || cases[k].work != SVD)
+                add_case(solver, &group, k);
+        release_held(mark);
+    }
 }
 
 int command_solver(int argc, char **argv)
@@ -113,23 +284,23 @@ int command_solver(int argc, char **argv)
                             .path = -1,
                             .precision = -1};
     const struct command_option options[] = {
-        {"matrices", 0, "N", "of the large batches (1000000); 0: only small ones", OPTION_WHOLE,
-         &solver.matrices, 0, 1e8, NULL, NULL},
+        {"matrices", 0, "N", "of the large batches (1000000); 0: only small ones",
+         AS_WHOLE(solver.matrices, 0, 1e8)},
         {"isa", 0, "NAME", "baseline, x86-64-v3, x86-64-v4 or neon alone (all that run here)",
-         OPTION_CHOICE, &solver.path, 0, 0, isa_names + 1, NULL},
-        {"precision", 0, "TYPE", "f32 or f64 alone (both)", OPTION_CHOICE, &solver.precision, 0, 0,
-         precisions, NULL},
-        RUN_OPTIONS(solver.settings),
+         AS_CHOICE(solver.path, isa_names + 1)},
+        {"precision", 0, "TYPE", "f32 or f64 alone (both)",
+         AS_CHOICE(solver.precision, precisions)},
         {0}};
-    settings_read(&solver.settings, options,
+    settings_read(&solver.settings, TAKES_RUN, options,
                   "Times batches of small matrices: moments that the certificate lets pass and "
                   "moments that fall back to the decomposition, eigenvalues, SVD; on every "
                   "instruction set, in batches that stay in the cache and batches that do not. "
                   "One thread unless --threads says otherwise.",
                   argc, argv);
     find_paths(&solver);
-    list_groups(&solver);
-    solver_measure(&solver);
-    report_results(&solver);
-    return EXIT_SUCCESS;
+    begin_report(&solver);
+    measure(&solver);
+    REPORT("print");
+    REPORT("times");
+    return report_close();
 }

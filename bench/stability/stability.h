@@ -21,19 +21,14 @@ enum stability_sweep {
     SWEEPS = SWEEP_CROWDS
 };
 
-enum { STABILITY_METHODS = 6, STABILITY_POLICIES = 4, STABILITY_PRECISIONS = 3 };
-
 /* One place of a sweep for one method, precision and policy; the worst of all rounds. */
 struct stability_case {
     enum stability_sweep sweep;
-    sphg_method method;
-    sphg_kernel kernel;
-    sphg_policy policy;
     enum precision precision;
+    sphg_scheme scheme; /* H apart */
     double at, end; /* scale and merging walk from `at` to `end`, in `steps` steps; else the same */
     int32_t steps;
-    struct moment time;  /* of all calls of the library */
-    struct samples once; /* of that alone, for tables */
+    struct moment time; /* of all calls of the library */
 
     int64_t targets;    /* seen by the library */
     int64_t not_finite; /* numbers among the results */
@@ -42,8 +37,7 @@ struct stability_case {
     double linear_full; /* the largest where rank is full; plain SPH: the largest */
     double noise;       /* largest |J_i|_F H of a random field in [-1, 1] */
 
-    int64_t compared,
-        undecided; /* targets beside the reference; left out, since rounding decides */
+    int64_t compared, undecided; /* targets beside the reference; left out: rounding decides */
     int64_t wrong_ranks;
     double ratio_full, ratio_touched; /* largest error over its bound */
     double condition;                 /* largest of the normalised moments compared */
@@ -66,20 +60,7 @@ struct stability {
 };
 
 extern const char *const sweep_names[]; /* NULL-terminated */
-extern const char *const policy_names[STABILITY_POLICIES];
+extern const char *const policy_names[];
 
-void stability_create_cases(struct stability *stability);
-bool stability_is_corrected(const struct stability_case *one); /* not plain SPH */
-double stability_threshold(const struct stability_case *one);  /* eps */
-int32_t stability_order(const struct stability_case *one);
 void stability_measure(struct stability *stability);
-
-/* Shares and means of a case. */
-double stability_rank(const struct stability_case *one);
-double stability_fallback(const struct stability_case *one); /* share that is decomposed */
-double stability_linear(const struct stability_case *one);
-double stability_ratio(const struct stability_case *one);
-
-/* Lines on stderr for promises that a case breaks; how many there are. */
-int stability_check(const struct stability *stability);
 #endif

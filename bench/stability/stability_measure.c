@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The walk through the cases of stability. Each case is measured by one thread, so that figures
  * do not depend on their number. */
-#include "library.h"
-#include "report/progress.h"
-#include "stability_reference.h"
+#include "stability_trial.h"
 #include "team.h"
 #include <math.h>
 #include <stdatomic.h>
@@ -22,20 +20,12 @@ static struct trial run_at(const struct bench *bench, double at, int exponent)
 {
     struct stability_cloud cloud =
         stability_cloud_create(bench->stability, bench->one->sweep, at, bench->round);
-    struct trial trial = trial_create(bench->context, bench->one, &cloud, exponent);
-    trial_run(&trial, bench->one);
-    return trial;
+    return trial_run(bench->context, bench->one, &cloud, exponent);
 }
 
 static void compare(const struct bench *bench, const struct trial *trial)
 {
     reference_compare(trial, bench->stability->compared, bench->one);
-}
-
-static void measure_place(const struct bench *bench)
-{
-    struct trial trial = run_at(bench, bench->one->at, 0);
-    compare(bench, &trial);
 }
 
 static void measure_scales(const struct bench *bench)
@@ -91,45 +81,41 @@ static void measure_merging(const struct bench *bench)
 
 static void measure_case(const struct bench *bench)
 {
-    if (bench->one->sweep == SWEEP_SCALE)
+    if (bench->one->sweep == SWEEP_SCALE) {
         measure_scales(bench);
-    else if (bench->one->sweep == SWEEP_MERGING)
+    } else if (bench->one->sweep == SWEEP_MERGING) {
         measure_merging(bench);
-    else
-        measure_place(bench);
+    } else {
+        const struct trial trial = run_at(bench, bench->one->at, 0);
+        compare(bench, &trial);
+    }
 }
 
 /* ---- All of them ---------------------------------------------------------------------------- */
 
-struct work {
+struct queue {
     struct stability *stability;
     atomic_int next;
 };
 
-static void report(const struct stability *stability, int index)
-{
-    const struct stability_case *one = &stability->cases[index];
-    progress_show("%s %s %s %s at %g: %d of %d", sweep_names[one->sweep], method_names[one->method],
-                  precision_names[one->precision], policy_names[one->policy], one->at, index + 1,
-                  stability->case_count);
-}
-
 /* Whoever is free takes the next case. */
 static void take_cases(void *data, int32_t begin, int32_t end)
 {
-    struct work *work = data;
-    struct stability *stability = work->stability;
+    struct queue *queue = data;
+    struct stability *stability = queue->stability;
     if (begin == end)
         return;
     struct held *all = held_so_far();
     struct bench bench = {.stability = stability, .context = library_open(1)};
     for (;;) {
-        const int index = atomic_fetch_add(&work->next, 1);
+        const int index = atomic_fetch_add(&queue->next, 1);
         if (index >= stability->case_count)
             break;
         bench.one = &stability->cases[index];
         if (begin == 0)
-            report(stability, index);
+            progress_show("%s %s at %g: %d of %d", sweep_names[bench.one->sweep],
+                          method_names[bench.one->scheme.method], bench.one->at, index + 1,
+                          stability->case_count);
         for (bench.round = 0; bench.round < stability->settings.repetitions; ++bench.round) {
             struct held *of_case = held_so_far();
             measure_case(&bench);
@@ -141,8 +127,8 @@ static void take_cases(void *data, int32_t begin, int32_t end)
 
 void stability_measure(struct stability *stability)
 {
-    struct work work = {.stability = stability};
-    atomic_init(&work.next, 0);
-    team_run(stability->settings.threads, take_cases, &work, stability->settings.threads, 1);
+    struct queue queue = {.stability = stability};
+    atomic_init(&queue.next, 0);
+    team_run(stability->settings.threads, take_cases, &queue, stability->settings.threads, 1);
     progress_clear();
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stability_reference.h"
+#include "stability_trial.h"
 #include "support/oracle_quadratic.h"
 #include <math.h>
 
@@ -22,14 +22,15 @@ static double *doubles_of(const struct numbers *numbers)
 
 static oracle_scene scene_of(const struct trial *trial)
 {
-    return (oracle_scene){.scheme = trial->scheme,
-                          .unit = trial->volumes.type == SPHG_F64 ? 0x1p-53 : 0x1p-24,
-                          .single_positions = trial->positions.type == SPHG_F32,
-                          .source_count = trial->count,
+    const struct scene *scene = &trial->scene;
+    return (oracle_scene){.scheme = scene->scheme,
+                          .unit = scene->volumes.type == SPHG_F64 ? 0x1p-53 : 0x1p-24,
+                          .single_positions = scene->positions.type == SPHG_F32,
+                          .source_count = scene->count,
                           .target_count = trial->target_count,
-                          .sources = doubles_of(&trial->positions),
-                          .volume = doubles_of(&trial->volumes),
-                          .support = trial->radii.data ? doubles_of(&trial->radii) : NULL};
+                          .sources = doubles_of(&scene->positions),
+                          .volume = doubles_of(&scene->volumes),
+                          .support = trial->radii.count ? doubles_of(&trial->radii) : NULL};
 }
 
 /* ---- Which targets --------------------------------------------------------------------------- */
@@ -49,7 +50,7 @@ static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
 {
     const int32_t count = trial->target_count, most = wanted < count ? wanted : count;
     uint8_t *taken = allocate_held((size_t)count, 1);
-    const int32_t even = trial->corrected ? (most + 1) / 2 : most;
+    const int32_t even = trial->scene.scheme.method != SPHG_PLAIN ? (most + 1) / 2 : most;
     for (int32_t k = 0; k < even; ++k)
         taken[(int64_t)k * count / even] = 1;
     for (int32_t k = even; k < most; ++k)
@@ -64,7 +65,7 @@ static void note_ratio(const struct trial *trial, const quad *exact, quad bound,
 {
     double found[9];
     for (int k = 0; k < 9; ++k)
-        found[k] = numbers_get(&trial->jacobians[TRIAL_RANDOM], i, k);
+        found[k] = numbers_get(&trial->scene.jacobians, i, k);
     const double ratio = oracle_ratio(9, found, exact, bound);
     double *worst = touched ? &one->ratio_touched : &one->ratio_full;
     *worst = numbers_larger(*worst, ratio);
@@ -87,7 +88,7 @@ static void compare_target(const struct trial *trial, const oracle_scene *scene,
 {
     const oracle_point *point = oracle_at(reference, i);
     ++one->compared;
-    if (trial->scheme.order == 2) {
+    if (trial->scene.scheme.order == 2) {
         const oracle_curved exact = oracle_apply_second(reference, field, i);
         const oracle_second *second = oracle_second_at(reference, i);
         one->undecided += exact.undecided;
@@ -102,7 +103,7 @@ static void compare_target(const struct trial *trial, const oracle_scene *scene,
     one->undecided += exact.undecided;
     if (!exact.undecided)
         note_ratio(trial, exact.gradient, exact.bound, exact.touched, i, one);
-    if (!trial->corrected)
+    if (trial->scene.scheme.method == SPHG_PLAIN)
         return;
     note_condition(point, one);
     one->wrong_ranks += trial->ranks[i] != point->rank && !oracle_rank_is_open(scene, point);
@@ -115,7 +116,7 @@ void reference_compare(const struct trial *trial, int32_t wanted, struct stabili
     oracle *reference = oracle_of(&scene);
     const oracle_field field = {.shape = SPHG_VECTOR,
                                 .form = SPHG_DIFFERENCE,
-                                .at_sources = doubles_of(&trial->fields[TRIAL_RANDOM])};
+                                .at_sources = doubles_of(&trial->scene.field)};
     uint8_t *taken = choose_targets(trial, wanted);
     for (int32_t i = 0; i < trial->target_count; ++i)
         if (taken[i])

@@ -1,22 +1,54 @@
 /* SPDX-License-Identifier: MIT */
-/* The command `table1`. */
-#include "table1.h"
+/* The command `table1`: Table 1 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933, of a lattice
+ * or of a file's particles, on a terminal of 100 columns. Each round goes once through everything:
+ * the search, then each method's works, so that a slow second of the machine hits all columns
+ * alike. */
 #include "commands.h"
+#include "particles/errors.h"
+#include "particles/particles.h"
+#include "report/report.h"
+#include "limit/probe.h"
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-static const struct table1_method paper[TABLE1_METHODS] = {
-    {.method = SPHG_PLAIN, .paper_gradient = 12.08},
-    {.method = SPHG_KGC, .paper_matrix = 11.23, .paper_gradient = 13.00},
-    {.method = SPHG_CMLS, .paper_matrix = 28.98, .paper_gradient = 41.95},
-    {.method = SPHG_MLS, .paper_matrix = 11.29, .paper_gradient = 12.42},
-    {.method = SPHG_CRKPM, .paper_matrix = 29.18, .paper_gradient = 44.80},
-    {.method = SPHG_RKPM, .paper_matrix = 12.31, .paper_gradient = 13.94},
+enum { METHODS = 6 };
+
+/* Untimed: the linear field, max |J_i - J|_F / |J|_F over particles of full rank (plain SPH, which
+ * has no rank: over all); NaN if there are none. */
+struct method {
+    sphg_method method;
+    double paper_matrix, paper_gradient; /* [ms], 32 cores of a Threadripper PRO 5975WX */
+    double gradient_error, fused_error, kept_error;
+    int64_t not_finite; /* numbers in any Jacobian, of v and of the timed field */
+    sphg_stats stats;
 };
 
-bool table1_keeps_weights(const struct table1_method *one)
+/* Timed: the search; each method's works but the search, without and with weights that a sweep
+ * before kept; the probe. */
+enum { SEARCH, FIRST, PROBE = FIRST + 2 * METHODS * WORKS, ITEMS = PROBE + PROBE_WORKS };
+
+struct table1 {
+    struct settings settings; /* support: in spacings; with an input file in its units */
+    struct particle_source source;
+    struct particles particles;
+    struct scene scenes[2];    /* [1]: the same pairs, with weights */
+    struct numbers velocities; /* of the file, or the linear field */
+    uint8_t *ranks;
+    sphg_neighbors_info neighbors;
+    double volume_ratio; /* median of the file's volumes over 1 / sum W */
+    double first_search; /* [ms], with all allocations */
+    struct probe *probe; /* a million particles at most, whatever the table is about */
+    struct method methods[METHODS];
+    struct samples times[ITEMS];
+};
+
+static int item_of(int kept, int method, enum work work)
 {
-    return one->method == SPHG_KGC || one->method == SPHG_MLS || one->method == SPHG_RKPM;
+    return FIRST + (kept * METHODS + method) * WORKS + (int)work;
 }
+
+/* ---- Options --------------------------------------------------------------------------------- */
 
 static void check_combination(const struct table1 *table, bool particles_given, bool jitter_given)
 {
@@ -42,36 +74,31 @@ static void read_options(struct table1 *table, int argc, char **argv)
     struct settings *settings = &table->settings;
     struct particle_source *source = &table->source;
     bool particles_given = false, jitter_given = false;
-    int order = 0;
     const struct command_option options[] = {
         {"particles", 0, "N", "in the nearest cube (1000000)", OPTION_WHOLE, &settings->particles,
          1, 1e9, NULL, &particles_given},
         {"jitter", 0, "SHARE", "move each coordinate by up to this share of the spacing",
          OPTION_REAL, &settings->jitter, 0, 1, NULL, &jitter_given},
         {"order", 0, "ORDER", "particles in memory: lattice (or as in the input file), or shuffled",
-         OPTION_CHOICE, &order, 0, 0, orders, NULL},
+         AS_CHOICE(source->order, orders)},
         {"input", 0, "FILE",
          "particles of your own instead of a lattice, from a text file with columns as solvers, "
          "ParaView and spreadsheets write it: positions (x, y, z; Points:0; Pos.x [m] ...; "
          "without z, or where one is constant, in 2D) and, if there, velocities, and volumes or "
          "densities and masses",
-         OPTION_TEXT, &source->input, 0, 0, NULL, NULL},
+         AS_TEXT(source->input)},
         {"mass", 0, "M",
          "of each particle of an input file with densities, instead of its own masses",
-         OPTION_POSITIVE, &source->mass, 0, 0, NULL, NULL},
+         AS_POSITIVE(source->mass)},
         {"support", 0, "H",
          "support radius, in spacings (2); with --input in the file's unit of length",
-         OPTION_POSITIVE, &settings->support, 0, 0, NULL, NULL},
-        KERNEL_OPTION(*settings),
-        PRECISION_OPTION(*settings, "f32"),
-        ISA_OPTION(*settings),
-        THREADS_OPTION(*settings),
-        {"repetitions", 0, "N", "of each measurement, after one warm-up (9)", OPTION_WHOLE,
-         &settings->repetitions, 1, 10000, NULL, NULL},
-        OUTPUT_OPTION(*settings, "Table 1 as CSV and as a picture", "nowhere"),
-        JSON_OPTION(*settings),
+         AS_POSITIVE(settings->support)},
+        {"repetitions", 0, "N", "of each measurement, after one warm-up (9)",
+         AS_WHOLE(settings->repetitions, 1, 10000)},
+        {"output", 0, "FOLDER", "where Table 1 as CSV and as a picture go (nowhere)",
+         AS_FOLDER(settings->output)},
         {0}};
-    settings_read(settings, options,
+    settings_read(settings, TAKES_LATTICE | TAKES_RUN | TAKES_KERNEL | TAKES_PRECISION, options,
                   "Times the correction (T_mat), the gradient of a vector field with the "
                   "correction given (T_grad), both in one call (fused) and the neighbour search "
                   "(T_ns), and measures the error of each gradient on v = (-y, x, 2z).",
@@ -82,20 +109,397 @@ static void read_options(struct table1 *table, int argc, char **argv)
     source->dimension = 3;
     source->side = settings_side(settings->particles, 3);
     source->jitter = settings->jitter;
-    source->shuffled = order == 1;
     source->precision = settings->precision;
+}
+
+/* ---- Errors ---------------------------------------------------------------------------------- */
+
+/* A work of one method, on that field. */
+static void compute(const struct table1 *table, int kept, sphg_method method, enum work work,
+                    const struct numbers *field)
+{
+    struct scene scene = table->scenes[kept];
+    scene.scheme.method = method;
+    scene.field = *field;
+    scene_run(&scene, work);
+}
+
+/* What is fused says which particles could be corrected. */
+static void compute_ranks(const struct table1 *table, struct method *one)
+{
+    struct scene scene = table->scenes[0];
+    const sphg_sources sources = scene_sources(&scene);
+    const sphg_view at_sources = numbers_view(&scene.field);
+    const sphg_field wanted = {.shape = SPHG_VECTOR,
+                               .at_sources = &at_sources,
+                               .gradient = numbers_view(&scene.jacobians)};
+    const sphg_request request = {.sources = &sources,
+                                  .fields = &wanted,
+                                  .set_count = 1,
+                                  .field_count = 1,
+                                  .rank = sphg_view_u8(table->ranks, 1),
+                                  .stats = &one->stats};
+    scene.scheme.method = one->method;
+    scene_evaluate(&scene, &request);
+}
+
+/* Plain SPH corrects nothing and has no rank: all particles count. */
+static double take_error(const struct table1 *table, struct method *one)
+{
+    const struct numbers *jacobians = &table->scenes[0].jacobians;
+    one->not_finite += count_not_finite(jacobians);
+    return linear_field_worst(jacobians, one->method == SPHG_PLAIN ? NULL : table->ranks);
+}
+
+static void measure_errors(const struct table1 *table, struct method *one)
+{
+    const struct numbers *linear = &table->scenes[0].field;
+    progress_show("warm-up: %s", method_names[one->method]);
+    if (one->method == SPHG_PLAIN)
+        compute(table, 0, one->method, WORK_FUSED, linear);
+    else
+        compute_ranks(table, one);
+    one->fused_error = take_error(table, one);
+    for (int kept = 0; kept < 1 + keeps_weights(one->method); ++kept) {
+        if (one->method != SPHG_PLAIN)
+            compute(table, kept, one->method, WORK_MATRICES, linear); /* keeps weights, too */
+        compute(table, kept, one->method, WORK_GRADIENT, linear);
+        *(kept ? &one->kept_error : &one->gradient_error) = take_error(table, one);
+    }
+    compute(table, 0, one->method, WORK_FUSED, &table->velocities);
+    take_error(table, one);
+}
+
+/* ---- Times ----------------------------------------------------------------------------------- */
+
+/* Plain SPH has no matrix, and nothing to be fused. */
+static double run(void *data, int32_t item)
+{
+    const struct table1 *table = data;
+    const int place = item - FIRST, kept = place / WORKS / METHODS;
+    const enum work work = (enum work)(place % WORKS);
+    if (item == SEARCH) {
+        scene_run(&table->scenes[0], WORK_SEARCH);
+    } else if (item >= PROBE) {
+        probe_run(table->probe, (enum probe_work)(item - PROBE), table->settings.threads);
+    } else {
+        const sphg_method method = table->methods[place / WORKS % METHODS].method;
+        if (work == WORK_SEARCH || (method == SPHG_PLAIN && work != WORK_GRADIENT) ||
+            (kept && !keeps_weights(method)))
+            return 0;
+        compute(table, kept, method, work, &table->velocities);
+    }
+    return 1;
+}
+
+/* Weights of one scheme are kept at a time: those of a method are formed before its first work. */
+static double prepare(void *data, int32_t item)
+{
+    const bool first_work = item > FIRST && item < PROBE && (item - FIRST) % WORKS == WORK_MATRICES;
+    return first_work && item >= item_of(1, 0, WORK_SEARCH) ? run(data, item) : 0;
+}
+
+static double median_ratio(const struct numbers *given, const struct numbers *expected)
+{
+    double *ratios = allocate_held((size_t)given->count, sizeof *ratios);
+    for (int32_t i = 0; i < given->count; ++i)
+        ratios[i] = numbers_get(given, i, 0) / numbers_get(expected, i, 0);
+    return median_of(ratios, given->count);
+}
+
+/* Volumes that neither lattice nor file gave; those of a file are compared with what would have
+ * been taken without them. */
+static void complete_volumes(struct table1 *table, struct scene *scene)
+{
+    const bool given = table->particles.volumes.count > 0;
+    table->volume_ratio = 1;
+    if (given && !table->source.input)
+        return;
+    const struct numbers volumes = scene_volumes(scene);
+    if (given)
+        table->volume_ratio = median_ratio(&scene->volumes, &volumes);
+    else
+        scene->volumes = volumes;
+}
+
+static void open_scenes(struct table1 *table)
+{
+    const struct particles *particles = &table->particles;
+    const double unit = table->source.input ? 1 : lattice_spacing;
+    const sphg_scheme widest = {.dimension = particles->dimension,
+                                .method = SPHG_CMLS,
+                                .kernel = table->settings.kernel,
+                                .support_radius = table->settings.support * unit};
+    const struct numbers volumes = particles->volumes.count
+                                       ? particles->volumes
+                                       : numbers_create(field_type(table->source.precision), 1, 1);
+    struct scene *scene = &table->scenes[0];
+    *scene =
+        scene_open(library_open(table->settings.threads), &widest, particles->positions, volumes);
+    progress_show("warm-up: search");
+    const double start = now().wall;
+    scene_run(scene, WORK_SEARCH);
+    table->first_search = now().wall - start;
+    table->neighbors = library_info(scene->context, scene->neighbors);
+    complete_volumes(table, scene);
+    table->scenes[1] = scene_keeping_weights(scene);
+    table->ranks = allocate_held((size_t)particles->count, 1);
+    table->velocities = particles->velocities.count ? particles->velocities : scene->field;
+}
+
+static void measure(struct table1 *table)
+{
+    const int32_t most = 1000000, count = table->particles.count;
+    open_scenes(table);
+    progress_show("warm-up: probe");
+    table->probe = probe_create(table->scenes[0].context,
+                                settings_side(count < most ? count : most, 3), 2, 0.2);
+    for (int work = 0; work < PROBE_WORKS; ++work)
+        run(table, PROBE + work);
+    for (int k = 0; k < METHODS; ++k)
+        measure_errors(table, &table->methods[k]);
+    rounds_measure(
+        &(struct rounds){"table1", table->settings.repetitions, ITEMS, run, prepare, table},
+        table->times);
+}
+
+/* ---- What was measured ----------------------------------------------------------------------- */
+
+static void print_particles(const struct table1 *table)
+{
+    const struct settings *settings = &table->settings;
+    const struct particles *particles = &table->particles;
+    const int32_t side = table->source.side;
+    const char *order = table->source.order == ORDER_SHUFFLED ? "shuffled" : "lattice";
+    if (table->source.input) {
+        printf("particles  %s of %s%s%s\n", text_grouped(particles->count), table->source.input,
+               particles->flat[0] ? ", " : "", particles->flat);
+        if (particles->more)
+            printf("           the first of several frames in the file\n");
+        printf("           columns %s\n           %s order, volume %s, timed field: %s\n",
+               particles->columns, table->source.order == ORDER_SHUFFLED ? order : "file's",
+               particles->volume_origin,
+               particles->velocities.count ? "the file's velocities"
+                                           : linear_field_formula(particles->dimension));
+        return;
+    }
+    printf("particles  %s in a lattice of %d x %d x %d", text_grouped(particles->count), side, side,
+           side);
+    if (particles->count != settings->particles)
+        printf(" (the cube nearest to %s)", text_grouped(settings->particles));
+    printf(", spacing 1/128\n           ");
+    if (settings->jitter > 0)
+        printf("each coordinate moved by up to %g spacings, ", settings->jitter);
+    printf("%s order, volume %s\n", order, particles->volume_origin);
+}
+
+static void print_set_up(const struct table1 *table)
+{
+    const struct settings *settings = &table->settings;
+    const double count = table->particles.count, pairs = (double)table->neighbors.pairs;
+    const struct spread search = samples_wall(&table->times[SEARCH]);
+    printf("Table 1 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933\n\n");
+    print_particles(table);
+    printf("scheme     %s, H = %g%s, threshold 0.01 (blend), %s%s\n",
+           kernel_title(settings->kernel), settings->support,
+           table->source.input ? "" : " spacings", precision_names[settings->precision],
+           settings->precision == PRECISION_MIXED ? ": positions f64, the rest f32" : "");
+    REPORT("machine");
+    printf("pairs      %s, %.2f a particle; %.1f bytes a particle held by the neighbours\n",
+           text_grouped(table->neighbors.pairs), pairs / count,
+           (double)table->neighbors.bytes / count);
+    printf("search     T_ns %s ms (%s-%s)", text_time(search.median), text_time(search.min),
+           text_time(search.max));
+    if (pairs > 0)
+        printf(", %.3f ns a pair", 1e6 * search.median / pairs);
+    printf("; the first, with allocation, %s ms\n", text_time(table->first_search));
+}
+
+/* And how much longer a particle takes here than with the probe. */
+static void print_probe(const struct table1 *table)
+{
+    const double count = table->particles.count, probe_particles = probe_count(table->probe);
+    double probe[PROBE_WORKS], over[PROBE_WORKS];
+    for (int work = 0; work < PROBE_WORKS; ++work) {
+        const enum work own = work == PROBE_MATRICES ? WORK_MATRICES : WORK_GRADIENT;
+        probe[work] = samples_median(&table->times[PROBE + work]);
+        over[work] = samples_median(&table->times[item_of(0, 1, own)]) / count /
+                     (probe[work] / probe_particles);
+    }
+    printf("yardstick  %s and %s ms for matrices and gradient of %s particles by `limit --probe`;\n"
+           "           a particle's T_mat and T_grad of KGC take %.2f and %.2f of its\n",
+           text_time(probe[PROBE_MATRICES]), text_time(probe[PROBE_GRADIENT]),
+           text_grouped(probe_count(table->probe)), over[PROBE_MATRICES], over[PROBE_GRADIENT]);
+}
+
+/* ---- The table ------------------------------------------------------------------------------- */
+
+static bool some_are_deficient(const struct table1 *table)
+{
+    for (int k = 0; k < METHODS; ++k)
+        if (table->methods[k].method != SPHG_PLAIN &&
+            table->methods[k].stats.rank[table->particles.dimension] != table->particles.count)
+            return true;
+    return false;
+}
+
+static struct cell cell_per_pair(const char *head, const struct table1 *table,
+                                 const struct samples *samples)
+{
+    const double pairs = (double)table->neighbors.pairs;
+    return cell_if(samples->count > 0 && pairs > 0,
+                   cell_number(head, NULL, "%.3f", 1e6 * samples_median(samples) / pairs));
+}
+
+static struct cell cell_error(const char *head, const char *key, bool there, double error)
+{
+    return cell_if(there && !isnan(error), cell_number(head, key, "%.2e", error));
+}
+
+static struct cell cell_paper(const char *head, const char *key, double time)
+{
+    return cell_if(time > 0, cell_number(head, key, "%.2f", time));
+}
+
+/* Rows of methods, which are printed as columns, as in the paper. */
+static void add_method(const struct table1 *table, int method, bool show_ranks)
+{
+    const struct cell blank = {.head = ""};
+    const struct method *one = &table->methods[method];
+    const struct samples *plain = &table->times[item_of(0, method, WORK_SEARCH)],
+                         *kept = &table->times[item_of(1, method, WORK_SEARCH)];
+    const bool corrected = one->method != SPHG_PLAIN, ranked = corrected && show_ranks;
+    TABLE_ROW(cell_text("", "method", method_names[one->method]),
+              cell_ms("T_mat   [ms]", "matrix", &plain[WORK_MATRICES]),
+              cell_ms("T_grad  [ms]", "gradient", &plain[WORK_GRADIENT]),
+              cell_ms("fused   [ms]", "fused", &plain[WORK_FUSED]),
+              cell_ms("T_mat  +weights [ms]", "matrix+weights", &kept[WORK_MATRICES]),
+              cell_ms("T_grad +weights [ms]", "gradient+weights", &kept[WORK_GRADIENT]),
+              cell_ms("fused  +weights [ms]", "fused+weights", &kept[WORK_FUSED]), blank,
+              cell_per_pair("T_mat   [ns a pair]", table, &plain[WORK_MATRICES]),
+              cell_per_pair("T_grad  [ns a pair]", table, &plain[WORK_GRADIENT]),
+              cell_per_pair("fused   [ns a pair]", table, &plain[WORK_FUSED]), blank,
+              cell_error("error of T_grad", "gradient_error", true, one->gradient_error),
+              cell_error("error of fused", "fused_error", corrected, one->fused_error),
+              cell_error(NULL, "kept_error", keeps_weights(one->method), one->kept_error),
+              cell_if(ranked, cell_count("rank 0", NULL, one->stats.rank[0])),
+              cell_if(ranked, cell_count("rank 1", NULL, one->stats.rank[1])),
+              cell_if(ranked, cell_count("rank 2", NULL, one->stats.rank[2])),
+              cell_if(ranked && table->particles.dimension == 3,
+                      cell_count("rank 3", NULL, one->stats.rank[3])),
+              cell_if(ranked, cell_count("to the eigensolver", NULL, one->stats.decomposed)), blank,
+              cell_paper("paper, T_mat  [ms]", "paper_matrix", one->paper_matrix),
+              cell_paper("paper, T_grad [ms]", "paper_gradient", one->paper_gradient));
+}
+
+/* Volumes are what a file gets wrong most easily, and what lambda takes as it is. */
+static void print_suspect(const struct table1 *table)
+{
+    const int32_t dimension = table->particles.dimension;
+    const double count = table->particles.count;
+    const double neighbors = (double)table->neighbors.pairs / count;
+    if (!table->source.input || (double)table->methods[1].stats.rank[dimension] >= count / 10)
+        return;
+    printf("\nHardly any particle has full rank. First suspect: ");
+    if (neighbors < dimension)
+        printf("--support, which leaves %.2g neighbours a particle.\n", neighbors);
+    else
+        printf("the unit of the volumes (mass / density),\nwhich are %.2g times what the positions "
+               "give (1 / sum W).\n",
+               table->volume_ratio);
+}
+
+static void print_footer(const struct table1 *table, bool deficient)
+{
+    int64_t not_finite = 0;
+    for (int k = 0; k < METHODS; ++k)
+        not_finite += table->methods[k].not_finite;
+    printf("\nerror: max |J_i - J|_F / |J|_F on %s over all particles%s rank %d%s\n",
+           linear_field_formula(table->particles.dimension), deficient ? " of" : ", all of",
+           (int)table->particles.dimension, deficient ? " (SPH: over all)" : "");
+    if (table->source.input && table->settings.precision == PRECISION_MIXED)
+        printf("(mixed: v itself is rounded to f32 here, which shows as error)\n");
+    if (not_finite > 0)
+        printf("NOT FINITE: %lld numbers of the Jacobians are NaN or infinite\n",
+               (long long)not_finite);
+    else
+        printf("all numbers of all Jacobians are finite\n");
+    printf("+weights: the sweep before, which is not timed, kept what kernel and volume give each "
+           "pair\npaper: one million particles on 32 cores of a Threadripper PRO 5975WX\n");
+}
+
+static void report_context(const struct table1 *table)
+{
+    const struct settings *settings = &table->settings;
+    const double count = table->particles.count;
+    REPORT("text", "particles_from", table->source.input ? table->source.input : "lattice");
+    report_lattice(settings, table->particles.count, (double)table->neighbors.pairs / count);
+    report_number("dimension", table->particles.dimension);
+    report_number("bytes_per_particle", (double)table->neighbors.bytes / count);
+    REPORT("text", "kernel", kernel_names[settings->kernel]);
+    REPORT("text", "precision", precision_names[settings->precision]);
+    REPORT("text", "order", table->source.order == ORDER_SHUFFLED ? "shuffled" : "lattice");
+    report_number("support_radius", table->scenes[0].scheme.support_radius);
+    report_number("search_first_ms", table->first_search);
+}
+
+/* Beside a file's particles the paper's lattice would say nothing. */
+static void draw(const struct table1 *table)
+{
+    const struct settings *settings = &table->settings;
+    REPORT("csv", settings->output, "table1.csv");
+    REPORT("draw", settings->output, "table1.gp", "table1/table1.gp",
+           text_of("title = '%s particles, %s, H = %g spacings, search not included; '.machine.', "
+                   "%s, %s'",
+                   text_grouped(table->particles.count), kernel_title(settings->kernel),
+                   settings->support, library_isa(), precision_names[settings->precision]),
+           text_of("threads = %d", settings->threads));
+    REPORT("drawn", settings->output, "table1.csv, table1.gp", ", table1.png");
+}
+
+static void show(const struct table1 *table)
+{
+    const int32_t repetitions = table->settings.repetitions;
+    const bool deficient = some_are_deficient(table);
+    report_open("table1", &table->settings);
+    report_context(table);
+    print_set_up(table);
+    print_probe(table);
+    printf("\nmedian of %d repetition%s after a warm-up, methods in turn; search not included\n\n",
+           repetitions, repetitions > 1 ? "s" : "");
+    REPORT("table", "table1");
+    TABLE_ROW(cell_ms(NULL, "search", &table->times[SEARCH]));
+    REPORT("times");
+    REPORT("table", "probe");
+    TABLE_ROW(cell_ms(NULL, "matrices", &table->times[PROBE + PROBE_MATRICES]),
+              cell_ms(NULL, "gradient", &table->times[PROBE + PROBE_GRADIENT]),
+              cell_count(NULL, "particles", probe_count(table->probe)));
+    REPORT("times");
+    REPORT("table", "table1");
+    for (int k = 0; k < METHODS; ++k)
+        add_method(table, k, deficient || table->source.input);
+    REPORT("turned");
+    REPORT("times");
+    print_suspect(table);
+    print_footer(table, deficient);
+    if (table->settings.output)
+        draw(table);
 }
 
 int command_table1(int argc, char **argv)
 {
-    struct table1 table = {.settings = settings_default(1000000, 9, NULL)};
+    struct table1 table = {
+        .settings = settings_default(1000000, 9, NULL),
+        .methods = {{.method = SPHG_PLAIN, .paper_gradient = 12.08},
+                    {.method = SPHG_KGC, .paper_matrix = 11.23, .paper_gradient = 13.00},
+                    {.method = SPHG_CMLS, .paper_matrix = 28.98, .paper_gradient = 41.95},
+                    {.method = SPHG_MLS, .paper_matrix = 11.29, .paper_gradient = 12.42},
+                    {.method = SPHG_CRKPM, .paper_matrix = 29.18, .paper_gradient = 44.80},
+                    {.method = SPHG_RKPM, .paper_matrix = 12.31, .paper_gradient = 13.94}}};
     table.settings.support = table.settings.jitter = 0; /* of a lattice 2, of a file as it says */
-    for (int k = 0; k < TABLE1_METHODS; ++k)
-        table.methods[k] = paper[k];
     read_options(&table, argc, argv);
     table.particles = particles_create(&table.source);
-    table.support_radius = table.settings.support * (table.source.input ? 1 : lattice_spacing);
-    table1_measure(&table);
-    table1_report(&table);
-    return EXIT_SUCCESS;
+    measure(&table);
+    show(&table);
+    return report_close();
 }

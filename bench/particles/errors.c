@@ -1,8 +1,31 @@
 /* SPDX-License-Identifier: MIT */
-#include "linear_field.h"
+#include "errors.h"
 #include <math.h>
 
-static const double volume[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2}, plane[4] = {0, -1, 1, 0};
+double norm_of(const struct numbers *found, int32_t item, const double *expected)
+{
+    double squares = 0;
+    for (int32_t k = 0; k < found->width; ++k)
+        squares += pow(numbers_get(found, item, k) - (expected ? expected[k] : 0), 2);
+    return sqrt(squares);
+}
+
+double relative_error(const struct numbers *found, int32_t item, const double *expected)
+{
+    double squares = 0;
+    for (int32_t k = 0; k < found->width; ++k)
+        squares += expected[k] * expected[k];
+    return norm_of(found, item, expected) / sqrt(squares);
+}
+
+int64_t count_not_finite(const struct numbers *found)
+{
+    int64_t count = 0;
+    for (int32_t i = 0; i < found->count; ++i)
+        for (int32_t k = 0; k < found->width; ++k)
+            count += !isfinite(numbers_get(found, i, k));
+    return count;
+}
 
 const char *linear_field_formula(int32_t dimension)
 {
@@ -21,14 +44,8 @@ void linear_field_fill(const struct numbers *positions, struct numbers *field)
 
 double linear_field_error(const struct numbers *jacobians, int32_t item)
 {
-    const double *expected = jacobians->width == 9 ? volume : plane;
-    double difference = 0, size = 0;
-    for (int32_t k = 0; k < jacobians->width; ++k) {
-        const double d = numbers_get(jacobians, item, k) - expected[k];
-        difference += d * d;
-        size += expected[k] * expected[k];
-    }
-    return sqrt(difference / size);
+    static const double volume[9] = {0, -1, 0, 1, 0, 0, 0, 0, 2}, plane[4] = {0, -1, 1, 0};
+    return relative_error(jacobians, item, jacobians->width == 9 ? volume : plane);
 }
 
 double linear_field_worst(const struct numbers *jacobians, const uint8_t *ranks)
@@ -39,13 +56,4 @@ double linear_field_worst(const struct numbers *jacobians, const uint8_t *ranks)
         if (!ranks || ranks[i] == full)
             most = numbers_larger(most, linear_field_error(jacobians, i));
     return most < 0 ? (double)NAN : most;
-}
-
-int64_t linear_field_not_finite(const struct numbers *jacobians)
-{
-    int64_t count = 0;
-    for (int32_t i = 0; i < jacobians->count; ++i)
-        for (int32_t k = 0; k < jacobians->width; ++k)
-            count += !isfinite(numbers_get(jacobians, i, k));
-    return count;
 }

@@ -8,7 +8,6 @@
 #include "report/report.h"
 #include "team.h"
 #include <stdio.h>
-#include <stdlib.h>
 
 /* What is timed: the probe's works, the library's, and of each set, work and stage (sums alone, or
  * finished) every arrangement. */
@@ -148,93 +147,54 @@ static void measure(struct limit *limit)
 
 /* ---- Reporting ------------------------------------------------------------------------------- */
 
-static const struct samples *times_of(const struct limit *limit, int set, int work, int finished)
-{
-    return &limit->times[PACKED + set * SET_ITEMS + (work * 2 + finished) * LIMIT_ROOTS];
-}
-
-/* The root that is the faster one by its median. */
-static int fastest_of(const struct samples times[LIMIT_ROOTS])
-{
-    return samples_median(&times[LIMIT_NEWTON]) < samples_median(&times[LIMIT_SQUARE_ROOT]);
-}
-
-/* Limit over library, [%]. */
-static double share_of(const struct limit *limit, const struct samples *samples, int work)
-{
-    return 100 * samples_median(samples) / samples_median(&limit->times[LIBRARY + work]);
-}
-
-static const char *const arrangements[LIMIT_ROOTS] = {
-    "targets in lanes, sqrt and division, weights first",
-    "targets in lanes, estimate and Newton step, weights first"};
-
-static struct table *table_of_probe(const struct limit *limit)
+static void show_probe(const struct limit *limit)
 {
     const double error = probe_error(limit->probe),
                  deviation = probe_matrix_deviation(limit->probe, limit->scene.context);
-    struct table *table = table_create("probe");
+    REPORT("table", "probe");
     for (int work = 0; work < PROBE_WORKS; ++work)
-        TABLE_ROW(table, cell_text("probe", "work", work_names[work]),
+        TABLE_ROW(cell_text("probe", "work", work_names[work]),
                   cell_ms("time", "", &limit->times[work]),
                   cell_number("error", "error_max", "%.1e", error),
                   cell_number("off by", "matrix_deviation", "%.1e", deviation));
-    return table;
+    REPORT("print");
+    REPORT("times");
 }
 
-static void print_times(const struct limit *limit)
+/* Every arrangement of every set, whose share of the library's time stands with it; the faster one
+ * counts. */
+static void show_arrangements(const struct limit *limit)
 {
-    struct table *table = table_create(""), *shares = table_create("");
-    TABLE_ROW(table, cell_text("", NULL, table_text("library, %s", library_isa())),
-              cell_ms("matrices", NULL, &limit->times[LIBRARY]),
-              cell_ms("gradient", NULL, &limit->times[LIBRARY + 1]),
-              cell_ms("fused", NULL, &limit->times[LIBRARY + 2]));
-    for (int finished = 0; finished < 2; ++finished) {
-        table_section(table, finished ? "limit: reduced, inverted, formed" : "limit: sums alone");
-        table_section(shares, table_text("share of the limit, %s [%%]", stage_names[finished]));
-        for (int set = 0; set < limit->set_count; ++set) {
-            struct cell cells[LIMIT_WORKS + 1] = {cell_text("", NULL, limit->sets[set]->name)},
-                                            percent[LIMIT_WORKS + 1] = {cells[0]};
-            for (int work = 0; work < LIMIT_WORKS; ++work) {
-                const struct samples *times = times_of(limit, set, work, finished),
-                                     *fastest = &times[fastest_of(times)];
-                cells[work + 1] = cell_ms(work_names[work], NULL, fastest);
-                percent[work + 1] =
-                    cell_number(work_names[work], NULL, "%.0f", share_of(limit, fastest, work));
-            }
-            table_add(table, cells, LIMIT_WORKS + 1);
-            table_add(shares, percent, LIMIT_WORKS + 1);
-        }
-    }
-    table_print(table);
-    table_print(shares);
-}
-
-/* Every arrangement of every set, and the library, whose share of the limit stands with the limit.
- */
-static void report_arrangements(const struct limit *limit, struct report *report)
-{
-    struct table *table = table_create("limit"), *library = table_create("limit");
+    static const char *const arrangements[LIMIT_ROOTS] = {
+        "targets in lanes, sqrt and division, weights first",
+        "targets in lanes, estimate and Newton step, weights first"};
+    REPORT("table", "limit");
     for (int n = 0; n < limit->set_count * SET_ITEMS; ++n) {
-        const int k = n % LIMIT_ROOTS, set = n / SET_ITEMS;
-        const int stage = n / LIMIT_ROOTS % 2, work = n / LIMIT_ROOTS / 2 % LIMIT_WORKS;
-        const struct samples *times = times_of(limit, set, work, stage);
-        TABLE_ROW(table, cell_text(NULL, "work", work_names[work]),
+        const int k = n % LIMIT_ROOTS, stage = n / LIMIT_ROOTS % 2, set = n / SET_ITEMS;
+        const int work = n / LIMIT_ROOTS / 2 % LIMIT_WORKS;
+        const struct samples *times = &limit->times[PACKED + n - k];
+        const bool newton_counts =
+            samples_median(&times[LIMIT_NEWTON]) < samples_median(&times[LIMIT_SQUARE_ROOT]);
+        TABLE_ROW(cell_text(NULL, "work", work_names[work]),
                   cell_text(NULL, "stage", stage_names[stage]),
                   cell_text(NULL, "set", limit->sets[set]->name),
                   cell_text(NULL, "arrangement", arrangements[k]), cell_ms(NULL, "", &times[k]),
                   cell_number(NULL, "deviation", NULL, limit->deviation[set][work]),
-                  cell_number(NULL, "is_limit", NULL, k == fastest_of(times)),
-                  cell_number(NULL, "percent_of_library", NULL, share_of(limit, &times[k], work)),
+                  cell_number(NULL, "is_limit", NULL, k == newton_counts),
+                  cell_number(NULL, "percent_of_library", NULL,
+                              100 * samples_median(&times[k]) /
+                                  samples_median(&limit->times[LIBRARY + work])),
                   cell_number(NULL, "vectors", NULL,
                               (double)limit->packed[set][0].data.slots / limit->sets[set]->lanes));
     }
-    for (int work = 0; work < LIMIT_WORKS; ++work)
-        TABLE_ROW(library, cell_text(NULL, "work", work_names[work]),
-                  cell_text(NULL, "stage", "library"),
-                  cell_ms(NULL, "", &limit->times[LIBRARY + work]));
-    report_times(report, table);
-    report_times(report, library);
+    REPORT("times");
+    REPORT("show", "keep");
+    REPORT("table", "limit");
+    for (int n = 0; n < LIMIT_WORKS; ++n)
+        TABLE_ROW(cell_text(NULL, "work", work_names[n]), cell_text(NULL, "stage", "library"),
+                  cell_ms(NULL, "", &limit->times[LIBRARY + n]));
+    REPORT("times");
+    REPORT("show", "shares");
 }
 
 /* What each set goes through. */
@@ -251,42 +211,29 @@ static void print_sets(const struct limit *limit)
     }
 }
 
-static void report_results(const struct limit *limit)
-{
-    const struct settings *settings = &limit->settings;
-    struct report *report = report_create(settings);
-    report_lattice(report, limit->scene.count, probe_pairs(limit->probe));
-    printf("; KGC, cubic spline, f32\n");
-    report_machine(report);
-    if (!limit->probe_only)
-        print_sets(limit);
-    printf("probe      int32 CSR, sorted 16-byte rows; error of its Jacobians, and what its "
-           "matrices are off the library's\n"
-           "times      median (min-max) of %d rounds, ms for all targets\n",
-           settings->repetitions);
-    report_if_busy(report, &limit->times[PROBE_GRADIENT]);
-    report_table(report, table_of_probe(limit));
-    if (!limit->probe_only) {
-        print_times(limit);
-        report_arrangements(limit, report);
-    }
-    report_write(report);
-}
-
 int command_limit(int argc, char **argv)
 {
     struct limit limit = {.settings = settings_default(1000000, 15, NULL)};
     const struct command_option options[] = {
-        {"probe", 0, NULL, "only the fixed yardstick by which machines are compared", OPTION_FLAG,
-         &limit.probe_only, 0, 0, NULL, NULL},
-        LATTICE_OPTIONS(limit.settings),
+        {"probe", 0, NULL, "only the fixed yardstick by which machines are compared",
+         AS_FLAG(limit.probe_only)},
         {0}};
-    settings_read(&limit.settings, options,
+    settings_read(&limit.settings, TAKES_LATTICE | TAKES_RUN, options,
                   "Times the pair arithmetic of KGC on packed data in the first-level cache, each "
                   "instruction set in every arrangement of the loop, and the library beside it: "
                   "which share of the arithmetic limit the library reaches.",
                   argc, argv);
     measure(&limit);
-    report_results(&limit);
-    return EXIT_SUCCESS;
+    report_begin("limit", &limit.settings, limit.scene.count, probe_pairs(limit.probe),
+                 "KGC, cubic spline, f32");
+    print_sets(&limit);
+    printf("probe      int32 CSR, sorted 16-byte rows; error of its Jacobians, and what its "
+           "matrices are off the library's\n"
+           "times      median (min-max) of %d rounds, ms for all targets\n",
+           limit.settings.repetitions);
+    report_if_busy(&limit.settings, &limit.times[PROBE_GRADIENT]);
+    show_probe(&limit);
+    if (!limit.probe_only)
+        show_arrangements(&limit);
+    return report_close();
 }

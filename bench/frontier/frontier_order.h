@@ -1,0 +1,8 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef SPHGRAD_BENCH_FRONTIER_ORDER_H
+#define SPHGRAD_BENCH_FRONTIER_ORDER_H
+#include "settings.h"
+
+/* Order 2 beside order 1, over H and N: measures, prints, writes and draws. */
+void frontier_order(const struct settings *settings);
+#endif
