@@ -11,8 +11,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum path { PATH_KEPT, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
-static const char *const path_names[PATHS] = {"kept lists", "list-free", "host's lists"};
+enum path { PATH_KEPT, PATH_WEIGHTS, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
+static const char *const path_names[PATHS] = {"kept lists", "kept weights", "list-free",
+                                              "host's lists"};
 
 enum { WAVES, LINEAR, FIELDS };
 enum {
@@ -46,7 +47,8 @@ struct frontier {
     struct samples times[WAYS_MOST]; /* [ms] search or taking over lists, matrices, gradient */
 };
 
-/* Plain SPH has no matrices and so no table of them. */
+/* Plain SPH has no matrices and so no table of them; weights are kept for the second of two sweeps,
+ * and only where they are formed. */
 static void list_ways(struct frontier *frontier)
 {
     for (int k = 0; k < WAYS_MOST; ++k) {
@@ -55,7 +57,8 @@ static void list_ways(struct frontier *frontier)
                                 .precision = (enum precision)(k / 2 / PATHS % PRECISIONS),
                                 .kernel = (sphg_kernel)(k / 2 / PATHS / PRECISIONS % KERNELS),
                                 .method = (sphg_method)(k / 2 / PATHS / PRECISIONS / KERNELS)};
-        if (way.method != SPHG_PLAIN || !way.by_table)
+        if ((way.method != SPHG_PLAIN || !way.by_table) &&
+            (way.path != PATH_WEIGHTS || (way.by_table && keeps_weights(way.method))))
             frontier->ways[frontier->way_count++] = way;
     }
 }
@@ -89,6 +92,8 @@ static struct ground open_ground(sphg_context *context, struct settings settings
     for (int path = 0; path < PATHS; ++path)
         ground.scenes[path] = scene_beside(&scene);
     ground.scenes[PATH_LIST_FREE].geometry.list_free = 1;
+    ground.scenes[PATH_WEIGHTS].geometry.keep_weights = 1;
+    ground.scenes[PATH_WEIGHTS].same_volumes = true;
     scene_run(&ground.scenes[PATH_KEPT], WORK_SEARCH);
     ground.lists =
         library_lists(context, &scene.scheme, ground.scenes[PATH_KEPT].neighbors, scene.count);
@@ -189,7 +194,9 @@ static void show(const struct frontier *frontier)
            text_grouped(count), settings->jitter, settings->support, pairs);
     REPORT("machine");
     printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
-           "through %d ways;\n           host's lists: taken over, not searched for\n",
+           "through %d ways;\n           host's lists: taken over, not searched for; kept weights: "
+           "matrices form and keep them, the\n           gradient does without kernel, root and "
+           "division\n",
            settings->repetitions, frontier->way_count);
     printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
            "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");

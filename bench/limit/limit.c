@@ -9,11 +9,12 @@
 #include "team.h"
 #include <stdio.h>
 
-/* What is timed: the probe's works, the library's, and of each set, work and stage (sums alone, or
- * finished) every arrangement. */
+/* What is timed: the probe's works, the library's, without and with weights that a sweep before
+ * kept, and of each set, work and stage (sums alone, or finished) every arrangement. */
 enum {
     LIBRARY = PROBE_WORKS,
-    PACKED = LIBRARY + LIMIT_WORKS,
+    WEIGHTED = LIBRARY + LIMIT_WORKS,
+    PACKED = WEIGHTED + LIMIT_WORKS,
     SET_ITEMS = LIMIT_WORKS * 2 * LIMIT_ROOTS,
     ITEMS_MOST = PACKED + LIMIT_SETS_MOST * SET_ITEMS
 };
@@ -25,7 +26,7 @@ struct limit {
     struct settings settings;
     bool probe_only;
     struct probe *probe;
-    struct scene scene;
+    struct scene scene, weighted;
     int set_count;
     const struct limit_set *sets[LIMIT_SETS_MOST];
     struct packed *packed[LIMIT_SETS_MOST]; /* of each thread */
@@ -74,7 +75,9 @@ static double run(void *data, int32_t item)
     const struct limit *limit = data;
     if (item >= PACKED)
         return run_packed(limit, item - PACKED);
-    if (item >= LIBRARY)
+    if (item >= WEIGHTED)
+        scene_run(&limit->weighted, (enum work)(WORK_MATRICES + item - WEIGHTED));
+    else if (item >= LIBRARY)
         scene_run(&limit->scene, (enum work)(WORK_MATRICES + item - LIBRARY));
     else
         probe_run(limit->probe, (enum probe_work)item, limit->settings.threads);
@@ -119,6 +122,7 @@ static void open_library_side(struct limit *limit)
     const struct probe_arrays arrays = probe_arrays(limit->probe);
     const size_t threads = (size_t)limit->settings.threads;
     scene_run(&limit->scene, WORK_SEARCH);
+    limit->weighted = scene_keeping_weights(&limit->scene);
     find_sets(limit);
     for (int set = 0; set < limit->set_count; ++set) {
         limit->packed[set] = allocate_held(threads, sizeof *limit->packed[set]);
@@ -190,8 +194,9 @@ static void show_arrangements(const struct limit *limit)
     REPORT("times");
     REPORT("show", "keep");
     REPORT("table", "limit");
-    for (int n = 0; n < LIMIT_WORKS; ++n)
-        TABLE_ROW(cell_text(NULL, "work", work_names[n]), cell_text(NULL, "stage", "library"),
+    for (int n = 0; n < 2 * LIMIT_WORKS; ++n)
+        TABLE_ROW(cell_text(NULL, "work", work_names[n % LIMIT_WORKS]),
+                  cell_text(NULL, "stage", n < LIMIT_WORKS ? "library" : "library+weights"),
                   cell_ms(NULL, "", &limit->times[LIBRARY + n]));
     REPORT("times");
     REPORT("show", "shares");
@@ -231,6 +236,9 @@ int command_limit(int argc, char **argv)
            "matrices are off the library's\n"
            "times      median (min-max) of %d rounds, ms for all targets\n",
            limit.settings.repetitions);
+    if (!limit.probe_only)
+        printf("+weights   the sweep before kept what kernel and volume give each pair: no kernel, "
+               "root or division, which the limits hold\n");
     report_if_busy(&limit.settings, &limit.times[PROBE_GRADIENT]);
     show_probe(&limit);
     if (!limit.probe_only)

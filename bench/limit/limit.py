@@ -17,8 +17,10 @@ def shares(report):
     rows = report.table_now.keyed()
     times = Table(heads=[(head, None) for head in ("",) + WORKS])
     percents = Table(heads=[(head, "%.0f") for head in ("",) + WORKS])
-    times.rows.append([f"library, {report.context['isa']}"] + [row[""] for row in rows])
-    library = [statistics.median(row[""].wall) for row in rows]
+    for stage, ending in (("library", ""), ("library+weights", " +weights")):
+        times.rows.append([f"library, {report.context['isa']}{ending}"] +
+                          [row[""] for row in rows if row["stage"] == stage])
+    library = [statistics.median(row[""].wall) for row in rows if row["stage"] == "library"]
     for stage, title in STAGES.items():
         times.sections[len(times.rows)] = title
         percents.sections[len(percents.rows)] = f"share of the limit, {stage} [%]"

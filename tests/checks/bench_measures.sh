@@ -29,7 +29,9 @@ case $command in
     limit)
         measure --particles 4096 --repetitions 2
         "$checker" "$work/report.json" results/ deviation 0 1e-5 probe/ error_max 0 1e-5 \
-            '/sums/baseline, 4 lanes/' percent_of_library 1e-9 1e9
+            '/sums/baseline, 4 lanes/' percent_of_library 1e-9 1e9 limit/matrices/library+weights real_time 0 1e6
+        grep -q '^+weights .*no kernel, root or division' "$work/output"
+        grep -q '^  library, .* +weights  *[0-9]' "$work/output"
         measure --particles 1000 --repetitions 1 --support 2.5 --jitter 0 --threads 1
         "$checker" "$work/report.json" results/ deviation 0 1e-5
         measure --probe --particles 4096 --repetitions 2
@@ -70,7 +72,7 @@ case $command in
         measure --particles 512 --repetitions 1 --threads 1 --output "$work/frontier"
         "$checker" "$work/report.json" frontier/ trigonometric_mean 1e-3 1 \
             frontier/KGC/cubic/f32 linear_max 0 1e-5 \
-            frontier/CMLS/cubic/f64 linear_max 0 1e-13 \
+            frontier/CMLS/cubic/f64 linear_max 0 1e-13 'frontier/KGC/cubic/f32/kept weights/table' linear_max 0 1e-5 \
             frontier/SPH linear_mean 0.1 1 frontier/ ns_per_particle 0.1 1e9
         # of cubes of 6, 8 and 16 particles an axis: order 2 inside, and lent at the surface, is nearer
         measure --order --particles 512 --repetitions 1 --threads 1 --output "$work/order"
@@ -79,9 +81,12 @@ case $command in
             'order/order 2/2.5/16' boundary_max 0.05 0.3 'order/order 2 lent/2/16' boundary_max 0.05 0.3
         [ "$(grep -c '^[oc]' "$work/order/frontier_order.csv")" -eq 36 ]
         ! grep -q 'frontier_order.png' "$work/output" || [ -s "$work/order/frontier_order.png" ]
-        [ "$(grep -c '^[A-Z]' "$work/frontier/frontier.csv")" -eq 693 ]
+        [ "$(grep -c '^[A-Z]' "$work/frontier/frontier.csv")" -eq 756 ]
+        # weights are kept by methods that form them, and read by the second of two sweeps
+        [ "$(grep -c ',kept weights,table,' "$work/frontier/frontier.csv")" -eq 63 ]
+        [ "$(grep -c ',kept weights,' "$work/frontier/frontier.csv")" -eq 63 ]
         # each field has a frontier, with and without a search of the library's own
-        for side in 'kept lists\|list-free' "host's lists"; do
+        for side in 'kept lists\|kept weights\|list-free' "host's lists"; do
             grep -q "$side.*,1,[01]$" "$work/frontier/frontier.csv"
             grep -q "$side.*,1$" "$work/frontier/frontier.csv"
         done
