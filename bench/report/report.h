@@ -25,7 +25,8 @@ void report_begin(const char *command, const struct settings *settings, int32_t 
 void report_if_busy(const struct settings *settings, const struct samples *samples);
 
 /* What report.py shall do, a word and its arguments:
- *   text NAME VALUE         more of the context
+ *   text NAME VALUE         more of the context. Here and in rows names with a dot in front are for
+ *                           COMMAND.py alone
  *   machine                 prints the lines that name the machine
  *   table NAME              begins a table; its benchmarks are NAME/TEXTS OF A ROW/COLUMN
  *   section [TITLE]         rows below stand under the heads again, the first of which reads TITLE;

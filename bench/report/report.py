@@ -15,6 +15,11 @@ MARK, COMMA = "\036", "\037"
 BENCH = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
+def in_files(key):
+    """A name with a dot in front is between a command and its COMMAND.py."""
+    return key is not None and not key.startswith(".")
+
+
 class Time:
     """Samples in ms, and what makes one of the unit of the column."""
 
@@ -106,7 +111,7 @@ class Table:
     def csv(self, path, first_line):
         names, texts = [], []
         for c, (_, key, _, unit) in enumerate(self.columns):
-            if key is None:
+            if not in_files(key):
                 continue
             name = "_".join(filter(None, (key, unit or "ms")))
             times = self.kind(c) is Time
@@ -123,7 +128,7 @@ class Table:
     def benchmarks(self, threads, families):
         """Entries of the JSON: all repetitions, then, if there are several, what they come to."""
         for row in self.rows:
-            keyed = [(key, value, unit) for (_, key, _, unit), value in zip(self.columns, row) if key is not None]
+            keyed = [(key, value, unit) for (_, key, _, unit), value in zip(self.columns, row) if in_files(key)]
             texts = [value for _, value, _ in keyed if isinstance(value, str)]
             counters = {key: value if math.isfinite(value) else None
                         for key, value, _ in keyed if isinstance(value, (int, float))}
@@ -239,8 +244,9 @@ class Report:
 
     def close(self):
         if self.json_path:
+            context = {name: value for name, value in self.context.items() if in_files(name)}
             with open(self.json_path, "w", encoding="utf-8") as file:
-                print(json.dumps({"context": self.context, "benchmarks": self.benchmarks}, indent=1), file=file)
+                print(json.dumps({"context": context, "benchmarks": self.benchmarks}, indent=1), file=file)
 
 
 def main():

@@ -9,8 +9,6 @@
 #include "report/report.h"
 #include "limit/probe.h"
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 enum { METHODS = 6 };
 
@@ -265,225 +263,94 @@ static void measure(struct table1 *table)
 
 /* ---- What was measured ----------------------------------------------------------------------- */
 
-static void print_particles(const struct table1 *table)
-{
-    const struct settings *settings = &table->settings;
-    const struct particles *particles = &table->particles;
-    const int32_t side = table->source.side;
-    const char *order = table->source.order == ORDER_SHUFFLED ? "shuffled" : "lattice";
-    if (table->source.input) {
-        printf("particles  %s of %s%s%s\n", text_grouped(particles->count), table->source.input,
-               particles->flat[0] ? ", " : "", particles->flat);
-        if (particles->more)
-            printf("           the first of several frames in the file\n");
-        printf("           columns %s\n           %s order, volume %s, timed field: %s\n",
-               particles->columns, table->source.order == ORDER_SHUFFLED ? order : "file's",
-               particles->volume_origin,
-               particles->velocities.count ? "the file's velocities"
-                                           : linear_field_formula(particles->dimension));
-        return;
-    }
-    printf("particles  %s in a lattice of %d x %d x %d", text_grouped(particles->count), side, side,
-           side);
-    if (particles->count != settings->particles)
-        printf(" (the cube nearest to %s)", text_grouped(settings->particles));
-    printf(", spacing 1/128\n           ");
-    if (settings->jitter > 0)
-        printf("each coordinate moved by up to %g spacings, ", settings->jitter);
-    printf("%s order, volume %s\n", order, particles->volume_origin);
-}
-
-static void print_set_up(const struct table1 *table)
-{
-    const struct settings *settings = &table->settings;
-    const double count = table->particles.count, pairs = (double)table->neighbors.pairs;
-    const struct spread search = samples_wall(&table->times[SEARCH]);
-    printf("Table 1 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933\n\n");
-    print_particles(table);
-    printf("scheme     %s, H = %g%s, threshold 0.01 (blend), %s%s\n",
-           kernel_title(settings->kernel), settings->support,
-           table->source.input ? "" : " spacings", precision_names[settings->precision],
-           settings->precision == PRECISION_MIXED ? ": positions f64, the rest f32" : "");
-    REPORT("machine");
-    printf("pairs      %s, %.2f a particle; %.1f bytes a particle held by the neighbours\n",
-           text_grouped(table->neighbors.pairs), pairs / count,
-           (double)table->neighbors.bytes / count);
-    printf("search     T_ns %s ms (%s-%s)", text_time(search.median), text_time(search.min),
-           text_time(search.max));
-    if (pairs > 0)
-        printf(", %.3f ns a pair", 1e6 * search.median / pairs);
-    printf("; the first, with allocation, %s ms\n", text_time(table->first_search));
-}
-
-/* And how much longer a particle takes here than with the probe. */
-static void print_probe(const struct table1 *table)
-{
-    const double count = table->particles.count, probe_particles = probe_count(table->probe);
-    double probe[PROBE_WORKS], over[PROBE_WORKS];
-    for (int work = 0; work < PROBE_WORKS; ++work) {
-        const enum work own = work == PROBE_MATRICES ? WORK_MATRICES : WORK_GRADIENT;
-        probe[work] = samples_median(&table->times[PROBE + work]);
-        over[work] = samples_median(&table->times[item_of(0, 1, own)]) / count /
-                     (probe[work] / probe_particles);
-    }
-    printf("yardstick  %s and %s ms for matrices and gradient of %s particles by `limit --probe`;\n"
-           "           a particle's T_mat and T_grad of KGC take %.2f and %.2f of its\n",
-           text_time(probe[PROBE_MATRICES]), text_time(probe[PROBE_GRADIENT]),
-           text_grouped(probe_count(table->probe)), over[PROBE_MATRICES], over[PROBE_GRADIENT]);
-}
-
-/* ---- The table ------------------------------------------------------------------------------- */
-
-static bool some_are_deficient(const struct table1 *table)
-{
-    for (int k = 0; k < METHODS; ++k)
-        if (table->methods[k].method != SPHG_PLAIN &&
-            table->methods[k].stats.rank[table->particles.dimension] != table->particles.count)
-            return true;
-    return false;
-}
-
-static struct cell cell_per_pair(const char *head, const struct table1 *table,
-                                 const struct samples *samples)
-{
-    const double pairs = (double)table->neighbors.pairs;
-    return cell_if(samples->count > 0 && pairs > 0,
-                   cell_number(head, NULL, "%.3f", 1e6 * samples_median(samples) / pairs));
-}
-
-static struct cell cell_error(const char *head, const char *key, bool there, double error)
-{
-    return cell_if(there && !isnan(error), cell_number(head, key, "%.2e", error));
-}
-
-static struct cell cell_paper(const char *head, const char *key, double time)
-{
-    return cell_if(time > 0, cell_number(head, key, "%.2f", time));
-}
-
-/* Rows of methods, which are printed as columns, as in the paper. */
-static void add_method(const struct table1 *table, int method, bool show_ranks)
-{
-    const struct cell blank = {.head = ""};
-    const struct method *one = &table->methods[method];
-    const struct samples *plain = &table->times[item_of(0, method, WORK_SEARCH)],
-                         *kept = &table->times[item_of(1, method, WORK_SEARCH)];
-    const bool corrected = one->method != SPHG_PLAIN, ranked = corrected && show_ranks;
-    TABLE_ROW(cell_text("", "method", method_names[one->method]),
-              cell_ms("T_mat   [ms]", "matrix", &plain[WORK_MATRICES]),
-              cell_ms("T_grad  [ms]", "gradient", &plain[WORK_GRADIENT]),
-              cell_ms("fused   [ms]", "fused", &plain[WORK_FUSED]),
-              cell_ms("T_mat  +weights [ms]", "matrix+weights", &kept[WORK_MATRICES]),
-              cell_ms("T_grad +weights [ms]", "gradient+weights", &kept[WORK_GRADIENT]),
-              cell_ms("fused  +weights [ms]", "fused+weights", &kept[WORK_FUSED]), blank,
-              cell_per_pair("T_mat   [ns a pair]", table, &plain[WORK_MATRICES]),
-              cell_per_pair("T_grad  [ns a pair]", table, &plain[WORK_GRADIENT]),
-              cell_per_pair("fused   [ns a pair]", table, &plain[WORK_FUSED]), blank,
-              cell_error("error of T_grad", "gradient_error", true, one->gradient_error),
-              cell_error("error of fused", "fused_error", corrected, one->fused_error),
-              cell_error(NULL, "kept_error", keeps_weights(one->method), one->kept_error),
-              cell_if(ranked, cell_count("rank 0", NULL, one->stats.rank[0])),
-              cell_if(ranked, cell_count("rank 1", NULL, one->stats.rank[1])),
-              cell_if(ranked, cell_count("rank 2", NULL, one->stats.rank[2])),
-              cell_if(ranked && table->particles.dimension == 3,
-                      cell_count("rank 3", NULL, one->stats.rank[3])),
-              cell_if(ranked, cell_count("to the eigensolver", NULL, one->stats.decomposed)), blank,
-              cell_paper("paper, T_mat  [ms]", "paper_matrix", one->paper_matrix),
-              cell_paper("paper, T_grad [ms]", "paper_gradient", one->paper_gradient));
-}
-
-/* Volumes are what a file gets wrong most easily, and what lambda takes as it is. */
-static void print_suspect(const struct table1 *table)
-{
-    const int32_t dimension = table->particles.dimension;
-    const double count = table->particles.count;
-    const double neighbors = (double)table->neighbors.pairs / count;
-    if (!table->source.input || (double)table->methods[1].stats.rank[dimension] >= count / 10)
-        return;
-    printf("\nHardly any particle has full rank. First suspect: ");
-    if (neighbors < dimension)
-        printf("--support, which leaves %.2g neighbours a particle.\n", neighbors);
-    else
-        printf("the unit of the volumes (mass / density),\nwhich are %.2g times what the positions "
-               "give (1 / sum W).\n",
-               table->volume_ratio);
-}
-
-static void print_footer(const struct table1 *table, bool deficient)
-{
-    int64_t not_finite = 0;
-    for (int k = 0; k < METHODS; ++k)
-        not_finite += table->methods[k].not_finite;
-    printf("\nerror: max |J_i - J|_F / |J|_F on %s over all particles%s rank %d%s\n",
-           linear_field_formula(table->particles.dimension), deficient ? " of" : ", all of",
-           (int)table->particles.dimension, deficient ? " (SPH: over all)" : "");
-    if (table->source.input && table->settings.precision == PRECISION_MIXED)
-        printf("(mixed: v itself is rounded to f32 here, which shows as error)\n");
-    if (not_finite > 0)
-        printf("NOT FINITE: %lld numbers of the Jacobians are NaN or infinite\n",
-               (long long)not_finite);
-    else
-        printf("all numbers of all Jacobians are finite\n");
-    printf("+weights: the sweep before, which is not timed, kept what kernel and volume give each "
-           "pair\npaper: one million particles on 32 cores of a Threadripper PRO 5975WX\n");
-}
-
 static void report_context(const struct table1 *table)
 {
     const struct settings *settings = &table->settings;
-    const double count = table->particles.count;
+    const struct particles *particles = &table->particles;
+    const double count = particles->count;
     REPORT("text", "particles_from", table->source.input ? table->source.input : "lattice");
-    report_lattice(settings, table->particles.count, (double)table->neighbors.pairs / count);
-    report_number("dimension", table->particles.dimension);
+    report_lattice(settings, particles->count, (double)table->neighbors.pairs / count);
+    report_number("dimension", particles->dimension);
     report_number("bytes_per_particle", (double)table->neighbors.bytes / count);
     REPORT("text", "kernel", kernel_names[settings->kernel]);
     REPORT("text", "precision", precision_names[settings->precision]);
     REPORT("text", "order", table->source.order == ORDER_SHUFFLED ? "shuffled" : "lattice");
     report_number("support_radius", table->scenes[0].scheme.support_radius);
     report_number("search_first_ms", table->first_search);
+    REPORT("text", ".flat", particles->flat);
+    REPORT("text", ".frames", particles->more ? "several" : "");
+    REPORT("text", ".columns", particles->columns);
+    REPORT("text", ".volume", particles->volume_origin);
+    REPORT("text", ".velocities", particles->velocities.count ? "the file's" : "");
+    REPORT("text", ".kernel", kernel_title(settings->kernel));
+    report_number(".side", table->source.side);
+    report_number(".wanted", settings->particles);
+    report_number(".volume_ratio", table->volume_ratio);
 }
 
-/* Beside a file's particles the paper's lattice would say nothing. */
-static void draw(const struct table1 *table)
+static struct cell cell_error(const char *key, bool there, double error)
+{
+    return cell_if(there && !isnan(error), cell_number(NULL, key, NULL, error));
+}
+
+static void add_method(const struct table1 *table, int method)
+{
+    const struct method *one = &table->methods[method];
+    const struct samples *plain = &table->times[item_of(0, method, WORK_SEARCH)],
+                         *kept = &table->times[item_of(1, method, WORK_SEARCH)];
+    const bool corrected = one->method != SPHG_PLAIN;
+    TABLE_ROW(
+        cell_text(NULL, "method", method_names[one->method]),
+        cell_ms(NULL, "matrix", &plain[WORK_MATRICES]),
+        cell_ms(NULL, "gradient", &plain[WORK_GRADIENT]),
+        cell_ms(NULL, "fused", &plain[WORK_FUSED]),
+        cell_ms(NULL, "matrix+weights", &kept[WORK_MATRICES]),
+        cell_ms(NULL, "gradient+weights", &kept[WORK_GRADIENT]),
+        cell_ms(NULL, "fused+weights", &kept[WORK_FUSED]),
+        cell_error("gradient_error", true, one->gradient_error),
+        cell_error("fused_error", corrected, one->fused_error),
+        cell_error("kept_error", keeps_weights(one->method), one->kept_error),
+        cell_if(one->paper_matrix > 0, cell_number(NULL, "paper_matrix", NULL, one->paper_matrix)),
+        cell_number(NULL, "paper_gradient", NULL, one->paper_gradient),
+        cell_count(NULL, ".not_finite", one->not_finite),
+        cell_count(NULL, ".decomposed", one->stats.decomposed),
+        cell_count(NULL, ".rank0", one->stats.rank[0]),
+        cell_count(NULL, ".rank1", one->stats.rank[1]),
+        cell_count(NULL, ".rank2", one->stats.rank[2]),
+        cell_count(NULL, ".rank3", one->stats.rank[3]));
+}
+
+static int show(const struct table1 *table)
 {
     const struct settings *settings = &table->settings;
-    REPORT("csv", settings->output, "table1.csv");
-    REPORT("draw", settings->output, "table1.gp", "table1/table1.gp",
-           text_of("title = '%s particles, %s, H = %g spacings, search not included; '.machine.', "
-                   "%s, %s'",
-                   text_grouped(table->particles.count), kernel_title(settings->kernel),
-                   settings->support, library_isa(), precision_names[settings->precision]),
-           text_of("threads = %d", settings->threads));
-    REPORT("drawn", settings->output, "table1.csv, table1.gp", ", table1.png");
-}
-
-static void show(const struct table1 *table)
-{
-    const int32_t repetitions = table->settings.repetitions;
-    const bool deficient = some_are_deficient(table);
-    report_open("table1", &table->settings);
+    report_open("table1", settings);
     report_context(table);
-    print_set_up(table);
-    print_probe(table);
-    printf("\nmedian of %d repetition%s after a warm-up, methods in turn; search not included\n\n",
-           repetitions, repetitions > 1 ? "s" : "");
     REPORT("table", "table1");
     TABLE_ROW(cell_ms(NULL, "search", &table->times[SEARCH]));
     REPORT("times");
+    REPORT("show", "keep");
     REPORT("table", "probe");
     TABLE_ROW(cell_ms(NULL, "matrices", &table->times[PROBE + PROBE_MATRICES]),
               cell_ms(NULL, "gradient", &table->times[PROBE + PROBE_GRADIENT]),
               cell_count(NULL, "particles", probe_count(table->probe)));
     REPORT("times");
+    REPORT("show", "keep");
     REPORT("table", "table1");
     for (int k = 0; k < METHODS; ++k)
-        add_method(table, k, deficient || table->source.input);
-    REPORT("turned");
+        add_method(table, k);
     REPORT("times");
-    print_suspect(table);
-    print_footer(table, deficient);
-    if (table->settings.output)
-        draw(table);
+    REPORT("show", "table1");
+    if (settings->output) {
+        REPORT("csv", settings->output, "table1.csv");
+        REPORT("draw", settings->output, "table1.gp", "table1/table1.gp",
+               text_of("title = '%s particles, %s, H = %g spacings, search not included; "
+                       "'.machine.', %s, %s'",
+                       text_grouped(table->particles.count), kernel_title(settings->kernel),
+                       settings->support, library_isa(), precision_names[settings->precision]),
+               text_of("threads = %d", settings->threads));
+        REPORT("drawn", settings->output, "table1.csv, table1.gp", ", table1.png");
+    }
+    return report_close();
 }
 
 int command_table1(int argc, char **argv)
@@ -500,6 +367,5 @@ int command_table1(int argc, char **argv)
     read_options(&table, argc, argv);
     table.particles = particles_create(&table.source);
     measure(&table);
-    show(&table);
-    return report_close();
+    return show(&table);
 }
