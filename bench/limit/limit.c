@@ -119,7 +119,6 @@ static void find_sets(struct limit *limit)
 
 static void open_library_side(struct limit *limit)
 {
-    const struct probe_arrays arrays = probe_arrays(limit->probe);
     const size_t threads = (size_t)limit->settings.threads;
     scene_run(&limit->scene, WORK_SEARCH);
     limit->weighted = scene_keeping_weights(&limit->scene);
@@ -127,8 +126,7 @@ static void open_library_side(struct limit *limit)
     for (int set = 0; set < limit->set_count; ++set) {
         limit->packed[set] = allocate_held(threads, sizeof *limit->packed[set]);
         for (size_t thread = 0; thread < threads; ++thread)
-            limit->packed[set][thread] =
-                packed_create(limit->sets[set], &arrays, probe_count(limit->probe));
+            limit->packed[set][thread] = packed_create(limit->sets[set], limit->probe);
         check_set(limit, set);
     }
 }
@@ -154,7 +152,7 @@ static void measure(struct limit *limit)
 static void show_probe(const struct limit *limit)
 {
     const double error = probe_error(limit->probe),
-                 deviation = probe_matrix_deviation(limit->probe, limit->scene.context);
+                 deviation = probe_matrix_deviation(limit->probe);
     REPORT("table", "probe");
     for (int work = 0; work < PROBE_WORKS; ++work)
         TABLE_ROW(cell_text("probe", "work", work_names[work]),

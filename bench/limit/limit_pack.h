@@ -3,7 +3,7 @@
 #ifndef SPHGRAD_BENCH_LIMIT_PACK_H
 #define SPHGRAD_BENCH_LIMIT_PACK_H
 #include "limit_passes.h"
-#include "probe_passes.h"
+#include "probe.h"
 
 struct packed {
     struct limit_data data;
@@ -15,8 +15,7 @@ struct packed {
 
 /* From the middle on, those with at least the mean number of pairs, for which there is room,
  * rounded up to whole vectors. Held. */
-struct packed packed_create(const struct limit_set *set, const struct probe_arrays *arrays,
-                            int32_t count);
+struct packed packed_create(const struct limit_set *set, const struct probe *probe);
 
 /* Largest relative difference between finished results and the reference, Frobenius norm. */
 double packed_deviation(const struct packed *packed, enum limit_work work);

@@ -104,28 +104,24 @@ INLINE void run_groups(const struct limit_data *data, enum limit_work work, bool
     }
 }
 
+INLINE void run_by(const struct limit_data *data, enum limit_work work, enum limit_root root,
+                   bool finished, int32_t targets)
+{
+    if (root == LIMIT_NEWTON)
+        run_groups(data, work, true, finished, targets);
+    else
+        run_groups(data, work, false, finished, targets);
+}
+
 static void run(const struct limit_data *data, enum limit_work work, enum limit_root root,
                 bool finished, int32_t targets)
 {
-    switch ((int)work * LIMIT_ROOTS + (int)root) {
-    case LIMIT_MATRICES *LIMIT_ROOTS + LIMIT_SQUARE_ROOT:
-        run_groups(data, LIMIT_MATRICES, false, finished, targets);
-        break;
-    case LIMIT_MATRICES *LIMIT_ROOTS + LIMIT_NEWTON:
-        run_groups(data, LIMIT_MATRICES, true, finished, targets);
-        break;
-    case LIMIT_GRADIENT *LIMIT_ROOTS + LIMIT_SQUARE_ROOT:
-        run_groups(data, LIMIT_GRADIENT, false, finished, targets);
-        break;
-    case LIMIT_GRADIENT *LIMIT_ROOTS + LIMIT_NEWTON:
-        run_groups(data, LIMIT_GRADIENT, true, finished, targets);
-        break;
-    case LIMIT_FUSED *LIMIT_ROOTS + LIMIT_SQUARE_ROOT:
-        run_groups(data, LIMIT_FUSED, false, finished, targets);
-        break;
-    default:
-        run_groups(data, LIMIT_FUSED, true, finished, targets);
-    }
+    if (work == LIMIT_MATRICES)
+        run_by(data, LIMIT_MATRICES, root, finished, targets);
+    else if (work == LIMIT_GRADIENT)
+        run_by(data, LIMIT_GRADIENT, root, finished, targets);
+    else
+        run_by(data, LIMIT_FUSED, root, finished, targets);
 }
 
 const struct limit_set LIMIT_SET = {LIMIT_SET_NAME, LANES, run};

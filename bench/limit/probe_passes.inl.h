@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The passes of probe_passes.h. Parameters: VECTOR_BYTES (16 or 32), PROBE_MATRICES_PASS,
- * PROBE_GRADIENT_PASS. */
-#include "probe_passes.h"
+/* The passes of probe.h. Parameters: VECTOR_BYTES (16 or 32), PROBE_PASSES. */
+#include "probe.h"
 #include "vector.inl.h"
 
 typedef float row __attribute__((vector_size(16), may_alias));
@@ -70,13 +69,13 @@ INLINE vec sum_lanes(const vec v[LANES])
 }
 
 /* x_ij and the weight of LANES pairs, of which the first `left` count. */
-INLINE vec weigh(const struct probe_arrays *arrays, const int32_t *indices, int64_t left,
-                 const vec own[3], vec x[3])
+INLINE vec weigh(const struct probe *probe, const int32_t *indices, int64_t left, const vec own[3],
+                 vec x[3])
 {
     _Alignas(VECTOR_BYTES) static const int32_t numbers[PROBE_LANES_MOST] = {0, 1, 2, 3,
                                                                              4, 5, 6, 7};
     vec columns[4];
-    load_columns(arrays->positions, indices, columns);
+    load_columns((const float(*)[4])probe->positions, indices, columns);
     const mask lanes = *(const mask *)(const void *)numbers;
     const mask counts = lanes < (int32_t)(left < LANES ? left : LANES);
     for (int axis = 0; axis < 3; ++axis)
@@ -85,15 +84,15 @@ INLINE vec weigh(const struct probe_arrays *arrays, const int32_t *indices, int6
     return spline_weight(q2, 1) * (vec)(counts & (mask)columns[3]);
 }
 
-INLINE void sum_moments(const struct probe_arrays *arrays, int32_t i, vec sums[6])
+INLINE void sum_moments(const struct probe *probe, int32_t i, vec sums[6])
 {
-    const float *p = arrays->positions[i];
+    const float *p = probe->positions[i];
     const vec own[3] = {splat(p[0]), splat(p[1]), splat(p[2])};
-    const int64_t end = arrays->offsets[i + 1];
+    const int64_t end = probe->lists.offsets[i + 1];
     vec xx = {0}, xy = {0}, xz = {0}, yy = {0}, yz = {0}, zz = {0};
-    for (int64_t k = arrays->offsets[i]; k < end; k += LANES) {
+    for (int64_t k = probe->lists.offsets[i]; k < end; k += LANES) {
         vec x[3];
-        const vec g = weigh(arrays, arrays->indices + k, end - k, own, x);
+        const vec g = weigh(probe, probe->lists.indices + k, end - k, own, x);
         const vec gx = g * x[0], gy = g * x[1], gz = g * x[2];
         xx += gx * x[0];
         xy += gx * x[1];
@@ -105,14 +104,14 @@ INLINE void sum_moments(const struct probe_arrays *arrays, int32_t i, vec sums[6
     sums[0] = xx, sums[1] = xy, sums[2] = xz, sums[3] = yy, sums[4] = yz, sums[5] = zz;
 }
 
-void PROBE_MATRICES_PASS(const struct probe_arrays *arrays, int32_t begin, int32_t end,
-                         int32_t count)
+static void run_matrices(const struct probe *probe, int32_t begin, int32_t end)
 {
+    const int32_t count = probe->count;
     for (int32_t first = begin; first < end; first += LANES) {
         vec parts[6][LANES], sums[6], correction[6];
         for (int lane = 0; lane < LANES; ++lane) {
             vec own_sums[6];
-            sum_moments(arrays, first + lane < count ? first + lane : count - 1, own_sums);
+            sum_moments(probe, first + lane < count ? first + lane : count - 1, own_sums);
             for (int k = 0; k < 6; ++k)
                 parts[k][lane] = own_sums[k];
         }
@@ -120,22 +119,22 @@ void PROBE_MATRICES_PASS(const struct probe_arrays *arrays, int32_t begin, int32
             sums[k] = sum_lanes(parts[k]);
         invert_symmetric(sums, correction);
         for (int k = 0; k < 6; ++k)
-            store(arrays->corrections + (int64_t)first * 6 + k * LANES, correction[k]);
+            store(probe->corrections + (int64_t)first * 6 + k * LANES, correction[k]);
     }
 }
 
-INLINE void sum_field(const struct probe_arrays *arrays, int32_t i, vec sums[9])
+INLINE void sum_field(const struct probe *probe, int32_t i, vec sums[9])
 {
-    const float *p = arrays->positions[i], *f = arrays->fields[i];
+    const float *p = probe->positions[i], *f = probe->fields[i];
     const vec own[3] = {splat(p[0]), splat(p[1]), splat(p[2])},
               own_field[3] = {splat(f[0]), splat(f[1]), splat(f[2])};
-    const int64_t end = arrays->offsets[i + 1];
+    const int64_t end = probe->lists.offsets[i + 1];
     for (int k = 0; k < 9; ++k)
         sums[k] = (vec){0};
-    for (int64_t k = arrays->offsets[i]; k < end; k += LANES) {
+    for (int64_t k = probe->lists.offsets[i]; k < end; k += LANES) {
         vec x[3], field[4];
-        const vec g = weigh(arrays, arrays->indices + k, end - k, own, x);
-        load_columns(arrays->fields, arrays->indices + k, field);
+        const vec g = weigh(probe, probe->lists.indices + k, end - k, own, x);
+        load_columns((const float(*)[4])probe->fields, probe->lists.indices + k, field);
         for (int a = 0; a < 3; ++a) {
             const vec weighted = g * (own_field[a] - field[a]);
             for (int b = 0; b < 3; ++b)
@@ -144,23 +143,25 @@ INLINE void sum_field(const struct probe_arrays *arrays, int32_t i, vec sums[9])
     }
 }
 
-void PROBE_GRADIENT_PASS(const struct probe_arrays *arrays, int32_t begin, int32_t end,
-                         int32_t count)
+static void run_gradient(const struct probe *probe, int32_t begin, int32_t end)
 {
+    const int32_t count = probe->count;
     for (int32_t first = begin; first < end; first += LANES) {
         vec parts[9][LANES], sums[9], correction[6], jacobian[9];
         for (int lane = 0; lane < LANES; ++lane) {
             vec own_sums[9];
-            sum_field(arrays, first + lane < count ? first + lane : count - 1, own_sums);
+            sum_field(probe, first + lane < count ? first + lane : count - 1, own_sums);
             for (int k = 0; k < 9; ++k)
                 parts[k][lane] = own_sums[k];
         }
         for (int k = 0; k < 9; ++k)
             sums[k] = sum_lanes(parts[k]);
         for (int k = 0; k < 6; ++k)
-            correction[k] = load(arrays->corrections + (int64_t)first * 6 + k * LANES);
+            correction[k] = load(probe->corrections + (int64_t)first * 6 + k * LANES);
         apply_symmetric(sums, correction, jacobian);
         for (int k = 0; k < 9; ++k)
-            store(arrays->jacobians + (int64_t)first * 9 + k * LANES, jacobian[k]);
+            store(probe->jacobians + (int64_t)first * 9 + k * LANES, jacobian[k]);
     }
 }
+
+probe_pass *const PROBE_PASSES[PROBE_WORKS] = {run_matrices, run_gradient};

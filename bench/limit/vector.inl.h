@@ -35,99 +35,60 @@ INLINE vec splat(float x)
     return x - (vec){0};
 }
 
+/* What C has no operator for: roots, minima, and x < limit ? below : other. */
 #if VECTOR_BYTES == 64 && defined(__AVX512F__)
-INLINE vec square_root(vec v)
-{
-    return (vec)_mm512_sqrt_ps((__m512)v);
-}
-INLINE vec rough_reciprocal_root(vec v)
-{
-    return (vec)_mm512_rsqrt14_ps((__m512)v);
-}
-INLINE vec smaller(vec a, vec b)
-{
-    return (vec)_mm512_min_ps((__m512)a, (__m512)b);
-}
-INLINE vec choose_below(vec x, vec limit, vec below, vec other) /* x < limit ? below : other */
-{
-    const __mmask16 is_below = _mm512_cmp_ps_mask((__m512)x, (__m512)limit, _CMP_LT_OQ);
-    return (vec)_mm512_mask_blend_ps(is_below, (__m512)other, (__m512)below);
-}
+#define ROOT(v)         ((vec)_mm512_sqrt_ps((__m512)(v)))
+#define ROUGH(v)        ((vec)_mm512_rsqrt14_ps((__m512)(v)))
+#define SMALLER(a, b)   ((vec)_mm512_min_ps((__m512)(a), (__m512)(b)))
+#define BELOW(x, limit) _mm512_cmp_ps_mask((__m512)(x), (__m512)(limit), _CMP_LT_OQ)
+#define CHOOSE(x, limit, below, other)                                                             \
+    ((vec)_mm512_mask_blend_ps(BELOW(x, limit), (__m512)(other), (__m512)(below)))
 #elif VECTOR_BYTES == 32 && defined(__AVX2__)
-INLINE vec square_root(vec v)
-{
-    return (vec)_mm256_sqrt_ps((__m256)v);
-}
-INLINE vec rough_reciprocal_root(vec v)
-{
-    return (vec)_mm256_rsqrt_ps((__m256)v);
-}
-INLINE vec smaller(vec a, vec b)
-{
-    return (vec)_mm256_min_ps((__m256)a, (__m256)b);
-}
-INLINE vec choose_below(vec x, vec limit, vec below, vec other)
-{
-    const __m256 is_below = _mm256_cmp_ps((__m256)x, (__m256)limit, _CMP_LT_OQ);
-    return (vec)_mm256_blendv_ps((__m256)other, (__m256)below, is_below);
-}
-#elif VECTOR_BYTES == 16 && defined(__SSE2__)
-INLINE vec square_root(vec v)
-{
-    return (vec)_mm_sqrt_ps((__m128)v);
-}
-INLINE vec rough_reciprocal_root(vec v)
-{
-    return (vec)_mm_rsqrt_ps((__m128)v);
-}
-INLINE vec smaller(vec a, vec b)
-{
-    return (vec)_mm_min_ps((__m128)a, (__m128)b);
-}
-INLINE vec choose_below(vec x, vec limit, vec below, vec other)
-{
-    const mask is_below = x < limit;
-    return (vec)((is_below & (mask)below) | (~is_below & (mask)other));
-}
+#define ROOT(v)         ((vec)_mm256_sqrt_ps((__m256)(v)))
+#define ROUGH(v)        ((vec)_mm256_rsqrt_ps((__m256)(v)))
+#define SMALLER(a, b)   ((vec)_mm256_min_ps((__m256)(a), (__m256)(b)))
+#define BELOW(x, limit) _mm256_cmp_ps((__m256)(x), (__m256)(limit), _CMP_LT_OQ)
+#define CHOOSE(x, limit, below, other)                                                             \
+    ((vec)_mm256_blendv_ps((__m256)(other), (__m256)(below), BELOW(x, limit)))
 #else
-INLINE vec square_root(vec v)
+INLINE vec select(mask first, vec a, vec b)
+{
+    return (vec)((first & (mask)a) | (~first & (mask)b));
+}
+#define CHOOSE(x, limit, below, other) select((x) < (limit), below, other)
+#if VECTOR_BYTES == 16 && defined(__SSE2__)
+#define ROOT(v)       ((vec)_mm_sqrt_ps((__m128)(v)))
+#define ROUGH(v)      ((vec)_mm_rsqrt_ps((__m128)(v)))
+#define SMALLER(a, b) ((vec)_mm_min_ps((__m128)(a), (__m128)(b)))
+#else
+INLINE vec roots(vec v)
 {
     for (int k = 0; k < LANES; ++k)
         v[k] = __builtin_sqrtf(v[k]);
     return v;
 }
-INLINE vec rough_reciprocal_root(vec v)
-{
-    return 1 / square_root(v);
-}
-INLINE vec smaller(vec a, vec b)
-{
-    const mask is_less = a < b;
-    return (vec)((is_less & (mask)a) | (~is_less & (mask)b));
-}
-INLINE vec choose_below(vec x, vec limit, vec below, vec other)
-{
-    const mask is_below = x < limit;
-    return (vec)((is_below & (mask)below) | (~is_below & (mask)other));
-}
+#define ROOT(v)       roots(v)
+#define ROUGH(v)      (1 / roots(v))
+#define SMALLER(a, b) select((a) < (b), a, b)
+#endif
 #endif
 
 /* -W'(q)/q of the cubic spline over 6 sigma: 2 - 3 q up to 1/2, then (1 - q)^2 / q = 1/q + q - 2.
  * q2 > 0; beyond 1 the result is 0. */
 INLINE vec spline_weight(vec q2, int by_newton)
 {
-    const vec inside = smaller(q2, splat(1));
+    const vec inside = SMALLER(q2, splat(1));
     vec q, reciprocal;
     if (by_newton) { /* one step of Newton's doubles the bits of the rough root */
-        const vec rough = rough_reciprocal_root(inside), root = inside * rough;
+        const vec rough = ROUGH(inside), root = inside * rough;
         const vec correction = 0.5f - root * (0.5f * rough);
         q = root + root * correction;
         reciprocal = rough + rough * correction;
     } else {
-        q = square_root(inside);
+        q = ROOT(inside);
         reciprocal = 1 / q;
     }
-    return choose_below(inside, splat(0.25f), 2 - 3 * q, reciprocal + (q - 2));
+    return CHOOSE(inside, splat(0.25f), 2 - 3 * q, reciprocal + (q - 2));
 }
 
 /* C = A^-1 of symmetric matrices xx xy xz yy yz zz, by cofactors. */

@@ -332,7 +332,7 @@ static int show(const struct table1 *table)
     REPORT("table", "probe");
     TABLE_ROW(cell_ms(NULL, "matrices", &table->times[PROBE + PROBE_MATRICES]),
               cell_ms(NULL, "gradient", &table->times[PROBE + PROBE_GRADIENT]),
-              cell_count(NULL, "particles", probe_count(table->probe)));
+              cell_count(NULL, "particles", table->probe->count));
     REPORT("times");
     REPORT("show", "keep");
     REPORT("table", "table1");
