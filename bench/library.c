@@ -48,15 +48,14 @@ bool library_choose_isa(sphg_isa isa)
     return library_runs(isa);
 }
 
-/* The library does not name its choice, but says which ones it could not serve. */
 const char *library_isa(void)
 {
-    static const sphg_isa best_first[] = {SPHG_ISA_X86_V4, SPHG_ISA_X86_V3, SPHG_ISA_NEON,
-                                          SPHG_ISA_BASE};
-    int k = 0;
-    while (chosen == SPHG_ISA_BEST && !library_runs(best_first[k]))
-        ++k;
-    return isa_names[chosen == SPHG_ISA_BEST ? best_first[k] : chosen];
+    struct held *mark = held_so_far();
+    sphg_context *context = library_open(1);
+    sphg_context_info info;
+    library_check(context, sphg_context_get_info(context, &info));
+    release_held(mark);
+    return isa_names[info.isa];
 }
 
 void library_check(const sphg_context *context, sphg_result result)

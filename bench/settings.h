@@ -16,6 +16,8 @@ struct settings {
     enum precision precision;
 };
 
+int32_t settings_processors(void); /* that this process may run on */
+
 /* What they are where nothing is said; output: a folder, or NULL. */
 struct settings settings_default(int32_t particles, int32_t repetitions, const char *output);
 

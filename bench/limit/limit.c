@@ -6,7 +6,6 @@
 #include "particles/particles.h"
 #include "probe.h"
 #include "report/report.h"
-#include "team.h"
 #include <stdio.h>
 
 /* What is timed: the probe's works, the library's, without and with weights that a sweep before
@@ -36,38 +35,21 @@ struct limit {
 
 /* ---- Measuring ------------------------------------------------------------------------------- */
 
-/* A work on packed data; a thread's share of items says which of these are its own. */
-struct assignment {
-    const struct limit *limit;
-    int set;
-    enum limit_work work;
-    enum limit_root root;
-    bool finished;
-    int32_t targets; /* of each thread */
-};
-
-static void run_packed_share(void *data, int32_t begin, int32_t end)
-{
-    const struct assignment *one = data;
-    for (int32_t thread = begin; thread < end; ++thread)
-        one->limit->sets[one->set]->run(&one->limit->packed[one->set][thread].data, one->work,
-                                        one->root, one->finished, one->targets);
-}
-
 /* Through an eighth of the targets, so that a round stays short: which share is returned. */
 static double run_packed(const struct limit *limit, int item)
 {
     enum { SHARE = 8, GRAIN = LIMIT_TARGETS };
     const int32_t threads = limit->settings.threads;
-    struct assignment one = {.limit = limit,
-                             .set = item / SET_ITEMS,
-                             .work = (enum limit_work)(item / LIMIT_ROOTS / 2 % LIMIT_WORKS),
-                             .finished = item / LIMIT_ROOTS % 2,
-                             .root = (enum limit_root)(item % LIMIT_ROOTS),
-                             .targets = (limit->scene.count / threads / SHARE + GRAIN - 1) / GRAIN *
-                                        GRAIN};
-    team_run(threads, run_packed_share, &one, threads, 1);
-    return (double)one.targets * threads / limit->scene.count;
+    const int32_t targets =
+        (limit->scene.count / threads / SHARE + GRAIN - 1) / GRAIN * GRAIN; /* of each thread */
+    const int set = item / SET_ITEMS;
+    const enum limit_work work = (enum limit_work)(item / LIMIT_ROOTS / 2 % LIMIT_WORKS);
+    const enum limit_root root = (enum limit_root)(item % LIMIT_ROOTS);
+    const bool finished = item / LIMIT_ROOTS % 2;
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int32_t thread = 0; thread < threads; ++thread)
+        limit->sets[set]->run(&limit->packed[set][thread].data, work, root, finished, targets);
+    return (double)targets * threads / limit->scene.count;
 }
 
 static double run(void *data, int32_t item)

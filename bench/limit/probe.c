@@ -2,7 +2,6 @@
 #include "probe.h"
 #include "lattice.h"
 #include "particles/errors.h"
-#include "team.h"
 
 /* Cells as wide as H, rows of them along x. */
 static int32_t cell_of(const struct numbers *positions, int32_t i, int32_t cells)
@@ -74,16 +73,16 @@ double probe_pairs(const struct probe *probe)
     return (double)probe->lists.count / probe->count;
 }
 
-static void run_share(void *data, int32_t begin, int32_t end)
+void probe_run(const struct probe *probe, enum probe_work work, int32_t threads)
 {
-    const struct probe *probe = data;
-    probe->pass(probe, begin, end);
-}
-
-void probe_run(struct probe *probe, enum probe_work work, int32_t threads)
-{
-    probe->pass = probe->passes[work];
-    team_run(threads, run_share, probe, probe->count, PROBE_LANES_MOST);
+    const int32_t lanes = PROBE_LANES_MOST;
+    const int64_t vectors = (probe->count + lanes - 1) / lanes;
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (int32_t share = 0; share < threads; ++share) {
+        const int32_t begin = (int32_t)(vectors * share / threads) * lanes;
+        const int32_t end = (int32_t)(vectors * (share + 1) / threads) * lanes;
+        probe->passes[work](probe, begin, end < probe->count ? end : probe->count);
+    }
 }
 
 /* Results as a table of 3 x 3 matrices. */

@@ -21,14 +21,14 @@ struct probe {
     float (*positions)[4], (*fields)[4];
     struct library_lists lists; /* indices can be read for one vector beyond the last */
     float *corrections, *jacobians;
-    probe_pass *const *passes, *pass;
+    probe_pass *const *passes;
     struct scene scene; /* the same for the library */
 };
 
 /* A cube of side^3 particles, jittered. The lists are found with the library, untimed. Held. */
 struct probe *probe_create(sphg_context *context, int32_t side, double support, double jitter);
 double probe_pairs(const struct probe *probe); /* a particle */
-void probe_run(struct probe *probe, enum probe_work work, int32_t threads);
+void probe_run(const struct probe *probe, enum probe_work work, int32_t threads);
 
 /* After the matrices were run: largest |C_i - C|_F / |C|_F, C of the library, over particles that
  * it corrects fully. Exactness on linear fields alone would forgive wrong pairs. */

@@ -2,7 +2,6 @@
 #define _POSIX_C_SOURCE 200809L /* popen, dup2, setenv */
 #include "report.h"
 #include "library.h"
-#include "team.h"
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -60,7 +59,7 @@ void report_open(const char *command, const struct settings *settings)
         exit(EXIT_FAILURE);
     }
     REPORT("open", command, settings->json ? settings->json : "");
-    report_number("num_cpus", team_processors());
+    report_number("num_cpus", settings_processors());
     REPORT("text", "library_build_type", name_of_build());
     REPORT("text", "library_version", library_version());
     REPORT("text", "isa", library_isa());
@@ -103,7 +102,7 @@ void report_begin(const char *command, const struct settings *settings, int32_t 
 void report_if_busy(const struct settings *settings, const struct samples *samples)
 {
     const int32_t threads = settings->threads;
-    const int32_t processors = team_processors() < threads ? team_processors() : threads;
+    const int32_t all = settings_processors(), processors = all < threads ? all : threads;
     const double had = samples_cpu(samples).median / (samples_wall(samples).median * processors);
     if (had < 0.8)
         printf("BUSY       others ran: the program had %.0f %% of its processors' time, and the "

@@ -5,7 +5,6 @@
 #include "library.h"
 #include "report/report.h"
 #include "solver_batch.h"
-#include "team.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -68,31 +67,27 @@ static struct numbers result_of(const struct group *group, enum work work, int k
 
 /* ---- What is timed -------------------------------------------------------------------------- */
 
-struct copy {
-    const struct group *group;
-    int k;
-};
-
-/* Bytes of items [begin, end) of a table. */
-static char *items(const struct numbers *table, int32_t begin, int32_t end, size_t *size)
+/* Bytes of items from one on. */
+static char *items(const struct numbers *table, int32_t first, int32_t count, size_t *size)
 {
     const size_t item = (size_t)numbers_view(table).stride;
-    *size = item * (size_t)(end - begin);
-    return (char *)table->data + item * (size_t)begin;
+    *size = item * (size_t)count;
+    return (char *)table->data + item * (size_t)first;
 }
 
-/* Results wider than the input take some of it twice. In pieces as the library's. */
-static void copy_share(void *data, int32_t begin, int32_t end)
+/* The numbers of the results from those of the input, of which wider results take some twice. In
+ * pieces as the library's. */
+static void copy(const struct group *group, int k)
 {
     enum { PIECE = 32 };
-    const struct copy *copy = data;
-    for (int32_t first = begin; first < end; first += PIECE)
-        for (int k = 0; k < 3; ++k) {
-            const struct numbers out = result_of(copy->group, cases[copy->k].work, k);
-            const int32_t last = end - first < PIECE ? end : first + PIECE;
+#pragma omp parallel for num_threads(group->threads) schedule(static)
+    for (int32_t first = 0; first < group->count; first += PIECE)
+        for (int r = 0; r < 3; ++r) {
+            const struct numbers out = result_of(group, cases[k].work, r);
+            const int32_t left = group->count - first, count = left < PIECE ? left : PIECE;
             size_t in_size, out_size;
-            const char *from = items(&copy->group->batches[copy->k], first, last, &in_size);
-            char *to = items(&out, first, last, &out_size);
+            const char *from = items(&group->batches[k], first, count, &in_size);
+            char *to = items(&out, first, count, &out_size);
             memcpy(to, from, out_size < in_size ? out_size : in_size);
             if (out_size > in_size)
                 memcpy(to + in_size, from, out_size - in_size);
@@ -111,8 +106,7 @@ static void run_case(const struct group *group, int k, int path, sphg_stats *sta
     }
     const sphg_inversion wanted = {.correction = out[0], .stats = stats};
     if (cases[k].spectrum == SPECTRUM_NONE) {
-        struct copy copy = {group, k};
-        team_run(group->threads, copy_share, &copy, group->count, SMALL / 8);
+        copy(group, k);
     } else if (cases[k].work == INVERSION) {
         library_check(context, sphg_invert_moments(context, &scheme, group->count, matrices,
                                                    sphg_absent(), &wanted));

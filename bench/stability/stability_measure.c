@@ -2,9 +2,7 @@
 /* The walk through the cases of stability. Each case is measured by one thread, so that figures
  * do not depend on their number. */
 #include "stability_trial.h"
-#include "team.h"
 #include <math.h>
-#include <stdatomic.h>
 
 enum { HALVINGS = 8 };
 
@@ -91,44 +89,23 @@ static void measure_case(const struct bench *bench)
     }
 }
 
-/* ---- All of them ---------------------------------------------------------------------------- */
-
-struct queue {
-    struct stability *stability;
-    atomic_int next;
-};
-
 /* Whoever is free takes the next case. */
-static void take_cases(void *data, int32_t begin, int32_t end)
-{
-    struct queue *queue = data;
-    struct stability *stability = queue->stability;
-    if (begin == end)
-        return;
-    struct held *all = held_so_far();
-    struct bench bench = {.stability = stability, .context = library_open(1)};
-    for (;;) {
-        const int index = atomic_fetch_add(&queue->next, 1);
-        if (index >= stability->case_count)
-            break;
-        bench.one = &stability->cases[index];
-        if (begin == 0)
-            progress_show("%s %s at %g: %d of %d", sweep_names[bench.one->sweep],
-                          method_names[bench.one->scheme.method], bench.one->at, index + 1,
-                          stability->case_count);
-        for (bench.round = 0; bench.round < stability->settings.repetitions; ++bench.round) {
-            struct held *of_case = held_so_far();
-            measure_case(&bench);
-            release_held(of_case);
-        }
-    }
-    release_held(all);
-}
-
 void stability_measure(struct stability *stability)
 {
-    struct queue queue = {.stability = stability};
-    atomic_init(&queue.next, 0);
-    team_run(stability->settings.threads, take_cases, &queue, stability->settings.threads, 1);
+#pragma omp parallel for num_threads(stability->settings.threads) schedule(dynamic, 1)
+    for (int index = 0; index < stability->case_count; ++index) {
+        struct held *all = held_so_far();
+        struct stability_case *one = &stability->cases[index];
+        struct bench bench = {.stability = stability, .one = one, .context = library_open(1)};
+#pragma omp critical
+        progress_show("%s %s at %g: %d of %d", sweep_names[one->sweep],
+                      method_names[one->scheme.method], one->at, index + 1, stability->case_count);
+        for (bench.round = 0; bench.round < stability->settings.repetitions; ++bench.round) {
+            struct held *of_round = held_so_far();
+            measure_case(&bench);
+            release_held(of_round);
+        }
+        release_held(all);
+    }
     progress_clear();
 }
