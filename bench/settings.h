@@ -34,16 +34,6 @@ enum {
 void settings_read(struct settings *settings, int takes, const struct command_option *own,
                    const char *about, int argc, char **argv);
 
-/* The last columns of a row of own options: of what kind, and where its value goes. */
-#define AS_FLAG(value)               OPTION_FLAG, &(value), 0, 0, NULL, NULL
-#define AS_WHOLE(value, least, most) OPTION_WHOLE, &(value), least, most, NULL, NULL
-#define AS_REAL(value, least, most)  OPTION_REAL, &(value), least, most, NULL, NULL
-#define AS_POSITIVE(value)           OPTION_POSITIVE, &(value), 0, 0, NULL, NULL
-#define AS_CHOICE(value, words)      OPTION_CHOICE, &(value), 0, 0, words, NULL
-#define AS_TEXT(value)               OPTION_TEXT, &(value), 0, 0, NULL, NULL
-#define AS_FILE(value)               OPTION_FILE, &(value), 0, 0, NULL, NULL
-#define AS_FOLDER(value)             OPTION_FOLDER, &(value), 0, 0, NULL, NULL
-
 /* The side of the square or cube nearest to so many particles. */
 int32_t settings_side(int32_t particles, int32_t dimension);
 #endif

@@ -33,6 +33,17 @@ struct command_option {
     bool *given;              /* or NULL */
 };
 
+/* The last columns of a row: of what kind, and where its value goes. */
+#define AS_FLAG(value)               OPTION_FLAG, &(value), 0, 0, NULL, NULL
+#define AS_WHOLE(value, least, most) OPTION_WHOLE, &(value), least, most, NULL, NULL
+#define AS_REAL(value, least, most)  OPTION_REAL, &(value), least, most, NULL, NULL
+#define AS_POSITIVE(value)           OPTION_POSITIVE, &(value), 0, 0, NULL, NULL
+#define AS_CHOICE(value, words)      OPTION_CHOICE, &(value), 0, 0, words, NULL
+#define AS_TEXT(value)               OPTION_TEXT, &(value), 0, 0, NULL, NULL
+#define AS_SEED(value, most)         OPTION_SEED, &(value), 0, most, NULL, NULL
+#define AS_FILE(value)               OPTION_FILE, &(value), 0, 0, NULL, NULL
+#define AS_FOLDER(value)             OPTION_FOLDER, &(value), 0, 0, NULL, NULL
+
 /* What messages begin with. */
 void command_line_program(const char *name);
 

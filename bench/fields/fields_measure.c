@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fields_measure.h"
 #include "lattice.h"
+#include "particles/errors.h"
 #include <math.h>
 
 static const int32_t boundary_layers = 2;
@@ -17,12 +18,15 @@ const char *study_field_formula(enum study_field field)
     return field == FIELD_ROTATION ? "v = (-y, x)" : "v = (cos 2x, cos y - sin 3x)";
 }
 
-void study_field_at(enum study_field field, int32_t dimension, double wave, const double x[3],
-                    double v[3], double j[9])
+void study_exact_at(const struct scene *scene, enum study_field field, double wave,
+                    int32_t particle, double v[3], double j[9])
 {
-    const int32_t d = dimension;
+    const int32_t d = scene->scheme.dimension;
     const double k = 2 * 3.14159265358979323846 / wave;
     const bool rotation = field == FIELD_ROTATION;
+    double x[3] = {0, 0, 0};
+    for (int32_t axis = 0; axis < d; ++axis)
+        x[axis] = numbers_get(&scene->positions, particle, axis);
     for (int n = 0; n < 9; ++n)
         j[n] = 0;
     for (int32_t a = 0; a < d && field == FIELD_WAVES; ++a) {
@@ -45,26 +49,26 @@ void study_field_at(enum study_field field, int32_t dimension, double wave, cons
     }
 }
 
-/* Waves are ten support radii long. */
-static void exact_at(const struct study *study, int32_t particle, double v[3], double j[9])
+void study_fill_table(const struct scene *scene, enum study_field field, double wave,
+                      struct numbers *velocities)
 {
-    const struct scene *scene = &study->scene;
-    double x[3] = {0, 0, 0};
-    for (int32_t axis = 0; axis < scene->scheme.dimension; ++axis)
-        x[axis] = numbers_get(&scene->positions, particle, axis);
-    study_field_at(study->field, scene->scheme.dimension, 10 * scene->scheme.support_radius, x, v,
-                   j);
+    double v[3], j[9];
+    for (int32_t i = 0; i < scene->count; ++i) {
+        study_exact_at(scene, field, wave, i, v, j);
+        for (int32_t axis = 0; axis < velocities->width; ++axis)
+            numbers_set(velocities, i, axis, v[axis]);
+    }
+}
+
+static double wave_of(const struct study *study)
+{
+    return 10 * study->scene.scheme.support_radius;
 }
 
 void study_fill(struct study *study, enum study_field field)
 {
-    double v[3], j[9];
     study->field = field;
-    for (int32_t i = 0; i < study->scene.count; ++i) {
-        exact_at(study, i, v, j);
-        for (int32_t axis = 0; axis < study->scene.scheme.dimension; ++axis)
-            numbers_set(&study->scene.field, i, axis, v[axis]);
-    }
+    study_fill_table(&study->scene, field, wave_of(study), &study->scene.field);
 }
 
 /* ---- Particles ------------------------------------------------------------------------------- */
@@ -180,24 +184,14 @@ void study_derive(const struct study *study, const struct study_way *way)
     scene_evaluate(&scene, &request);
 }
 
-static double gradient_error(const struct numbers *jacobians, int32_t i, const double expected[9])
-{
-    double sum = 0;
-    for (int32_t k = 0; k < jacobians->width; ++k) {
-        const double difference = numbers_get(jacobians, i, k) - expected[k];
-        sum += difference * difference;
-    }
-    return sqrt(sum);
-}
-
 struct study_errors study_compare(const struct study *study, double *gradient_errors,
                                   double *curl_errors)
 {
     struct study_errors errors = {.curl_max = 0};
     for (int32_t i = 0; i < study->scene.count; ++i) {
         double v[3], expected[9];
-        exact_at(study, i, v, expected);
-        const double error = gradient_error(&study->scene.jacobians, i, expected);
+        study_exact_at(&study->scene, study->field, wave_of(study), i, v, expected);
+        const double error = norm_of(&study->scene.jacobians, i, expected);
         const double curl =
             study->setting.dimension == 2
                 ? fabs(numbers_get(&study->curls, i, 0) - (expected[2] - expected[1]))

@@ -17,10 +17,12 @@ enum study_field {
 const char *study_field_name(enum study_field field);
 const char *study_field_formula(enum study_field field); /* in 2D */
 
-/* v and J at x. wave: the length of FIELD_WAVES. J is row-major: d v_a / d x_b at dimension a + b.
- */
-void study_field_at(enum study_field field, int32_t dimension, double wave, const double x[3],
-                    double v[3], double j[9]);
+/* v and J where a particle stands. wave: the length of FIELD_WAVES. J is row-major: d v_a / d x_b
+ * at dimension a + b. */
+void study_exact_at(const struct scene *scene, enum study_field field, double wave,
+                    int32_t particle, double v[3], double j[9]);
+void study_fill_table(const struct scene *scene, enum study_field field, double wave,
+                      struct numbers *velocities);
 
 /* A way to a gradient. */
 struct study_way {

@@ -16,6 +16,7 @@ static const char *const path_names[PATHS] = {"kept lists", "kept weights", "lis
                                               "host's lists"};
 
 enum { WAVES, LINEAR, FIELDS };
+static const enum study_field fields[FIELDS] = {FIELD_WAVES, FIELD_ROTATION};
 enum {
     METHODS = 6,
     KERNELS = 7,
@@ -65,14 +66,6 @@ static void list_ways(struct frontier *frontier)
 
 /* ---- Measuring ------------------------------------------------------------------------------- */
 
-static void exact_at(const struct scene *scene, int field, int32_t i, double v[3], double j[9])
-{
-    double x[3];
-    for (int axis = 0; axis < 3; ++axis)
-        x[axis] = numbers_get(&scene->positions, i, axis);
-    study_field_at(field == LINEAR ? FIELD_ROTATION : FIELD_WAVES, 3, wave_length, x, v, j);
-}
-
 static struct ground open_ground(sphg_context *context, struct settings settings,
                                  enum precision precision)
 {
@@ -81,12 +74,7 @@ static struct ground open_ground(sphg_context *context, struct settings settings
     struct scene scene = scene_of_lattice(context, &settings, 3);
     struct ground ground = {
         .fields = {numbers_create(scene.field.type, scene.count, 3), scene.field}};
-    double v[3], j[9];
-    for (int32_t i = 0; i < scene.count; ++i) {
-        exact_at(&scene, WAVES, i, v, j);
-        for (int axis = 0; axis < 3; ++axis)
-            numbers_set(&ground.fields[WAVES], i, axis, v[axis]);
-    }
+    study_fill_table(&scene, FIELD_WAVES, wave_length, &ground.fields[WAVES]);
     scene.corrections =
         numbers_create(scene.field.type, scene.count, sphg_correction_width(&widest));
     for (int path = 0; path < PATHS; ++path)
@@ -131,7 +119,7 @@ static void measure_error(const struct frontier *frontier, struct way *way, int 
     const struct scene scene = take(frontier, way, field);
     double v[3], expected[9], sum = 0, most = 0, squares = 0;
     for (int32_t i = 0; i < scene.count; ++i) {
-        exact_at(&scene, field, i, v, expected);
+        study_exact_at(&scene, fields[field], wave_length, i, v, expected);
         const double error = norm_of(&scene.jacobians, i, expected);
         sum += error;
         most = numbers_larger(most, error);

@@ -4,43 +4,36 @@
 
 const char *const precision_names[] = {"f32", "f64", "mixed", NULL};
 
-const char *const kernel_names[] = {
-    [SPHG_CUBIC_SPLINE] = "cubic",
-    [SPHG_QUINTIC_SPLINE] = "quintic",
-    [SPHG_WENDLAND_C2] = "wendland-c2",
-    [SPHG_WENDLAND_C4] = "wendland-c4",
-    [SPHG_WENDLAND_C6] = "wendland-c6",
-    [SPHG_POLY6] = "poly6",
-    [SPHG_SPIKY] = "spiky",
-    NULL,
-};
+const char *const kernel_names[] = {[SPHG_CUBIC_SPLINE] = "cubic",
+                                    [SPHG_QUINTIC_SPLINE] = "quintic",
+                                    [SPHG_WENDLAND_C2] = "wendland-c2",
+                                    [SPHG_WENDLAND_C4] = "wendland-c4",
+                                    [SPHG_WENDLAND_C6] = "wendland-c6",
+                                    [SPHG_POLY6] = "poly6",
+                                    [SPHG_SPIKY] = "spiky",
+                                    NULL};
 
-const char *const method_names[] = {
-    [SPHG_KGC] = "KGC",
-    [SPHG_MLS] = "MLS",
-    [SPHG_RKPM] = "RKPM",
-    [SPHG_CMLS] = "CMLS",
-    [SPHG_CRKPM] = "CRKPM",
-    [SPHG_PLAIN] = "SPH",
-    NULL,
-};
+const char *const method_names[] = {[SPHG_KGC] = "KGC",
+                                    [SPHG_MLS] = "MLS",
+                                    [SPHG_RKPM] = "RKPM",
+                                    [SPHG_CMLS] = "CMLS",
+                                    [SPHG_CRKPM] = "CRKPM",
+                                    [SPHG_PLAIN] = "SPH",
+                                    NULL};
 
 const char *const isa_names[] = {
     [SPHG_ISA_BEST] = "best",        [SPHG_ISA_BASE] = "baseline", [SPHG_ISA_X86_V3] = "x86-64-v3",
-    [SPHG_ISA_X86_V4] = "x86-64-v4", [SPHG_ISA_NEON] = "neon",     NULL,
-};
+    [SPHG_ISA_X86_V4] = "x86-64-v4", [SPHG_ISA_NEON] = "neon",     NULL};
 
 const char *kernel_title(sphg_kernel kernel)
 {
-    static const char *const titles[] = {
-        [SPHG_CUBIC_SPLINE] = "cubic spline",
-        [SPHG_QUINTIC_SPLINE] = "quintic spline",
-        [SPHG_WENDLAND_C2] = "Wendland C2",
-        [SPHG_WENDLAND_C4] = "Wendland C4",
-        [SPHG_WENDLAND_C6] = "Wendland C6",
-        [SPHG_POLY6] = "poly6",
-        [SPHG_SPIKY] = "spiky",
-    };
+    static const char *const titles[] = {[SPHG_CUBIC_SPLINE] = "cubic spline",
+                                         [SPHG_QUINTIC_SPLINE] = "quintic spline",
+                                         [SPHG_WENDLAND_C2] = "Wendland C2",
+                                         [SPHG_WENDLAND_C4] = "Wendland C4",
+                                         [SPHG_WENDLAND_C6] = "Wendland C6",
+                                         [SPHG_POLY6] = "poly6",
+                                         [SPHG_SPIKY] = "spiky"};
     return titles[kernel];
 }
 

@@ -57,19 +57,12 @@ static struct spread spread_of(const struct samples *samples, bool cpu)
 {
     const int32_t count = samples->count;
     if (count == 0)
-        return (struct spread){NAN, NAN, NAN, NAN, NAN};
+        return (struct spread){NAN, NAN, NAN};
     double *values = allocate_or_exit((size_t)count, sizeof *values);
-    double sum = 0, squares = 0;
     for (int32_t k = 0; k < count; ++k)
-        sum += values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
-    for (int32_t k = 0; k < count; ++k)
-        squares += (values[k] - sum / count) * (values[k] - sum / count);
+        values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
     const double median = median_of(values, count);
-    const struct spread spread = {.median = median,
-                                  .mean = sum / count,
-                                  .min = values[0],
-                                  .max = values[count - 1],
-                                  .deviation = count > 1 ? sqrt(squares / (count - 1)) : 0};
+    const struct spread spread = {median, values[0], values[count - 1]};
     free(values);
     return spread;
 }

@@ -16,7 +16,7 @@ struct samples {
 };
 
 struct spread {
-    double median, mean, min, max, deviation; /* deviation: standard, of the sample */
+    double median, min, max;
 };
 
 struct moment now(void);

@@ -10,8 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Bits: what is asked for. */
-enum { ASK_MATRICES = 1, ASK_JACOBIAN = 2, ASK_DIVERGENCE = 4, ASK_CURL = 8 };
+/* Tables of results; and bits: which are asked for. */
+enum { MATRICES, DIVERGENCE, CURL, JACOBIANS, FIELDS = 4, TABLES = JACOBIANS + FIELDS };
+enum { ASK_MATRICES = 1, ASK_DIVERGENCE = 2, ASK_CURL = 4, ASK_JACOBIAN = 8 };
 
 /* Whose neighbours are asked. */
 enum neighbors {
@@ -112,11 +113,7 @@ static const struct row rows[] = {
     {"problem", "one volume for all", "an array of volumes", false, JACOBIAN(.one_volume = true),
      JACOBIAN()}};
 
-enum { ROWS = sizeof rows / sizeof rows[0], FIELDS = 4, TABLES_MOST = FIELDS + 3 };
-
-struct outputs {
-    struct numbers matrices, divergence, curl, jacobians[FIELDS];
-};
+enum { ROWS = sizeof rows / sizeof rows[0] };
 
 /* Of active targets. */
 struct pattern {
@@ -130,7 +127,7 @@ struct skip {
     struct scene wall;
     struct numbers moved; /* positions, less than half a skin away */
     struct numbers fields[FIELDS], matrices;
-    struct outputs outputs[2]; /* of the full evaluation, and of the part that is measured */
+    struct numbers outputs[2][TABLES]; /* of the full evaluation, and of the part */
     struct pattern patterns[ROWS];
     bool positions_are_moved; /* in this round */
     bool skin_was_spent;      /* a search with skin built its lists anew */
@@ -187,7 +184,7 @@ static void evaluate(struct skip *skip, const struct row *row, int part)
 {
     const struct ask *ask = part ? &row->part : &row->full;
     const struct pattern *pattern = &skip->patterns[row - rows];
-    const struct outputs *outputs = &skip->outputs[part];
+    const struct numbers *outputs = skip->outputs[part];
     const struct scene scene = scene_of(skip, ask);
     const bool plane = ask->neighbors == NEIGHBORS_PLANE;
     const sphg_subset subset = row->listed ? sphg_listed(pattern->indices, pattern->count)
@@ -206,9 +203,9 @@ static void evaluate(struct skip *skip, const struct row *row, int part)
             .shape = SPHG_VECTOR,
             .at_sources = views[f],
             .gradient = if_asked(ask->outputs & ASK_JACOBIAN,
-                                 plane ? &scene.jacobians : &outputs->jacobians[f]),
-            .divergence = if_asked(ask->outputs & ASK_DIVERGENCE, &outputs->divergence),
-            .curl = if_asked(ask->outputs & ASK_CURL, &outputs->curl)};
+                                 plane ? &scene.jacobians : &outputs[JACOBIANS + f]),
+            .divergence = if_asked(ask->outputs & ASK_DIVERGENCE, &outputs[DIVERGENCE]),
+            .curl = if_asked(ask->outputs & ASK_CURL, &outputs[CURL])};
     }
     const int count = ask->outputs == ASK_MATRICES ? 0 : ask->fields ? ask->fields : 1;
     const int calls = ask->one_by_one ? count : 1;
@@ -219,27 +216,18 @@ static void evaluate(struct skip *skip, const struct row *row, int part)
             .subset = ask->share > 0 ? &subset : NULL,
             .fields = count > 0 ? fields + f : NULL,
             .field_count = count / calls,
-            .correction = if_asked(ask->outputs & ASK_MATRICES, &outputs->matrices)};
+            .correction = if_asked(ask->outputs & ASK_MATRICES, &outputs[MATRICES])};
         scene_evaluate(&scene, &request);
     }
 }
 
 /* ---- Comparison ------------------------------------------------------------------------------ */
 
-/* What is asked for; the count is returned. */
-static int tables_of(const struct ask *ask, const struct outputs *outputs,
-                     struct numbers tables[TABLES_MOST])
+static bool has_table(const struct ask *ask, int table)
 {
-    int count = 0;
-    if (ask->outputs & ASK_MATRICES)
-        tables[count++] = outputs->matrices;
-    if (ask->outputs & ASK_DIVERGENCE)
-        tables[count++] = outputs->divergence;
-    if (ask->outputs & ASK_CURL)
-        tables[count++] = outputs->curl;
-    for (int f = 0; ask->outputs & ASK_JACOBIAN && (f == 0 || f < ask->fields); ++f)
-        tables[count++] = outputs->jacobians[f];
-    return count;
+    const int field = table - JACOBIANS;
+    return field < 0 ? ask->outputs & 1 << table
+                     : ask->outputs & ASK_JACOBIAN && (field == 0 || field < ask->fields);
 }
 
 static void compare_table(struct skip *skip, int k, const struct numbers *part,
@@ -264,18 +252,18 @@ static void compare_table(struct skip *skip, int k, const struct numbers *part,
  * bits are set, which is not a number. */
 static void compare_row(struct skip *skip, int k)
 {
-    const struct row *row = &rows[k];
-    struct numbers tables[2][TABLES_MOST];
-    int count = 0;
     for (int part = 0; part < 2; ++part) {
-        count = tables_of(&row->part, &skip->outputs[part], tables[part]);
-        for (int t = 0; t < count; ++t)
-            memset(tables[part][t].data, 0xff,
-                   (size_t)tables[part][t].count * (size_t)numbers_view(&tables[part][t]).stride);
-        evaluate(skip, row, part);
+        for (int t = 0; t < TABLES; ++t) {
+            const struct numbers *table = &skip->outputs[part][t];
+            if (has_table(&rows[k].part, t))
+                memset(table->data, 0xff,
+                       (size_t)table->count * (size_t)numbers_view(table).stride);
+        }
+        evaluate(skip, &rows[k], part);
     }
-    for (int t = 0; t < count && is_compared(row); ++t)
-        compare_table(skip, k, &tables[1][t], &tables[0][t]);
+    for (int t = 0; t < TABLES && is_compared(&rows[k]); ++t)
+        if (has_table(&rows[k].part, t))
+            compare_table(skip, k, &skip->outputs[1][t], &skip->outputs[0][t]);
 }
 
 /* ---- The whole ------------------------------------------------------------------------------- */
@@ -323,16 +311,6 @@ static void fill(struct skip *skip, const struct numbers *positions, double skin
                 numbers_set(&skip->fields[f], i, axis,
                             sin(wave * numbers_get(positions, i, (axis + f) % 3) + f));
         }
-}
-
-static struct outputs create_outputs(int32_t count)
-{
-    struct outputs outputs = {.matrices = numbers_create(SPHG_F32, count, 6),
-                              .divergence = numbers_create(SPHG_F32, count, 1),
-                              .curl = numbers_create(SPHG_F32, count, 3)};
-    for (int f = 0; f < FIELDS; ++f)
-        outputs.jacobians[f] = numbers_create(SPHG_F32, count, 9);
-    return outputs;
 }
 
 /* So many layers around a cube of so many particles a side. */
@@ -394,13 +372,15 @@ static double begin_round(void *data, int32_t item)
 
 static void measure(struct skip *skip)
 {
+    static const int32_t widths[TABLES] = {6, 1, 3, 9, 9, 9, 9};
     const struct settings *settings = &skip->settings;
     const double skin = 0.1 * settings->support * lattice_spacing;
     const double middle = 0.5 * (settings_side(settings->particles, 3) - 1) * lattice_spacing;
     open_scenes(skip, skin);
     fill(skip, &skip->scenes[0].positions, skin);
-    for (int part = 0; part < 2; ++part)
-        skip->outputs[part] = create_outputs(skip->scenes[0].count);
+    for (int n = 0; n < 2 * TABLES; ++n)
+        skip->outputs[n / TABLES][n % TABLES] =
+            numbers_create(SPHG_F32, skip->scenes[0].count, widths[n % TABLES]);
     for (int k = 0; k < ROWS; ++k)
         skip->patterns[k] = create_pattern(&skip->scenes[0].positions, middle, &rows[k].part);
     for (int round = 0; round < 2; ++round, skip->positions_are_moved ^= true)
