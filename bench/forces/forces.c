@@ -5,7 +5,6 @@
 #include "particles/particles.h"
 #include "report/report.h"
 #include <math.h>
-#include <stdio.h>
 
 struct force_case {
     const char *name;
@@ -137,22 +136,15 @@ static struct forces open_scenes(const struct settings *settings)
 static int show(const struct settings *settings, const struct forces *forces,
                 const struct samples times[ITEMS], const double errors[CASES])
 {
-    report_begin("forces", settings, forces->results[0].count, scene_pairs(&forces->scenes[0][0]),
-                 text_of("cubic spline, %s", precision_names[settings->precision]));
-    printf("times      ms, median (min-max) of %d rounds; corrections are there\n"
-           "error      adjoint and symmetric: |sum f| / sum |f|, which conservation makes 0; "
-           "difference: largest\n           relative error of div (-y, x, 2z)\n",
-           settings->repetitions);
-    report_if_busy(settings, &times[0]);
-    REPORT("table", "forces");
+    report_open("forces", settings);
+    report_lattice(settings, forces->results[0].count, scene_pairs(&forces->scenes[0][0]));
+    table_begin("forces");
     for (int k = 0; k < CASES; ++k)
-        TABLE_ROW(cell_text("operator", "operator", cases[k].name),
-                  cell_text("method", "method", method_names[cases[k].method]),
-                  cell_ms("kept lists", "lists", &times[k * SUPPLIES]),
-                  cell_ms("kept weights", "lists and weights", &times[k * SUPPLIES + 1]),
-                  cell_number("error", "error", "%.1e", errors[k]));
-    REPORT("print");
-    REPORT("times");
+        TABLE_ROW(cell_text("operator", cases[k].name),
+                  cell_text("method", method_names[cases[k].method]),
+                  cell_ms("lists", &times[k * SUPPLIES]),
+                  cell_ms("lists and weights", &times[k * SUPPLIES + 1]),
+                  cell_number("error", errors[k]));
     return report_close();
 }
 

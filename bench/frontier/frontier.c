@@ -8,8 +8,6 @@
 #include "particles/particles.h"
 #include "report/report.h"
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 enum path { PATH_KEPT, PATH_WEIGHTS, PATH_LIST_FREE, PATH_HOST_LISTS, PATHS };
 static const char *const path_names[PATHS] = {"kept lists", "kept weights", "list-free",
@@ -149,54 +147,26 @@ static void measure(struct frontier *frontier)
 
 /* ---- The whole ------------------------------------------------------------------------------- */
 
-static void add_ways(const struct frontier *frontier, int32_t count)
+static void add_ways(const struct frontier *frontier)
 {
-    REPORT("table", "frontier");
+    const int32_t count = frontier->grounds[0].scenes[0].count;
+    report_lattice(&frontier->settings, count, (double)frontier->grounds[0].lists.count / count);
+    table_begin("frontier");
     for (int k = 0; k < frontier->way_count; ++k) {
         const struct way *way = &frontier->ways[k];
-        TABLE_ROW(cell_text("method", "method", method_names[way->method]),
-                  cell_text("kernel", "kernel", kernel_names[way->kernel]),
-                  cell_text("type", "precision", precision_names[way->precision]),
-                  cell_text("path", "path", path_names[way->path]),
-                  cell_text("option", "option",
-                            way->method == SPHG_PLAIN ? "one sweep"
-                            : way->by_table           ? "table"
-                                                      : "fused"),
-                  cell_time("ns", "", &frontier->times[k], 1e6 / count, "ns_per_particle",
-                            "%.1f (%.0f-%.0f)"),
-                  cell_number("trig. mean", "trigonometric_mean", "%.2e", way->mean[WAVES]),
-                  cell_number("max", "trigonometric_max", "%.1e", way->most[WAVES]),
-                  cell_number("lin. mean", "linear_mean", "%.1e", way->mean[LINEAR]),
-                  cell_number("max", "linear_max", "%.1e", way->most[LINEAR]));
+        TABLE_ROW(cell_text("method", method_names[way->method]),
+                  cell_text("kernel", kernel_names[way->kernel]),
+                  cell_text("precision", precision_names[way->precision]),
+                  cell_text("path", path_names[way->path]),
+                  cell_text("option", way->method == SPHG_PLAIN ? "one sweep"
+                                      : way->by_table           ? "table"
+                                                                : "fused"),
+                  cell_time("", &frontier->times[k], 1e6 / count, "ns_per_particle"),
+                  cell_number("trigonometric_mean", way->mean[WAVES]),
+                  cell_number("trigonometric_max", way->most[WAVES]),
+                  cell_number("linear_mean", way->mean[LINEAR]),
+                  cell_number("linear_max", way->most[LINEAR]));
     }
-}
-
-static void show(const struct frontier *frontier)
-{
-    const struct settings *settings = &frontier->settings;
-    const int32_t count = frontier->grounds[0].scenes[0].count;
-    const double pairs = (double)frontier->grounds[0].lists.count / count;
-    report_lattice(settings, count, pairs);
-    printf("particles  %s, a block with free surfaces, jittered by %g spacings, H = %g spacings, "
-           "%.1f pairs a particle\n",
-           text_grouped(count), settings->jitter, settings->support, pairs);
-    REPORT("machine");
-    printf("times      ns a particle from positions to Jacobians, median (min-max) of %d rounds "
-           "through %d ways;\n           host's lists: taken over, not searched for; kept weights: "
-           "matrices form and keep them, the\n           gradient does without kernel, root and "
-           "division\n",
-           settings->repetitions, frontier->way_count);
-    printf("errors     |J_i - J|_F over the root mean square of |J|_F, over all particles, of\n"
-           "           v_a = sin(k x_a) cos(k x_b), 20 spacings a wave, and of v = (-y, x, 2z)\n");
-    report_if_busy(settings, &frontier->times[0]);
-    add_ways(frontier, count);
-    REPORT("show", "frontiers");
-    REPORT("csv", settings->output, "frontier.csv");
-    REPORT("draw", settings->output, "frontier.gp", "frontier/frontier.gp",
-           text_of("title = '%d particles, H = %g spacings, %d thread%s, '.machine", count,
-                   settings->support, settings->threads, settings->threads > 1 ? "s" : ""));
-    REPORT("drawn", settings->output, "frontier.csv, frontier.gp", ", frontier.png");
-    REPORT("times");
 }
 
 int command_frontier(int argc, char **argv)
@@ -220,10 +190,8 @@ int command_frontier(int argc, char **argv)
     if (!order_alone)
         measure(frontier);
     report_open("frontier", settings);
-    if (order_alone)
-        REPORT("machine");
-    else
-        show(frontier);
+    if (!order_alone)
+        add_ways(frontier);
     release_held(mark);
     frontier_order(settings);
     return report_close();

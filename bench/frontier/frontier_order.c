@@ -4,7 +4,6 @@
 #include "fields/fields_measure.h"
 #include "frontier_order.h"
 #include "report/report.h"
-#include <stdio.h>
 
 enum { WAYS = 4, SUPPORTS = 3, CUBES = 3 * SUPPORTS, POINTS = WAYS * CUBES };
 
@@ -39,22 +38,18 @@ static double run(void *cubes, int32_t item)
 static void add_points(const struct study cubes[CUBES], const struct study_errors errors[POINTS],
                        const struct samples times[POINTS])
 {
-    REPORT("table", "order");
+    table_begin("order");
     for (int k = 0; k < POINTS; ++k) {
         const struct study *cube = &cubes[k / WAYS];
-        if (k > 0 && k % WAYS == 0)
-            REPORT("section");
-        TABLE_ROW(
-            cell_text("", "way", ways[k % WAYS].name),
-            cell_text("H", "support", text_of("%g", cube->setting.support)),
-            cell_text("N", "side", text_of("%d", cube->setting.side)),
-            cell_time("ns", "", &times[k], 1e6 / cube->scene.count, "ns_per_particle",
-                      "%.0f (%.0f-%.0f)"),
-            cell_time("ms", "all", &times[k], 1, NULL, "%.2f (%.2f-%.2f)"),
-            cell_number("boundary max", "boundary_max", "%.2e", errors[k].most[STUDY_BOUNDARY]),
-            cell_number("mean", "boundary_mean", "%.2e", errors[k].mean[STUDY_BOUNDARY]),
-            cell_number("inside max", "inside_max", "%.2e", errors[k].most[STUDY_INSIDE]),
-            cell_number("mean", "inside_mean", "%.2e", errors[k].mean[STUDY_INSIDE]));
+        TABLE_ROW(cell_text("way", ways[k % WAYS].name),
+                  cell_text("support", text_of("%g", cube->setting.support)),
+                  cell_text("side", text_of("%d", cube->setting.side)),
+                  cell_time("", &times[k], 1e6 / cube->scene.count, "ns_per_particle"),
+                  cell_time("all", &times[k], 1, NULL),
+                  cell_number("boundary_max", errors[k].most[STUDY_BOUNDARY]),
+                  cell_number("boundary_mean", errors[k].mean[STUDY_BOUNDARY]),
+                  cell_number("inside_max", errors[k].most[STUDY_INSIDE]),
+                  cell_number("inside_mean", errors[k].mean[STUDY_INSIDE]));
     }
 }
 
@@ -71,16 +66,5 @@ void frontier_order(const struct settings *settings)
     }
     rounds_measure(&(struct rounds){"order 2", settings->repetitions, POINTS, run, NULL, cubes},
                    times);
-    printf("\norder 2 beside order 1: N^3 particles in [-1, 1]^3, v = (cos 2x, cos y - sin 3x, cos "
-           "2z), KGC (classic: CMLS), f32;\nerror |J_i - J|_F of the two outermost layers, and "
-           "inside\n");
     add_points(cubes, errors, times);
-    REPORT("print");
-    REPORT("times");
-    REPORT("csv", settings->output, "frontier_order.csv");
-    REPORT("draw", settings->output, "frontier_order.gp", "frontier/frontier_order.gp",
-           text_of("title = 'order 2 beside order 1: jitter %g, %d thread%s, '.machine",
-                   settings->jitter, settings->threads, settings->threads > 1 ? "s" : ""));
-    REPORT("drawn", settings->output, "frontier_order.csv, frontier_order.gp",
-           ", frontier_order.png");
 }

@@ -6,7 +6,6 @@
 #include "particles/particles.h"
 #include "probe.h"
 #include "report/report.h"
-#include <stdio.h>
 
 /* What is timed: the probe's works, the library's, without and with weights that a sweep before
  * kept, and of each set, work and stage (sums alone, or finished) every arrangement. */
@@ -131,69 +130,51 @@ static void measure(struct limit *limit)
 
 /* ---- Reporting ------------------------------------------------------------------------------- */
 
-static void show_probe(const struct limit *limit)
-{
-    const double error = probe_error(limit->probe),
-                 deviation = probe_matrix_deviation(limit->probe);
-    REPORT("table", "probe");
-    for (int work = 0; work < PROBE_WORKS; ++work)
-        TABLE_ROW(cell_text("probe", "work", work_names[work]),
-                  cell_ms("time", "", &limit->times[work]),
-                  cell_number("error", "error_max", "%.1e", error),
-                  cell_number("off by", "matrix_deviation", "%.1e", deviation));
-    REPORT("print");
-    REPORT("times");
-}
-
 /* Every arrangement of every set, whose share of the library's time stands with it; the faster one
  * counts. */
-static void show_arrangements(const struct limit *limit)
+static void add_arrangements(const struct limit *limit)
 {
     static const char *const arrangements[LIMIT_ROOTS] = {
         "targets in lanes, sqrt and division, weights first",
         "targets in lanes, estimate and Newton step, weights first"};
-    REPORT("table", "limit");
+    table_begin("limit");
     for (int n = 0; n < limit->set_count * SET_ITEMS; ++n) {
         const int k = n % LIMIT_ROOTS, stage = n / LIMIT_ROOTS % 2, set = n / SET_ITEMS;
         const int work = n / LIMIT_ROOTS / 2 % LIMIT_WORKS;
+        const struct packed *packed = &limit->packed[set][0];
         const struct samples *times = &limit->times[PACKED + n - k];
         const bool newton_counts =
             samples_median(&times[LIMIT_NEWTON]) < samples_median(&times[LIMIT_SQUARE_ROOT]);
-        TABLE_ROW(cell_text(NULL, "work", work_names[work]),
-                  cell_text(NULL, "stage", stage_names[stage]),
-                  cell_text(NULL, "set", limit->sets[set]->name),
-                  cell_text(NULL, "arrangement", arrangements[k]), cell_ms(NULL, "", &times[k]),
-                  cell_number(NULL, "deviation", NULL, limit->deviation[set][work]),
-                  cell_number(NULL, "is_limit", NULL, k == newton_counts),
-                  cell_number(NULL, "percent_of_library", NULL,
-                              100 * samples_median(&times[k]) /
-                                  samples_median(&limit->times[LIBRARY + work])),
-                  cell_number(NULL, "vectors", NULL,
-                              (double)limit->packed[set][0].data.slots / limit->sets[set]->lanes));
+        TABLE_ROW(
+            cell_text("work", work_names[work]), cell_text("stage", stage_names[stage]),
+            cell_text("set", limit->sets[set]->name), cell_text("arrangement", arrangements[k]),
+            cell_ms("", &times[k]), cell_number("deviation", limit->deviation[set][work]),
+            cell_number("is_limit", k == newton_counts),
+            cell_number("percent_of_library", 100 * samples_median(&times[k]) /
+                                                  samples_median(&limit->times[LIBRARY + work])),
+            cell_number("vectors", (double)packed->data.slots / packed->lanes),
+            cell_number(".pairs", packed->pairs), cell_number(".kB", packed->kilobytes));
     }
-    REPORT("times");
-    REPORT("show", "keep");
-    REPORT("table", "limit");
+    table_begin("limit");
     for (int n = 0; n < 2 * LIMIT_WORKS; ++n)
-        TABLE_ROW(cell_text(NULL, "work", work_names[n % LIMIT_WORKS]),
-                  cell_text(NULL, "stage", n < LIMIT_WORKS ? "library" : "library+weights"),
-                  cell_ms(NULL, "", &limit->times[LIBRARY + n]));
-    REPORT("times");
-    REPORT("show", "shares");
+        TABLE_ROW(cell_text("work", work_names[n % LIMIT_WORKS]),
+                  cell_text("stage", n < LIMIT_WORKS ? "library" : "library+weights"),
+                  cell_ms("", &limit->times[LIBRARY + n]));
 }
 
-/* What each set goes through. */
-static void print_sets(const struct limit *limit)
+static int show(const struct limit *limit)
 {
-    for (int set = 0; set < limit->set_count; ++set) {
-        const struct packed *packed = &limit->packed[set][0];
-        double worst = 0;
-        for (int work = 0; work < LIMIT_WORKS; ++work)
-            worst = numbers_larger(worst, limit->deviation[set][work]);
-        printf("%-11s%s: %.1f pairs in %d vectors a target, %.0f kB, off double by %.1e\n",
-               set ? "" : "packed", limit->sets[set]->name, packed->pairs,
-               packed->data.slots / packed->lanes, packed->kilobytes, worst);
-    }
+    const double error = probe_error(limit->probe),
+                 deviation = probe_matrix_deviation(limit->probe);
+    report_open("limit", &limit->settings);
+    report_lattice(&limit->settings, limit->scene.count, probe_pairs(limit->probe));
+    table_begin("probe");
+    for (int work = 0; work < PROBE_WORKS; ++work)
+        TABLE_ROW(cell_text("work", work_names[work]), cell_ms("", &limit->times[work]),
+                  cell_number("error_max", error), cell_number("matrix_deviation", deviation));
+    if (!limit->probe_only)
+        add_arrangements(limit);
+    return report_close();
 }
 
 int command_limit(int argc, char **argv)
@@ -209,19 +190,5 @@ int command_limit(int argc, char **argv)
                   "which share of the arithmetic limit the library reaches.",
                   argc, argv);
     measure(&limit);
-    report_begin("limit", &limit.settings, limit.scene.count, probe_pairs(limit.probe),
-                 "KGC, cubic spline, f32");
-    print_sets(&limit);
-    printf("probe      int32 CSR, sorted 16-byte rows; error of its Jacobians, and what its "
-           "matrices are off the library's\n"
-           "times      median (min-max) of %d rounds, ms for all targets\n",
-           limit.settings.repetitions);
-    if (!limit.probe_only)
-        printf("+weights   the sweep before kept what kernel and volume give each pair: no kernel, "
-               "root or division, which the limits hold\n");
-    report_if_busy(&limit.settings, &limit.times[PROBE_GRADIENT]);
-    show_probe(&limit);
-    if (!limit.probe_only)
-        show_arrangements(&limit);
-    return report_close();
+    return show(&limit);
 }

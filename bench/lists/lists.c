@@ -5,7 +5,6 @@
 #include "particles/errors.h"
 #include "particles/particles.h"
 #include "report/report.h"
-#include <stdio.h>
 
 /* Who says which pairs there are. */
 enum supply {
@@ -182,37 +181,30 @@ static struct lists open_scenes(const struct settings *settings)
     return lists;
 }
 
-static struct cell cell_per_pair(const char *name, const char *key, const struct samples *time,
-                                 int64_t pairs)
+static struct cell cell_per_pair(const char *name, const struct samples *time, int64_t pairs)
 {
-    return cell_time(name, key, time, 1e6 / (double)pairs, "ns_per_pair", "%.3f (%.3f-%.3f)");
+    return cell_time(name, time, 1e6 / (double)pairs, "ns_per_pair");
 }
 
-static void add_sums(const struct samples *times, const double *errors, int64_t pairs)
+static int show(const struct settings *settings, const struct lists *lists,
+                const struct samples *times, const double *errors)
 {
-    REPORT("table", "lists/sums");
+    const int64_t pairs = lists->host.count;
+    report_open("lists", settings);
+    report_lattice(settings, lists->scenes[0].count, scene_pairs(&lists->scenes[0]));
+    table_begin("lists/sums");
     for (int k = 0; k < SUMS; k += WORKS)
-        TABLE_ROW(cell_text("sums over", "supply", supply_names[k / WORKS]),
-                  cell_per_pair("build", "build", &times[k + WORK_SEARCH], pairs),
-                  cell_per_pair("matrices", "matrices", &times[k + WORK_MATRICES], pairs),
-                  cell_per_pair("gradient", "gradient", &times[k + WORK_GRADIENT], pairs),
-                  cell_per_pair("fused", "fused", &times[k + WORK_FUSED], pairs),
-                  cell_number("error", "error_max", "%.1e", errors[k + WORK_FUSED]),
-                  cell_count(NULL, "pairs", pairs));
-    REPORT("print");
-    REPORT("times");
-}
-
-static void add_exports(const struct samples *times, const double *errors, int64_t pairs)
-{
-    REPORT("table", "lists/pairs");
+        TABLE_ROW(cell_text("supply", supply_names[k / WORKS]),
+                  cell_per_pair("build", &times[k + WORK_SEARCH], pairs),
+                  cell_per_pair("matrices", &times[k + WORK_MATRICES], pairs),
+                  cell_per_pair("gradient", &times[k + WORK_GRADIENT], pairs),
+                  cell_per_pair("fused", &times[k + WORK_FUSED], pairs),
+                  cell_number("error_max", errors[k + WORK_FUSED]), cell_count("pairs", pairs));
+    table_begin("lists/pairs");
     for (int k = 0; k < EXPORTS; ++k)
-        TABLE_ROW(
-            cell_text("pairs written out", "what", exports[k].name),
-            cell_per_pair("time", "", &times[k], pairs),
-            cell_if(exports[k].gradients, cell_number("error", "error_max", "%.1e", errors[k])));
-    REPORT("print");
-    REPORT("times");
+        TABLE_ROW(cell_text("what", exports[k].name), cell_per_pair("", &times[SUMS + k], pairs),
+                  cell_if(exports[k].gradients, cell_number("error_max", errors[SUMS + k])));
+    return report_close();
 }
 
 int command_lists(int argc, char **argv)
@@ -231,14 +223,5 @@ int command_lists(int argc, char **argv)
         errors[item] = error_of(&lists, item);
     rounds_measure(&(struct rounds){"lists", settings.repetitions, ITEMS, run, NULL, &lists},
                    times);
-    report_begin("lists", &settings, lists.scenes[0].count, scene_pairs(&lists.scenes[0]),
-                 text_of("KGC, cubic spline, %s", precision_names[settings.precision]));
-    printf("times      ns a pair, median (min-max) of %d rounds through everything; gradient and "
-           "pairs written out:\n           with matrices that are there; error: largest |J_i - "
-           "J|_F / |J|_F of v = (-y, x, 2z)\n",
-           settings.repetitions);
-    report_if_busy(&settings, &times[WORK_FUSED]);
-    add_sums(times, errors, lists.host.count);
-    add_exports(times + SUMS, errors + SUMS, lists.host.count);
-    return report_close();
+    return show(&settings, &lists, times, errors);
 }

@@ -7,7 +7,6 @@
 #include "scaling_cloud.h"
 #include "scene.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Members that are 0 here are as the settings say. */
@@ -178,66 +177,28 @@ static void measure(struct scaling *scaling)
 static struct cell cell_per_particle(const char *name, const struct scaling_case *one,
                                      enum work work)
 {
-    return cell_time(text_of("%s [ns]", name), name, &one->time[work], 1e6 / one->count,
-                     "ns_per_particle", "%.1f (%.0f-%.0f)");
-}
-
-static void add_row(const struct scaling_case *one)
-{
-    TABLE_ROW(cell_text(NULL, "group", one->group), cell_text("", "label", one->label),
-              cell_count(NULL, "particles", one->count),
-              cell_count(NULL, "case_threads", one->threads),
-              cell_count(NULL, "dimension", one->cloud.dimension),
-              cell_number("pairs", "pairs_per_particle", "%.1f", one->pairs),
-              cell_number("bytes", "bytes_per_particle", "%.0f", one->bytes),
-              cell_per_particle("search", one, WORK_SEARCH),
-              cell_per_particle("matrices", one, WORK_MATRICES),
-              cell_per_particle("gradient", one, WORK_GRADIENT),
-              cell_per_particle("fused", one, WORK_FUSED),
-              cell_number("deficient %", NULL, "%.1f", 100 * one->deficient),
-              cell_number(NULL, "deficient_share", NULL, one->deficient),
-              cell_number("error", "error_max", "%.1e", one->error),
-              cell_count(NULL, "not_finite", one->not_finite));
+    return cell_time(name, &one->time[work], 1e6 / one->count, "ns_per_particle");
 }
 
 static int show(const struct scaling *scaling)
 {
-    const struct settings *settings = &scaling->settings;
-    const struct scaling_case *cases = scaling->cases;
-    report_open("scaling", settings);
-    report_number("particles", settings->particles);
-    printf("particles  %s, lattice jittered by %g spacings, H = %g spacings, lattice order, but "
-           "for what a\n           group changes; KGC, cubic spline, f32\n",
-           text_grouped(settings->particles), settings->jitter, settings->support);
-    REPORT("machine");
-    printf("times      ns a particle, median (min-max) of %d rounds through the cases of a group; "
-           "fused:\n           matrices and gradient in one call; bytes: a particle, held by the "
-           "neighbours\n"
-           "errors     largest |J_i - J|_F / |J|_F of v = (-y, x, 2z), in 2D (-y, x), where rank "
-           "is full\n",
-           settings->repetitions);
-    report_if_busy(settings, &cases[0].time[WORK_FUSED]);
-    REPORT("table", "scaling");
+    report_open("scaling", &scaling->settings);
+    report_number("particles", scaling->settings.particles);
+    table_begin("scaling");
     for (int k = 0; k < scaling->case_count; ++k) {
-        if (k == 0 || strcmp(cases[k].group, cases[k - 1].group) != 0)
-            REPORT("section", cases[k].group);
-        add_row(&cases[k]);
+        const struct scaling_case *one = &scaling->cases[k];
+        TABLE_ROW(cell_text("group", one->group), cell_text("label", one->label),
+                  cell_count("particles", one->count), cell_count("case_threads", one->threads),
+                  cell_count("dimension", one->cloud.dimension),
+                  cell_number("pairs_per_particle", one->pairs),
+                  cell_number("bytes_per_particle", one->bytes),
+                  cell_per_particle("search", one, WORK_SEARCH),
+                  cell_per_particle("matrices", one, WORK_MATRICES),
+                  cell_per_particle("gradient", one, WORK_GRADIENT),
+                  cell_per_particle("fused", one, WORK_FUSED),
+                  cell_number("deficient_share", one->deficient),
+                  cell_number("error_max", one->error), cell_count("not_finite", one->not_finite));
     }
-    REPORT("print");
-    REPORT("times");
-    REPORT("show", "speed_ups");
-    for (int k = 0; k < scaling->case_count; ++k)
-        if (cases[k].not_finite > 0)
-            printf("\nNOT FINITE: %lld numbers of %s, %s\n", (long long)cases[k].not_finite,
-                   cases[k].group, cases[k].label);
-    REPORT("csv", settings->output, "scaling.csv");
-    REPORT("draw", settings->output, "scaling.gp", "scaling/scaling.gp",
-           text_of("title = '%d particles, H = %g spacings, %d thread%s, '.machine.', but for what "
-                   "a panel changes'",
-                   settings->particles, settings->support, settings->threads,
-                   settings->threads > 1 ? "s" : ""),
-           text_of("threads = %d", settings->threads));
-    REPORT("drawn", settings->output, "scaling.csv, scaling.gp", ", scaling.png");
     return report_close();
 }
 

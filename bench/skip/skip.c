@@ -7,7 +7,6 @@
 #include "particles/particles.h"
 #include "report/report.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* Tables of results; and bits: which are asked for. */
@@ -391,52 +390,34 @@ static void measure(struct skip *skip)
         &skip->times[0][0]);
 }
 
-/* ---- The table ------------------------------------------------------------------------------- */
-
-static void add_row(const struct skip *skip, int k)
+static int show(const struct skip *skip)
 {
-    const struct row *row = &rows[k];
-    const struct samples *full = &skip->times[k][0], *part = &skip->times[k][1];
-    const char *exact = !is_compared(row)           ? "-"
-                        : skip->differences[k] == 0 ? "same bits"
-                                                    : text_of("off by %.1e", skip->deviation[k]);
-    if (k > 0 && strcmp(row->group, rows[k - 1].group) != 0)
-        REPORT("section");
-    TABLE_ROW(cell_text(NULL, "group", row->group), cell_text("what", "what", row->what),
-              cell_text("against", NULL, row->against), cell_ms("full [ms]", "full", full),
-              cell_ms("this [ms]", "this", part),
-              cell_number("saved %", "saved_percent", "%.0f",
-                          100 * (1 - samples_median(part) / samples_median(full))),
-              cell_text("exact", NULL, exact),
-              cell_number(NULL, "compared", NULL, is_compared(row)),
-              cell_count(NULL, "targets_with_other_bits", skip->differences[k]),
-              cell_number(NULL, "deviation", NULL, skip->deviation[k]));
+    report_open("skip", &skip->settings);
+    report_lattice(&skip->settings, skip->scenes[0].count, scene_pairs(&skip->scenes[0]));
+    report_number(".plane_pairs", scene_pairs(&skip->scenes[NEIGHBORS_PLANE]));
+    report_number("skin_was_spent", skip->skin_was_spent);
+    table_begin("skip");
+    for (int k = 0; k < ROWS; ++k) {
+        const struct samples *full = &skip->times[k][0], *part = &skip->times[k][1];
+        TABLE_ROW(
+            cell_text("group", rows[k].group), cell_text("what", rows[k].what),
+            cell_text(".against", rows[k].against), cell_ms("full", full), cell_ms("this", part),
+            cell_number("saved_percent", 100 * (1 - samples_median(part) / samples_median(full))),
+            cell_number("compared", is_compared(&rows[k])),
+            cell_count("targets_with_other_bits", skip->differences[k]),
+            cell_number("deviation", skip->deviation[k]));
+    }
+    return report_close();
 }
 
 int command_skip(int argc, char **argv)
 {
     struct skip skip = {.settings = settings_default(1000000, 9, NULL)};
-    const struct settings *settings = &skip.settings;
     settings_read(&skip.settings, TAKES_LATTICE | TAKES_RUN, NULL,
                   "Times parts of an evaluation beside the whole: outputs that are not wanted, "
                   "particles that are not active, neighbours that are still known. Says where "
                   "results are the same to the bit.",
                   argc, argv);
     measure(&skip);
-    report_begin("skip", settings, skip.scenes[0].count, scene_pairs(&skip.scenes[0]),
-                 text_of("2D: %.2f\nscheme     KGC, cubic spline, f32; neighbours kept and found "
-                         "before, unless it says search",
-                         scene_pairs(&skip.scenes[NEIGHBORS_PLANE])));
-    printf("times      median (min-max) of %d rounds [ms]; exact: compared with the full result\n",
-           settings->repetitions);
-    report_if_busy(settings, &skip.times[0][0]);
-    report_number("skin_was_spent", skip.skin_was_spent);
-    REPORT("table", "skip");
-    for (int k = 0; k < ROWS; ++k)
-        add_row(&skip, k);
-    REPORT("print");
-    REPORT("times");
-    if (skip.skin_was_spent)
-        printf("\nThe skin did not hold: its row includes searches that found pairs anew.\n");
-    return report_close();
+    return show(&skip);
 }

@@ -6,7 +6,6 @@
 #include "report/report.h"
 #include "solver_batch.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum work { INVERSION, EIGEN, SVD };
@@ -199,8 +198,7 @@ static void measure_group(const struct solver *solver, struct group *group)
 
 static struct cell cell_per_matrix(const char *name, const struct group *group, int k, int path)
 {
-    return cell_time(name, name, &group->times[k][path], 1e6 / group->count, "ns_per_matrix",
-                     "%.2f (%.2f-%.2f)");
+    return cell_time(name, &group->times[k][path], 1e6 / group->count, "ns_per_matrix");
 }
 
 static void add_case(const struct solver *solver, const struct group *group, int k)
@@ -208,21 +206,20 @@ static void add_case(const struct solver *solver, const struct group *group, int
     static const char *const works[] = {"invert moments", "eigen", "SVD"};
     const bool copied = cases[k].spectrum == SPECTRUM_NONE;
     struct cell cells[8 + PATHS] = {
-        cell_text(NULL, "dimension", text_of("%dD", (int)group->dimension)),
-        cell_text(NULL, "precision", precision_names[group->type == SPHG_F64]),
-        cell_text(NULL, "matrices", text_of("%d", (int)group->count)),
-        cell_text("", "work", works[cases[k].work]),
-        cell_text("", "what", cases[k].what),
+        cell_text("dimension", text_of("%dD", (int)group->dimension)),
+        cell_text("precision", precision_names[group->type == SPHG_F64]),
+        cell_text("matrices", text_of("%d", (int)group->count)),
+        cell_text("work", works[cases[k].work]),
+        cell_text("what", cases[k].what),
         cell_if(copied, cell_per_matrix("memcpy", group, k, 0))};
     size_t count = 6;
     for (int path = 0; path < PATHS; ++path)
         if (solver->runs[path])
             cells[count++] = cell_if(!copied, cell_per_matrix(isa_names[path + 1], group, k, path));
+    cells[count++] = cell_if(cases[k].spectrum == SPECTRUM_MOMENTS,
+                             cell_number("decomposed_percent", 100 * group->decomposed[k]));
     cells[count++] =
-        cell_if(cases[k].spectrum == SPECTRUM_MOMENTS,
-                cell_number("fell %", "decomposed_percent", "%.2f", 100 * group->decomposed[k]));
-    cells[count++] = cell_if(!copied && cases[k].share == 0,
-                             cell_number("off by", "deviation", "%.1e", group->deviation[k]));
+        cell_if(!copied && cases[k].share == 0, cell_number("deviation", group->deviation[k]));
     table_add(cells, count);
 }
 
@@ -236,20 +233,6 @@ static void find_paths(struct solver *solver)
         command_line_refuse("--isa: %s does not run here", isa_names[solver->path + 1]);
 }
 
-static void begin_report(const struct solver *solver)
-{
-    report_open("solver", &solver->settings);
-    printf("matrices   3 x 3 and 2 x 2, items packed, so many in a batch; memcpy: their numbers "
-           "moved from the input\n           to the results, no arithmetic; fell: share that the "
-           "call sent to the decomposition\n");
-    REPORT("machine");
-    printf("times      ns a matrix, median (min-max) of %d rounds through the cases and "
-           "instruction sets of a group;\n           off by: C M - 1 of the certified, else "
-           "what the factors miss of A, the largest entry over that of A\n",
-           solver->settings.repetitions);
-    REPORT("table", "solver");
-}
-
 /* Small and large batches, f32 and f64, 3D and 2D. */
 static void measure(const struct solver *solver)
 {
@@ -261,8 +244,6 @@ static void measure(const struct solver *solver)
         if (group.count == 0 || (solver->precision >= 0 && solver->precision != n / 2 % 2))
             continue;
         measure_group(solver, &group);
-        REPORT("section", text_of("%dD, %s, %s", (int)group.dimension, precision_names[n / 2 % 2],
-                                  text_grouped(group.count)));
         for (int k = 0; k < CASES; ++k)
             if (group.dimension == 3 || cases[k].work != SVD)
                 add_case(solver, &group, k);
@@ -292,9 +273,8 @@ int command_solver(int argc, char **argv)
                   "One thread unless --threads says otherwise.",
                   argc, argv);
     find_paths(&solver);
-    begin_report(&solver);
+    report_open("solver", &solver.settings);
+    table_begin("solver");
     measure(&solver);
-    REPORT("print");
-    REPORT("times");
     return report_close();
 }

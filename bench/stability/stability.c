@@ -8,7 +8,6 @@
 #include "support/tolerances.h"
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 
 enum { CASES_MOST = 8192, PLACES_MOST = 32, METHODS = 6, POLICIES = 4, PRECISIONS = 3 };
 
@@ -125,72 +124,31 @@ static void create_cases(struct stability *stability)
 
 /* ---- All of it ------------------------------------------------------------------------------- */
 
-static struct cell counted(const char *key, int64_t count)
-{
-    return cell_count(NULL, key, count);
-}
-
-static struct cell measured(const char *key, double number)
-{
-    return cell_number(NULL, key, NULL, number);
-}
-
 static void add_case(struct stability_case *one)
 {
     const double targets = (double)one->targets;
     const struct samples once = {&one->time, 1, 1};
     TABLE_ROW(
-        cell_text(NULL, "sweep", sweep_names[one->sweep]),
-        cell_text(NULL, "policy", policy_names[one->scheme.policy]),
-        cell_text(NULL, "method", method_names[one->scheme.method]),
-        cell_text(NULL, "precision", precision_names[one->precision]),
-        cell_text(NULL, "place", text_of("%g", one->at)), measured("at", one->at),
-        measured("end", one->end), measured("threshold", one->scheme.threshold),
-        counted("targets", one->targets), measured("rank", (double)one->rank_sum / targets),
-        measured("full", (double)one->full / targets),
-        measured("decomposed", (double)(one->decomposed - one->empty) / targets),
-        counted("empty", one->empty), counted("compared", one->compared),
-        counted("undecided", one->undecided), measured("ratio_full", one->ratio_full),
-        measured("ratio_touched", one->ratio_touched), counted("wrong_ranks", one->wrong_ranks),
-        counted("not_finite", one->not_finite), measured("linear_mean", one->linear_sum / targets),
-        measured("linear_full", one->linear_full), measured("noise", one->noise),
-        measured("condition", one->condition), measured("jump", one->jump),
-        measured("jump_left", one->jump_left), measured("correction_jump", one->correction_jump),
-        measured("correction_jump_left", one->correction_jump_left),
-        counted("other_bits", one->other_bits), cell_ms(NULL, "", &once));
-}
-
-static void print_set_up(const struct stability *stability)
-{
-    const struct settings *settings = &stability->settings;
-    const int32_t side = settings_side(settings->particles, 3);
-    report_number("particles", settings->particles);
-    report_number("support_spacings", settings->support);
-    report_number("jitter", settings->jitter);
-    report_number("rounds", settings->repetitions);
-    report_number("seed", stability->seed);
-    printf("particles  %s in the largest block, jitter %g spacings, H = %g spacings, %s, "
-           "eps 1e-2, but\n           for what a sweep changes; %d round%s of random "
-           "numbers, seed %d\n",
-           text_grouped((int64_t)side * side * side), settings->jitter, settings->support,
-           kernel_names[settings->kernel], settings->repetitions,
-           settings->repetitions > 1 ? "s" : "", (int)stability->seed);
-    REPORT("machine");
-    printf("ratios     largest error of the gradient of a random field over its bound, beside "
-           "brute force in\n           quadruple precision; limits: 10 at full rank, 16 where "
-           "the threshold acts; order 2: 1 and 4\n"
-           "ranks      means over the particles of a case, least and most; decomposed: their "
-           "share in percent\n");
-}
-
-/* What bounds the errors, who can be corrected, and what a solver's author reads from it. */
-static void draw(const struct settings *settings)
-{
-    static const char *const scripts[] = {"ratios", "ranks", "reading"};
-    for (int k = 0; k < 3; ++k)
-        REPORT("draw", settings->output, text_of("stability_%s.gp", scripts[k]),
-               text_of("stability/stability_common.gp stability/stability_%s.gp", scripts[k]),
-               text_of("support = '%g'", settings->support));
+        cell_text("sweep", sweep_names[one->sweep]),
+        cell_text("policy", policy_names[one->scheme.policy]),
+        cell_text("method", method_names[one->scheme.method]),
+        cell_text("precision", precision_names[one->precision]),
+        cell_text("place", text_of("%g", one->at)), cell_number("at", one->at),
+        cell_number("end", one->end), cell_number("threshold", one->scheme.threshold),
+        cell_count("targets", one->targets), cell_number("rank", (double)one->rank_sum / targets),
+        cell_number("full", (double)one->full / targets),
+        cell_number("decomposed", (double)(one->decomposed - one->empty) / targets),
+        cell_count("empty", one->empty), cell_count("compared", one->compared),
+        cell_count("undecided", one->undecided), cell_number("ratio_full", one->ratio_full),
+        cell_number("ratio_touched", one->ratio_touched),
+        cell_count("wrong_ranks", one->wrong_ranks), cell_count("not_finite", one->not_finite),
+        cell_number("linear_mean", one->linear_sum / targets),
+        cell_number("linear_full", one->linear_full), cell_number("noise", one->noise),
+        cell_number("condition", one->condition), cell_number("jump", one->jump),
+        cell_number("jump_left", one->jump_left),
+        cell_number("correction_jump", one->correction_jump),
+        cell_number("correction_jump_left", one->correction_jump_left),
+        cell_count("other_bits", one->other_bits), cell_ms("", &once));
 }
 
 /* The limits of errors are those of the tests. */
@@ -204,26 +162,24 @@ static const double limits[] = {TEST_TOLERANCES(LIMIT_OF)};
 static int show(const struct stability *stability)
 {
     const struct settings *settings = &stability->settings;
-    const bool all = stability->first == 0 && stability->last == SWEEPS - 1;
+    const int32_t side = settings_side(settings->particles, 3);
     report_open("stability", settings);
-    print_set_up(stability);
-    REPORT("table", "stability");
+    report_number("particles", settings->particles);
+    report_number("support_spacings", settings->support);
+    report_number("jitter", settings->jitter);
+    report_number("rounds", settings->repetitions);
+    report_number("seed", stability->seed);
+    report_number(".block", (double)side * side * side);
+    report_number(".compared", stability->compared);
+    report_number(".all", stability->first == 0 && stability->last == SWEEPS - 1);
+    report_number(".alone", stability->first == stability->last);
+    report_number(".full", limits[limit_oracle_ratio_full]);
+    report_number(".touched", limits[limit_oracle_ratio_touched]);
+    report_number(".full_2", limits[limit_quadratic_ratio_full]);
+    report_number(".touched_2", limits[limit_quadratic_ratio_touched]);
+    table_begin("stability");
     for (int k = 0; k < stability->case_count; ++k)
         add_case(&stability->cases[k]);
-    REPORT("show", "summaries");
-    if (stability->first == stability->last)
-        REPORT("show", "places");
-    REPORT("csv", settings->output, "stability.csv");
-    if (all)
-        draw(settings);
-    REPORT("drawn", settings->output, all ? "stability.csv, three scripts" : "stability.csv",
-           all ? " and their pictures" : "");
-    REPORT("times");
-    REPORT("show", "promises", text_of("%d", (int)stability->compared),
-           text_of("%g", limits[limit_oracle_ratio_full]),
-           text_of("%g", limits[limit_oracle_ratio_touched]),
-           text_of("%g", limits[limit_quadratic_ratio_full]),
-           text_of("%g", limits[limit_quadratic_ratio_touched]));
     return report_close();
 }
 

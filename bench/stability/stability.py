@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What the cases of the sweeps come to, and which promise one breaks."""
 import math
 import sys
-from __main__ import Table
+from report import grouped, plural, show
 
+METHODS = ("KGC", "MLS", "RKPM", "CMLS", "CRKPM", "SPH")
 ORDER_2 = ("curvature", "thinning")
 
 
@@ -17,53 +17,72 @@ def largest(values):
     return next((value for value in values if value != value), max(values, default=0.0))
 
 
-def summaries(report):
+def report_of(report):
+    c, rows = report.context, report.rows("stability")
+    print(f"particles  {grouped(c['.block'])} in the largest block, jitter {c['jitter']:g} spacings, H = "
+          f"{c['support_spacings']:g} spacings, {c['.kernel']}, eps 1e-2, but\n           for what a sweep changes; "
+          f"{plural(c['rounds'], 'round')} of random numbers, seed {c['seed']}")
+    report.print_machine()
+    print("ratios     largest error of the gradient of a random field over its bound, beside brute force in\n"
+          "           quadruple precision; limits: 10 at full rank, 16 where the threshold acts; order 2: 1 and 4\n"
+          "ranks      means over the particles of a case, least and most; decomposed: their share in percent")
+    show_summaries(rows)
+    if c[".alone"]:
+        show_places(rows)
+    report.write_csv(rows, "stability.csv")
+    if c[".all"]:
+        for name in ("ratios", "ranks", "reading"):
+            report.draw(f"stability_{name}.gp", ["stability/stability_common.gp", f"stability/stability_{name}.gp"],
+                        support=f"{c['support_spacings']:g}", machine=c["cpu_model"])
+    report.print_written("stability.csv" + ", three scripts" * c[".all"], " and their pictures" if c[".all"] else "")
+    check_promises(report, rows)
+
+
+def show_summaries(rows):
     """All cases of a sweep and method."""
-    groups = {}
-    for row in report.table_now.keyed():
-        groups.setdefault((row["sweep"], row["method"]), []).append(row)
-    table = Table(heads=[(head, "%.2g") for head in ("sweep", "method", "cases", "targets", "compared", "f32", "f64", "mixed",
-                                                     "rank", "decomposed", "wrong", "bits", "not finite")])
-    methods = {"KGC": 0, "MLS": 1, "RKPM": 2, "CMLS": 3, "CRKPM": 4, "SPH": 5}
-    sweeps = list(dict.fromkeys(sweep for sweep, _ in groups))
-    for (sweep, method), rows in sorted(groups.items(), key=lambda g: (sweeps.index(g[0][0]), methods[g[0][1]])):
-        ranks, shares = [row["rank"] for row in rows], [100 * row["decomposed"] for row in rows]
-        total = {key: sum(row[key] for row in rows)
-                 for key in ("targets", "compared", "wrong_ranks", "other_bits", "not_finite")}
-        ratios = [largest(ratio_of(row) for row in rows if row["precision"] == precision)
-                  for precision in ("f32", "f64", "mixed")]
-        ranked = max(ranks) > 0
-        table.rows.append([sweep, method, len(rows), total["targets"], total["compared"], *ratios,
-                           f"{min(ranks):.2f} - {max(ranks):.2f}" if ranked else None,
-                           f"{min(shares):.1f} - {max(shares):.1f}" if ranked else None,
-                           total["wrong_ranks"], total["other_bits"], total["not_finite"]])
-    table.print()
+    table = []
+    for sweep in dict.fromkeys(row["sweep"] for row in rows):
+        for method in METHODS:
+            cases = [row for row in rows if (row["sweep"], row["method"]) == (sweep, method)]
+            if not cases:
+                continue
+            ranks, shares = [row["rank"] for row in cases], [100 * row["decomposed"] for row in cases]
+            found = {"sweep": sweep, "method": method, "cases": len(cases), "ranks": None, "shares": None}
+            found |= {key: sum(row[key] for row in cases)
+                      for key in ("targets", "compared", "wrong_ranks", "other_bits", "not_finite")}
+            found |= {precision: largest(ratio_of(row) for row in cases if row["precision"] == precision)
+                      for precision in ("f32", "f64", "mixed")}
+            if max(ranks) > 0:
+                found |= {"ranks": f"{min(ranks):.2f} - {max(ranks):.2f}", "shares": f"{min(shares):.1f} - {max(shares):.1f}"}
+            table.append(found)
+    show(table, (("sweep", "sweep"), ("method", "method"), ("cases", "cases"), ("targets", "targets"),
+                 ("compared", "compared"), ("f32", "f32", "%.2g"), ("f64", "f64", "%.2g"), ("mixed", "mixed", "%.2g"),
+                 ("rank", "ranks"), ("decomposed", "shares"), ("wrong", "wrong_ranks"), ("bits", "other_bits"),
+                 ("not finite", "not_finite")))
 
 
-def places(report):
+def show_places(rows):
     """One sweep alone, place by place."""
     print("\nplaces     f32, but for the last columns; rank: particles of full rank, decomposed: shares in percent;\n"
           "           linear: mean error of a linear field, noise: largest |J| H of a random field; exact: the\n"
           "           largest error of a linear field at full rank, bound: the largest error of a random field\n"
           "           over its bound")
-    rows = report.table_now.keyed()
     wide = {(row["method"], row["policy"], row["at"]): row for row in rows if row["precision"] == "f64"}
-    table = Table(heads=[("sweep", None), ("at", "%.3g"), ("method", None), ("policy", None), ("targets", None),
-                         ("rank", "%.2f"), ("decomposed", "%.2f"), ("linear", "%.2g"), ("noise", "%.2g"),
-                         ("exact f32", "%.1g"), ("f64", "%.1g"), ("bound f32", "%.2g"), ("f64", "%.2g")])
+    table = []
     for row in rows:
         if row["precision"] == "f32":
             other = wide.get((row["method"], row["policy"], row["at"]), row)
-            table.rows.append([row["sweep"], row["at"], row["method"], row["policy"], row["targets"], 100 * row["full"],
-                               100 * row["decomposed"], row["linear_mean"], row["noise"], row["linear_full"],
-                               other["linear_full"], ratio_of(row), ratio_of(other)])
-    table.print()
+            table.append(row | {"full": 100 * row["full"], "decomposed": 100 * row["decomposed"], "wide": other["linear_full"],
+                                "bound": ratio_of(row), "wide bound": ratio_of(other)})
+    show(table, (("sweep", "sweep"), ("at", "at", "%.3g"), ("method", "method"), ("policy", "policy"), ("targets", "targets"),
+                 ("rank", "full", "%.2f"), ("decomposed", "decomposed", "%.2f"), ("linear", "linear_mean", "%.2g"),
+                 ("noise", "noise", "%.2g"), ("exact f32", "linear_full", "%.1g"), ("f64", "wide", "%.1g"),
+                 ("bound f32", "bound", "%.2g"), ("f64", "wide bound", "%.2g")))
 
 
-def promises(report, compared, *limits):
-    """What no case may break: a line on stderr each. NaN is never within."""
-    full, touched, full_2, touched_2 = map(float, limits)
-    rows = report.table_now.keyed()
+def check_promises(report, rows):
+    """What no case may break: a line on stderr each. NaN is never within. The limits of errors are those of the tests."""
+    c = report.context
 
     def require(row, holds, text):
         if not holds:
@@ -75,12 +94,12 @@ def promises(report, compared, *limits):
         sweep, rank = row["sweep"], row["rank"]
         require(row, row["not_finite"] == 0, f"{row['not_finite']} numbers are not finite")
         if sweep != "crowds":  # where sums of equal terms drift one way
-            require(row, row["ratio_full"] <= (full_2 if sweep in ORDER_2 else full),
+            require(row, row["ratio_full"] <= c[".full_2" if sweep in ORDER_2 else ".full"],
                     f"error {row['ratio_full']:g} times its bound at full rank")
-            require(row, row["ratio_touched"] <= (touched_2 if sweep in ORDER_2 else touched),
+            require(row, row["ratio_touched"] <= c[".touched_2" if sweep in ORDER_2 else ".touched"],
                     f"error {row['ratio_touched']:g} times its bound under the threshold")
         require(row, row["wrong_ranks"] == 0, f"{row['wrong_ranks']} ranks are not those of the reference")
-        require(row, row["compared"] > 0 or int(compared) == 0, "nothing was compared")
+        require(row, row["compared"] > 0 or c[".compared"] == 0, "nothing was compared")
         require(row, row["other_bits"] == 0, f"{row['other_bits']} targets changed with the unit of length")
         if sweep == "merging" and row["policy"] == "blend":
             # A continuous C changes by a 256th in a 256th of a step; rounding adds u |C|, the curve of f a little.
@@ -100,7 +119,7 @@ def promises(report, compared, *limits):
             # between its layers still grows, with the narrowest kernel (Wendland C6) down to q = 0.3.
             if following and all(following[key] == row[key] for key in ("sweep", "method", "policy", "precision")):
                 require(following, following["rank"] <= rank or
-                        report.context["support_spacings"] * math.sqrt(row["at"]) < 1 / 0.3,
+                        c["support_spacings"] * math.sqrt(row["at"]) < 1 / 0.3,
                         f"mean rank rises from {rank:g} to {following['rank']:g}")
             else:
                 require(row, rank <= 2, f"a plane has mean rank {rank:g}")

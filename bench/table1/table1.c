@@ -268,21 +268,20 @@ static void report_context(const struct table1 *table)
     const struct settings *settings = &table->settings;
     const struct particles *particles = &table->particles;
     const double count = particles->count;
-    REPORT("text", "particles_from", table->source.input ? table->source.input : "lattice");
+    report_text("particles_from", table->source.input ? table->source.input : "lattice");
     report_lattice(settings, particles->count, (double)table->neighbors.pairs / count);
     report_number("dimension", particles->dimension);
     report_number("bytes_per_particle", (double)table->neighbors.bytes / count);
-    REPORT("text", "kernel", kernel_names[settings->kernel]);
-    REPORT("text", "precision", precision_names[settings->precision]);
-    REPORT("text", "order", table->source.order == ORDER_SHUFFLED ? "shuffled" : "lattice");
+    report_text("kernel", kernel_names[settings->kernel]);
+    report_text("precision", precision_names[settings->precision]);
+    report_text("order", table->source.order == ORDER_SHUFFLED ? "shuffled" : "lattice");
     report_number("support_radius", table->scenes[0].scheme.support_radius);
     report_number("search_first_ms", table->first_search);
-    REPORT("text", ".flat", particles->flat);
-    REPORT("text", ".frames", particles->more ? "several" : "");
-    REPORT("text", ".columns", particles->columns);
-    REPORT("text", ".volume", particles->volume_origin);
-    REPORT("text", ".velocities", particles->velocities.count ? "the file's" : "");
-    REPORT("text", ".kernel", kernel_title(settings->kernel));
+    report_text(".flat", particles->flat);
+    report_text(".frames", particles->more ? "several" : "");
+    report_text(".columns", particles->columns);
+    report_text(".volume", particles->volume_origin);
+    report_text(".velocities", particles->velocities.count ? "the file's" : "");
     report_number(".side", table->source.side);
     report_number(".wanted", settings->particles);
     report_number(".volume_ratio", table->volume_ratio);
@@ -290,7 +289,7 @@ static void report_context(const struct table1 *table)
 
 static struct cell cell_error(const char *key, bool there, double error)
 {
-    return cell_if(there && !isnan(error), cell_number(NULL, key, NULL, error));
+    return cell_if(there && !isnan(error), cell_number(key, error));
 }
 
 static void add_method(const struct table1 *table, int method)
@@ -299,57 +298,35 @@ static void add_method(const struct table1 *table, int method)
     const struct samples *plain = &table->times[item_of(0, method, WORK_SEARCH)],
                          *kept = &table->times[item_of(1, method, WORK_SEARCH)];
     const bool corrected = one->method != SPHG_PLAIN;
-    TABLE_ROW(
-        cell_text(NULL, "method", method_names[one->method]),
-        cell_ms(NULL, "matrix", &plain[WORK_MATRICES]),
-        cell_ms(NULL, "gradient", &plain[WORK_GRADIENT]),
-        cell_ms(NULL, "fused", &plain[WORK_FUSED]),
-        cell_ms(NULL, "matrix+weights", &kept[WORK_MATRICES]),
-        cell_ms(NULL, "gradient+weights", &kept[WORK_GRADIENT]),
-        cell_ms(NULL, "fused+weights", &kept[WORK_FUSED]),
-        cell_error("gradient_error", true, one->gradient_error),
-        cell_error("fused_error", corrected, one->fused_error),
-        cell_error("kept_error", keeps_weights(one->method), one->kept_error),
-        cell_if(one->paper_matrix > 0, cell_number(NULL, "paper_matrix", NULL, one->paper_matrix)),
-        cell_number(NULL, "paper_gradient", NULL, one->paper_gradient),
-        cell_count(NULL, ".not_finite", one->not_finite),
-        cell_count(NULL, ".decomposed", one->stats.decomposed),
-        cell_count(NULL, ".rank0", one->stats.rank[0]),
-        cell_count(NULL, ".rank1", one->stats.rank[1]),
-        cell_count(NULL, ".rank2", one->stats.rank[2]),
-        cell_count(NULL, ".rank3", one->stats.rank[3]));
+    TABLE_ROW(cell_text("method", method_names[one->method]),
+              cell_ms("matrix", &plain[WORK_MATRICES]), cell_ms("gradient", &plain[WORK_GRADIENT]),
+              cell_ms("fused", &plain[WORK_FUSED]), cell_ms("matrix+weights", &kept[WORK_MATRICES]),
+              cell_ms("gradient+weights", &kept[WORK_GRADIENT]),
+              cell_ms("fused+weights", &kept[WORK_FUSED]),
+              cell_error("gradient_error", true, one->gradient_error),
+              cell_error("fused_error", corrected, one->fused_error),
+              cell_error("kept_error", keeps_weights(one->method), one->kept_error),
+              cell_if(one->paper_matrix > 0, cell_number("paper_matrix", one->paper_matrix)),
+              cell_number("paper_gradient", one->paper_gradient),
+              cell_count(".not_finite", one->not_finite),
+              cell_count(".decomposed", one->stats.decomposed),
+              cell_count(".rank0", one->stats.rank[0]), cell_count(".rank1", one->stats.rank[1]),
+              cell_count(".rank2", one->stats.rank[2]), cell_count(".rank3", one->stats.rank[3]));
 }
 
 static int show(const struct table1 *table)
 {
-    const struct settings *settings = &table->settings;
-    report_open("table1", settings);
+    report_open("table1", &table->settings);
     report_context(table);
-    REPORT("table", "table1");
-    TABLE_ROW(cell_ms(NULL, "search", &table->times[SEARCH]));
-    REPORT("times");
-    REPORT("show", "keep");
-    REPORT("table", "probe");
-    TABLE_ROW(cell_ms(NULL, "matrices", &table->times[PROBE + PROBE_MATRICES]),
-              cell_ms(NULL, "gradient", &table->times[PROBE + PROBE_GRADIENT]),
-              cell_count(NULL, "particles", table->probe->count));
-    REPORT("times");
-    REPORT("show", "keep");
-    REPORT("table", "table1");
+    table_begin("table1");
+    TABLE_ROW(cell_ms("search", &table->times[SEARCH]));
+    table_begin("probe");
+    TABLE_ROW(cell_ms("matrices", &table->times[PROBE + PROBE_MATRICES]),
+              cell_ms("gradient", &table->times[PROBE + PROBE_GRADIENT]),
+              cell_count("particles", table->probe->count));
+    table_begin("table1");
     for (int k = 0; k < METHODS; ++k)
         add_method(table, k);
-    REPORT("times");
-    REPORT("show", "table1");
-    if (settings->output) {
-        REPORT("csv", settings->output, "table1.csv");
-        REPORT("draw", settings->output, "table1.gp", "table1/table1.gp",
-               text_of("title = '%s particles, %s, H = %g spacings, search not included; "
-                       "'.machine.', %s, %s'",
-                       text_grouped(table->particles.count), kernel_title(settings->kernel),
-                       settings->support, library_isa(), precision_names[settings->precision]),
-               text_of("threads = %d", settings->threads));
-        REPORT("drawn", settings->output, "table1.csv, table1.gp", ", table1.png");
-    }
     return report_close();
 }
 
