@@ -8,32 +8,20 @@
 #include <omp.h>
 #else
 #include <unistd.h>
+#define omp_get_num_procs()   (int32_t) sysconf(_SC_NPROCESSORS_ONLN)
+#define omp_get_max_threads() 1
 #endif
 
 /* Not the affinity of this thread: with OMP_PROC_BIND that is one processor. */
 int32_t settings_processors(void)
 {
-#ifdef _OPENMP
     return omp_get_num_procs();
-#else
-    return (int32_t)sysconf(_SC_NPROCESSORS_ONLN);
-#endif
-}
-
-/* What the library uses if nothing is said. */
-static int32_t default_threads(void)
-{
-#ifdef _OPENMP
-    return omp_get_max_threads();
-#else
-    return 1;
-#endif
 }
 
 struct settings settings_default(int32_t particles, int32_t repetitions, const char *output)
 {
     return (struct settings){.particles = particles,
-                             .threads = default_threads(),
+                             .threads = omp_get_max_threads(),
                              .repetitions = repetitions,
                              .support = 2,
                              .jitter = 0.2,

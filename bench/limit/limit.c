@@ -142,18 +142,12 @@ static void add_arrangements(const struct limit *limit)
         const int k = n % LIMIT_ROOTS, stage = n / LIMIT_ROOTS % 2, set = n / SET_ITEMS;
         const int work = n / LIMIT_ROOTS / 2 % LIMIT_WORKS;
         const struct packed *packed = &limit->packed[set][0];
-        const struct samples *times = &limit->times[PACKED + n - k];
-        const bool newton_counts =
-            samples_median(&times[LIMIT_NEWTON]) < samples_median(&times[LIMIT_SQUARE_ROOT]);
-        TABLE_ROW(
-            cell_text("work", work_names[work]), cell_text("stage", stage_names[stage]),
-            cell_text("set", limit->sets[set]->name), cell_text("arrangement", arrangements[k]),
-            cell_ms("", &times[k]), cell_number("deviation", limit->deviation[set][work]),
-            cell_number("is_limit", k == newton_counts),
-            cell_number("percent_of_library", 100 * samples_median(&times[k]) /
-                                                  samples_median(&limit->times[LIBRARY + work])),
-            cell_number("vectors", (double)packed->data.slots / packed->lanes),
-            cell_number(".pairs", packed->pairs), cell_number(".kB", packed->kilobytes));
+        TABLE_ROW(cell_text("work", work_names[work]), cell_text("stage", stage_names[stage]),
+                  cell_text("set", limit->sets[set]->name),
+                  cell_text("arrangement", arrangements[k]), cell_ms("", &limit->times[PACKED + n]),
+                  cell_number("deviation", limit->deviation[set][work]),
+                  cell_number("vectors", (double)packed->data.slots / packed->lanes),
+                  cell_number(".pairs", packed->pairs), cell_number(".kB", packed->kilobytes));
     }
     table_begin("limit");
     for (int n = 0; n < 2 * LIMIT_WORKS; ++n)

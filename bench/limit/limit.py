@@ -22,7 +22,17 @@ def report_of(report):
     report.print_if_busy(probe[1][""])
     show(probe, (("probe", "work"), ("time", ""), ("error", "error_max", "%.1e"), ("off by", "matrix_deviation", "%.1e")))
     if limits:
+        compare(*limits)
         show_limits(c["isa"], sets, *limits)
+
+
+def compare(packed, library):
+    """Each arrangement beside the library; the faster one of a set counts."""
+    whole = {row["work"]: row[""].median() for row in library if row["stage"] == "library"}
+    for row in packed:
+        rivals = [other[""].median() for other in packed if all(other[key] == row[key] for key in ("work", "stage", "set"))]
+        row["percent_of_library"] = 100 * row[""].median() / whole[row["work"]]
+        row["is_limit"] = int(row[""].median() == min(rivals))
 
 
 def show_limits(isa, sets, packed, library):

@@ -27,11 +27,6 @@ int64_t count_not_finite(const struct numbers *found)
     return count;
 }
 
-const char *linear_field_formula(int32_t dimension)
-{
-    return dimension == 3 ? "v = (-y, x, 2z)" : "v = (-y, x)";
-}
-
 void linear_field_fill(const struct numbers *positions, struct numbers *field)
 {
     for (int32_t i = 0; i < positions->count; ++i) {

@@ -10,8 +10,6 @@ double norm_of(const struct numbers *found, int32_t item, const double *expected
 double relative_error(const struct numbers *found, int32_t item, const double *expected);
 int64_t count_not_finite(const struct numbers *found); /* numbers */
 
-const char *linear_field_formula(int32_t dimension); /* in words */
-
 /* At the positions as they are stored: exact in their precision. */
 void linear_field_fill(const struct numbers *positions, struct numbers *field);
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "names.h"
-#include <stddef.h>
+#include "numbers.h"
+#include <stdarg.h>
+#include <stdio.h>
 
 const char *const precision_names[] = {"f32", "f64", "mixed", NULL};
 
@@ -45,4 +47,23 @@ sphg_type position_type(enum precision precision)
 sphg_type field_type(enum precision precision)
 {
     return precision == PRECISION_F64 ? SPHG_F64 : SPHG_F32;
+}
+
+const char *text_of(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const size_t size = (size_t)vsnprintf(NULL, 0, format, arguments) + 1;
+    va_end(arguments);
+    char *text = allocate_to_the_end(1, size);
+    va_start(arguments, format);
+    vsnprintf(text, size, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+const char *text_grouped(int64_t value)
+{
+    return value < 1000 ? text_of("%d", (int)value)
+                        : text_of("%s %03d", text_grouped(value / 1000), (int)(value % 1000));
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What precisions, kernels and methods are called on the command line and in tables. */
+/* What precisions, kernels and methods are called on the command line and in tables; other texts.
+ */
 #ifndef SPHGRAD_BENCH_NAMES_H
 #define SPHGRAD_BENCH_NAMES_H
 #include <sphgrad/sphgrad.h>
@@ -19,4 +20,8 @@ extern const char *const isa_names[];
 const char *kernel_title(sphg_kernel kernel); /* as written in a sentence */
 sphg_type position_type(enum precision precision);
 sphg_type field_type(enum precision precision);
+
+/* These last to the end of the program. */
+__attribute__((format(printf, 1, 2))) const char *text_of(const char *format, ...);
+const char *text_grouped(int64_t value); /* 1234567 as "1 234 567" */
 #endif

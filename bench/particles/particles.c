@@ -4,7 +4,6 @@
 #include "lattice.h"
 #include "command_line.h"
 #include <math.h>
-#include <stdio.h>
 
 const double lattice_spacing = 1.0 / 128;
 
@@ -20,6 +19,8 @@ static struct particles create_lattice(const struct particle_source *source)
         .count = count,
         .dimension = source->dimension,
         .volume_origin = "spacing^3",
+        .columns = "",
+        .flat = "",
         .positions = numbers_create(position_type(source->precision), count, source->dimension),
         .volumes = numbers_create(field_type(source->precision), count, 1)};
     lattice_fill(&lattice, &particles.positions);
@@ -97,27 +98,26 @@ static void choose_axes(struct particles *particles, const struct csv *csv, int 
     }
     particles->dimension = missing || flat == 1 ? 2 : 3;
     if (missing)
-        snprintf(particles->flat, sizeof particles->flat, "2D: the file has no %c", "xyz"[last]);
+        particles->flat = text_of("2D: the file has no %c", "xyz"[last]);
     else if (flat == 1)
-        snprintf(particles->flat, sizeof particles->flat, "2D: all %c are %g", "xyz"[last],
-                 csv -> values[0][QUANTITY_X + last]);
+        particles->flat =
+            text_of("2D: all %c are %g", "xyz"[last], csv -> values[0][QUANTITY_X + last]);
     int count = 0;
     for (int axis = 0; axis < 3; ++axis)
         if (particles->dimension == 3 || axis != last)
             axes[count++] = axis;
 }
 
-static void describe_columns(struct particles *particles, const struct csv *csv)
+static const char *names_of_columns(const struct csv *csv)
 {
-    size_t length = 0;
-    const size_t size = sizeof particles->columns;
-    for (int quantity = 0; quantity < QUANTITIES && length < size; ++quantity) {
+    const char *names = "";
+    for (int quantity = 0; quantity < QUANTITIES; ++quantity) {
         char name[32];
         if (csv->columns[quantity] >= 0)
-            length += (size_t)snprintf(particles->columns + length, size - length, "%s%s",
-                                       length ? ", " : "",
-                                       csv_name(csv, (enum quantity)quantity, name, sizeof name));
+            names = text_of("%s%s%s", names, *names ? ", " : "",
+                            csv_name(csv, (enum quantity)quantity, name, sizeof name));
     }
+    return names;
 }
 
 static struct numbers read_vectors(const struct csv *csv, sphg_type type, int32_t dimension,
@@ -143,8 +143,8 @@ static struct particles read_particles(const struct particle_source *source)
     struct csv csv;
     if (!csv_open(&csv, source->input))
         command_line_refuse("%s", csv.message);
-    struct particles particles = {.volume_origin = choose_volumes(source, &csv)};
-    describe_columns(&particles, &csv);
+    struct particles particles = {.volume_origin = choose_volumes(source, &csv), .flat = ""};
+    particles.columns = names_of_columns(&csv);
     if (!csv_read(&csv))
         command_line_refuse("%s", csv.message);
     int axes[3] = {0, 1, 2};

@@ -25,8 +25,8 @@ struct particles {
     int32_t count, dimension;
     bool more;                 /* the file holds later moments, too, which are not read */
     const char *volume_origin; /* where the volumes are from, in words */
-    char columns[160];         /* of the file that were read */
-    char flat[64];             /* why it is in 2D; empty in 3D */
+    const char *columns;       /* of the file that were read */
+    const char *flat;          /* why it is in 2D; empty in 3D */
 };
 
 /* 1/128: a power of two, so that pairs at exactly r = H are exactly not neighbours. */

@@ -80,12 +80,18 @@ static void compare(sphg_context *context, int32_t side, bool shuffled)
     bench.theirs = create_lists(count, bench.room);
     lattice_fill(&lattice, &positions);
     rounds_measure(&(struct rounds){peer_name(), ROUNDS, 2, run, NULL, &bench}, times);
-    const struct spread a = samples_wall(&times[0]), b = samples_wall(&times[1]);
+    double ours[ROUNDS], theirs[ROUNDS];
+    for (int round = 0; round < ROUNDS; ++round) {
+        ours[round] = times[0].values[round].wall;
+        theirs[round] = times[1].values[round].wall;
+    }
+    const double our_median = median_of(ours, ROUNDS), their_median = median_of(theirs, ROUNDS);
     const int32_t different = different_rows(count, &bench.ours, &bench.theirs);
     printf(
         "%-18s %9d  %-8s  %9.1f (%.1f-%.1f)  sphgrad %s %9.1f (%.1f-%.1f)  %6.2f times as long, ",
-        peer_name(), count, shuffled ? "shuffled" : "lattice", b.median, b.min, b.max,
-        library_version(), a.median, a.min, a.max, b.median / a.median);
+        peer_name(), count, shuffled ? "shuffled" : "lattice", their_median, theirs[0],
+        theirs[ROUNDS - 1], library_version(), our_median, ours[0], ours[ROUNDS - 1],
+        their_median / our_median);
     printf(different ? "%d lists differ\n" : "same pairs\n", different);
 }
 

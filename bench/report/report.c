@@ -3,7 +3,6 @@
 #include "report.h"
 #include "library.h"
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -11,23 +10,16 @@
 #define COMMA "\037"
 static FILE *reader;
 
-static const char *name_of_compiler(void)
-{
 #if defined(__clang__)
-    return __VERSION__;
+static const char compiler[] = __VERSION__;
 #else
-    return "GCC " __VERSION__;
+static const char compiler[] = "GCC " __VERSION__;
 #endif
-}
-
-static const char *name_of_build(void)
-{
 #ifdef NDEBUG
-    return "release";
+static const char build[] = "release";
 #else
-    return "debug";
+static const char build[] = "debug";
 #endif
-}
 
 void report_open(const char *command, const struct settings *settings)
 {
@@ -41,10 +33,10 @@ void report_open(const char *command, const struct settings *settings)
     }
     fprintf(reader, "open" COMMA "%s\n", command);
     report_number("num_cpus", settings_processors());
-    report_text("library_build_type", name_of_build());
+    report_text("library_build_type", build);
     report_text("library_version", library_version());
     report_text("isa", library_isa());
-    report_text("compiler", name_of_compiler());
+    report_text("compiler", compiler);
     report_number("threads", settings->threads);
     report_text(".json", settings->json ? settings->json : "");
     report_text(".output", settings->output ? settings->output : "");
@@ -102,23 +94,4 @@ void table_add(const struct cell *cells, size_t count)
                     cell->samples->values[k].cpu);
     }
     fprintf(reader, "\n");
-}
-
-const char *text_of(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    const size_t size = (size_t)vsnprintf(NULL, 0, format, arguments) + 1;
-    va_end(arguments);
-    char *text = allocate_to_the_end(1, size);
-    va_start(arguments, format);
-    vsnprintf(text, size, format, arguments);
-    va_end(arguments);
-    return text;
-}
-
-const char *text_grouped(int64_t value)
-{
-    return value < 1000 ? text_of("%d", (int)value)
-                        : text_of("%s %03d", text_grouped(value / 1000), (int)(value % 1000));
 }

@@ -63,8 +63,4 @@ void table_add(const struct cell *cells, size_t count);
 #define TABLE_ROW(...)                                                                             \
     table_add((const struct cell[]){__VA_ARGS__},                                                  \
               sizeof((const struct cell[]){__VA_ARGS__}) / sizeof(struct cell))
-
-/* These last to the end of the program. */
-__attribute__((format(printf, 1, 2))) const char *text_of(const char *format, ...);
-const char *text_grouped(int64_t value); /* 1234567 as "1 234 567" */
 #endif

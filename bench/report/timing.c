@@ -2,12 +2,9 @@
 #define _POSIX_C_SOURCE 200809L /* clock_gettime, isatty */
 #include "timing.h"
 #include "numbers.h"
-#include <math.h>
 #include <stdarg.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -29,18 +26,6 @@ struct moment since(struct moment start)
     return (struct moment){end.wall - start.wall, end.cpu - start.cpu};
 }
 
-void samples_add(struct samples *samples, struct moment duration)
-{
-    if (samples->count == samples->capacity) {
-        struct moment *values = samples->values;
-        samples->capacity = 2 * samples->capacity + 8;
-        samples->values = allocate_to_the_end((size_t)samples->capacity, sizeof *values);
-        if (samples->count > 0)
-            memcpy(samples->values, values, (size_t)samples->count * sizeof *values);
-    }
-    samples->values[samples->count++] = duration;
-}
-
 static int compare_numbers(const void *left, const void *right)
 {
     const double a = *(const double *)left, b = *(const double *)right;
@@ -51,35 +36,6 @@ double median_of(double *values, int32_t count)
 {
     qsort(values, (size_t)count, sizeof *values, compare_numbers);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
-}
-
-static struct spread spread_of(const struct samples *samples, bool cpu)
-{
-    const int32_t count = samples->count;
-    if (count == 0)
-        return (struct spread){NAN, NAN, NAN};
-    double *values = allocate_or_exit((size_t)count, sizeof *values);
-    for (int32_t k = 0; k < count; ++k)
-        values[k] = cpu ? samples->values[k].cpu : samples->values[k].wall;
-    const double median = median_of(values, count);
-    const struct spread spread = {median, values[0], values[count - 1]};
-    free(values);
-    return spread;
-}
-
-struct spread samples_wall(const struct samples *samples)
-{
-    return spread_of(samples, false);
-}
-
-struct spread samples_cpu(const struct samples *samples)
-{
-    return spread_of(samples, true);
-}
-
-double samples_median(const struct samples *samples)
-{
-    return samples_wall(samples).median;
 }
 
 /* ---- On the terminal ------------------------------------------------------------------------- */
@@ -105,6 +61,8 @@ void progress_show(const char *format, ...)
 
 void rounds_measure(const struct rounds *rounds, struct samples *times)
 {
+    for (int32_t item = 0; item < rounds->items; ++item)
+        times[item].values = allocate_to_the_end((size_t)rounds->count, sizeof(struct moment));
     for (int32_t round = 0; round < rounds->count; ++round)
         for (int32_t item = 0; item < rounds->items; ++item) {
             progress_show("%s: round %d of %d, %d of %d", rounds->name, round + 1, rounds->count,
@@ -115,7 +73,8 @@ void rounds_measure(const struct rounds *rounds, struct samples *times)
             const double often = rounds->run(rounds->data, item);
             const struct moment all = since(start);
             if (often > 0)
-                samples_add(&times[item], (struct moment){all.wall / often, all.cpu / often});
+                times[item].values[times[item].count++] =
+                    (struct moment){all.wall / often, all.cpu / often};
         }
     progress_clear();
 }

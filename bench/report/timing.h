@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Clocks, rounds of measurements and their statistics; and one line on a terminal that says how far
- * they are. */
+/* Clocks and rounds of measurements; and one line on a terminal that says how far they are. */
 #ifndef SPHGRAD_BENCH_TIMING_H
 #define SPHGRAD_BENCH_TIMING_H
 #include <stdint.h>
@@ -9,23 +8,13 @@ struct moment {
     double wall, cpu; /* [ms]; cpu: of all threads of the process together */
 };
 
-/* {0} has none; there is room for as many as come. */
 struct samples {
     struct moment *values;
-    int32_t count, capacity;
-};
-
-struct spread {
-    double median, min, max;
+    int32_t count;
 };
 
 struct moment now(void);
 struct moment since(struct moment start);
-
-void samples_add(struct samples *samples, struct moment duration);
-struct spread samples_wall(const struct samples *samples); /* NaN if there are none */
-struct spread samples_cpu(const struct samples *samples);
-double samples_median(const struct samples *samples); /* wall [ms] */
 
 /* Items that are timed in turn, round by round, so that a slow second of the machine hits all. */
 struct rounds {
@@ -40,8 +29,7 @@ struct rounds {
 /* Adds a sample to times[item] for each round. Items that run 0 times are left out. */
 void rounds_measure(const struct rounds *rounds, struct samples *times);
 
-/* Sorts the values. */
-double median_of(double *values, int32_t count);
+double median_of(double *values, int32_t count); /* which are sorted then */
 
 /* Nothing at all in a pipe. */
 __attribute__((format(printf, 1, 2))) void progress_show(const char *format, ...);

@@ -399,13 +399,11 @@ static int show(const struct skip *skip)
     table_begin("skip");
     for (int k = 0; k < ROWS; ++k) {
         const struct samples *full = &skip->times[k][0], *part = &skip->times[k][1];
-        TABLE_ROW(
-            cell_text("group", rows[k].group), cell_text("what", rows[k].what),
-            cell_text(".against", rows[k].against), cell_ms("full", full), cell_ms("this", part),
-            cell_number("saved_percent", 100 * (1 - samples_median(part) / samples_median(full))),
-            cell_number("compared", is_compared(&rows[k])),
-            cell_count("targets_with_other_bits", skip->differences[k]),
-            cell_number("deviation", skip->deviation[k]));
+        TABLE_ROW(cell_text("group", rows[k].group), cell_text("what", rows[k].what),
+                  cell_text(".against", rows[k].against), cell_ms("full", full),
+                  cell_ms("this", part), cell_number("compared", is_compared(&rows[k])),
+                  cell_count("targets_with_other_bits", skip->differences[k]),
+                  cell_number("deviation", skip->deviation[k]));
     }
     return report_close();
 }

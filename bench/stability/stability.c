@@ -127,7 +127,7 @@ static void create_cases(struct stability *stability)
 static void add_case(struct stability_case *one)
 {
     const double targets = (double)one->targets;
-    const struct samples once = {&one->time, 1, 1};
+    const struct samples once = {&one->time, 1};
     TABLE_ROW(
         cell_text("sweep", sweep_names[one->sweep]),
         cell_text("policy", policy_names[one->scheme.policy]),
