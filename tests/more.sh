@@ -84,7 +84,7 @@ run_fuzz() {
 # tried, float_environment and kernels are not. It takes thirty to sixty times as long; SPHG_VALGRIND_AREAS
 # names other areas.
 run_valgrind() {
-    local areas=${SPHG_VALGRIND_AREAS:-errors request_errors metamorphic fields memory_failures
+    local areas=${SPHG_VALGRIND_AREAS:-errors request_errors metamorphic fig2_trigonometric memory_failures
         views small_matrices neighbors pairs crowds conservation classic exactness invariance}
     build_preset release -DSPHG_BUILD_TESTS=ON || return 1
     printf '%s\n' $areas | xargs -P "$(nproc)" -I AREA sh -c '

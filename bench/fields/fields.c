@@ -2,7 +2,7 @@
 /* The command `fields`: errors of plain and corrected derivatives on a square, Figs. 2 and 4 of
  * Westhofen, Jeske, Bender 2023, doi:10.1145/3606933; or on the particles of a file. */
 #include "commands.h"
-#include "fields_measure.h"
+#include "fig2_trigonometric_measure.h"
 #include "particles/particles.h"
 #include "report/report.h"
 

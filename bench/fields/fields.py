@@ -7,9 +7,11 @@ FIELDS = ("rotation", "trigonometric")
 ERRORS = (("boundary max", "boundary_max", "%.3e"), ("mean", "boundary_mean", "%.3e"), ("inside max", "inside_max", "%.3e"),
           ("mean", "inside_mean", "%.3e"), ("curl max", "curl_max", "%.3e"))
 # Pictures: a name, what draws it, the field, and which of its errors.
-PICTURES = (("fields_rotation", "panels", "rotation", "gradient"), ("fields_trigonometric", "panels", "trigonometric", "gradient"),
-            ("fields_curl", "panels", "rotation", "curl"), ("fields_convergence", "convergence", "trigonometric", ""),
-            ("fields_order", "order", "trigonometric", ""))
+PICTURES = (("fields_rotation", "fig2_trigonometric_draw", "rotation", "gradient"),
+            ("fields_trigonometric", "fig2_trigonometric_draw", "trigonometric", "gradient"),
+            ("fields_curl", "fig2_trigonometric_draw", "rotation", "curl"),
+            ("fields_convergence", "fig2_trigonometric_convergence_draw", "trigonometric", ""),
+            ("fields_order", "trigonometric_order_draw", "trigonometric", ""))
 
 
 def report_of(report):
@@ -28,7 +30,7 @@ def report_of(report):
     report.write_csv(rows, "fields_convergence.csv")
     for lattice, ending in LATTICES.items():
         for name, script, field, quantity in PICTURES:
-            report.draw(f"{name}{ending}.gp", ["fields/fields_common.gp", f"fields/fields_{script}.gp"],
+            report.draw(f"{name}{ending}.gp", ["fields/draw_common.gp", f"fields/{script}.gp"],
                         output=f"{name}{ending}.png", field=field, formula=c["." + field], lattice=lattice,
                         support=f"{c['.support']:g}", kernel=c[".kernel_title"], precision=c[".precision"],
                         side=c[".side"], quantity=quantity)

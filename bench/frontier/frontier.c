@@ -2,7 +2,7 @@
 /* The command `frontier`: run time against error of every way to a velocity gradient. A round goes
  * once through all ways. frontier.py finds who is on a frontier. */
 #include "commands.h"
-#include "fields/fields_measure.h"
+#include "fields/fig2_trigonometric_measure.h"
 #include "frontier_order.h"
 #include "particles/errors.h"
 #include "particles/particles.h"

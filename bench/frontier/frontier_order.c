@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Order 2 beside order 1, over H and N: time from positions to Jacobians against the error at the
  * boundary and inside, of one field on a cube of ever finer particles. */
-#include "fields/fields_measure.h"
+#include "fields/fig2_trigonometric_measure.h"
 #include "frontier_order.h"
 #include "report/report.h"
 

@@ -2,7 +2,7 @@
 /* The figures behind Figs. 2 and 4 of Westhofen, Jeske, Bender 2023, doi:10.1145/3606933, computed
  * by what `sphgrad-bench fields` runs and compared with those of an independent program. */
 #include "support/test.h"
-#include "../bench/fields/fields_measure.h"
+#include "../bench/fields/fig2_trigonometric_measure.h"
 #include <math.h>
 
 enum { SIZES = 3 };

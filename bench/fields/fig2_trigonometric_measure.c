@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fields_measure.h"
+#include "fig2_trigonometric_measure.h"
 #include "lattice.h"
 #include "particles/errors.h"
 #include <math.h>

@@ -3,8 +3,8 @@
  * fields on the square [-1, 1]^2 or the cube [-1, 1]^3, full of particles with nothing around, and
  * how far computed gradients and curls are from the true ones. Volumes are V_j = 1 / sum_k W_jk, j
  * included. Particles of a file may take the lattice's place. */
-#ifndef SPHGRAD_BENCH_FIELDS_MEASURE_H
-#define SPHGRAD_BENCH_FIELDS_MEASURE_H
+#ifndef SPHGRAD_BENCH_FIG2_TRIGONOMETRIC_MEASURE_H
+#define SPHGRAD_BENCH_FIG2_TRIGONOMETRIC_MEASURE_H
 #include "particles/names.h"
 #include "scene.h"
 
