@@ -128,10 +128,9 @@ struct skip {
     struct numbers fields[FIELDS], matrices;
     struct numbers outputs[2][TABLES]; /* of the full evaluation, and of the part */
     struct pattern patterns[ROWS];
-    bool positions_are_moved; /* in this round */
-    bool skin_was_spent;      /* a search with skin built its lists anew */
-    double
-        deviation[ROWS]; /* 0: same bits; else the largest |part - full|_F / |full|_F of a target */
+    bool positions_are_moved;      /* in this round */
+    bool skin_was_spent;           /* a search with skin built its lists anew */
+    double deviation[ROWS];        /* largest |part - full|_F / |full|_F of a target */
     int64_t differences[ROWS];     /* targets whose bits differ */
     struct samples times[ROWS][2]; /* of the full evaluation, and of the part */
 };

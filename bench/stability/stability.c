@@ -5,7 +5,6 @@
 #include "commands.h"
 #include "numbers.h"
 #include "report/report.h"
-#include "support/tolerances.h"
 #include <float.h>
 #include <math.h>
 
@@ -151,14 +150,6 @@ static void add_case(struct stability_case *one)
         cell_count("other_bits", one->other_bits), cell_ms("", &once));
 }
 
-/* The limits of errors are those of the tests. */
-#define LIMIT_OF(name, limit, measured, reason) limit_##name,
-enum { TEST_TOLERANCES(LIMIT_OF) };
-#undef LIMIT_OF
-#define LIMIT_OF(name, limit, measured, reason) limit,
-static const double limits[] = {TEST_TOLERANCES(LIMIT_OF)};
-#undef LIMIT_OF
-
 static int show(const struct stability *stability)
 {
     const struct settings *settings = &stability->settings;
@@ -173,10 +164,6 @@ static int show(const struct stability *stability)
     report_number(".compared", stability->compared);
     report_number(".all", stability->first == 0 && stability->last == SWEEPS - 1);
     report_number(".alone", stability->first == stability->last);
-    report_number(".full", limits[limit_oracle_ratio_full]);
-    report_number(".touched", limits[limit_oracle_ratio_touched]);
-    report_number(".full_2", limits[limit_quadratic_ratio_full]);
-    report_number(".touched_2", limits[limit_quadratic_ratio_touched]);
     table_begin("stability");
     for (int k = 0; k < stability->case_count; ++k)
         add_case(&stability->cases[k]);
