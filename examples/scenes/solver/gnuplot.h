@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Pictures by gnuplot. */
-#ifndef SHARED_GNUPLOT_H
-#define SHARED_GNUPLOT_H
+#ifndef SOLVER_GNUPLOT_H
+#define SOLVER_GNUPLOT_H
 #include <stdbool.h>
 
 /* Runs folder/script there. false: one line on stderr says why there is no picture. */
