@@ -17,8 +17,8 @@ enum {
     ITEMS_MOST = PACKED + LIMIT_SETS_MOST * SET_ITEMS
 };
 
-static const char *const stage_names[] = {"sums", "results"}, *const work_names[] = {
-                                                                  "matrices", "gradient", "fused"};
+static const char *const stage_names[] = {"sums", "results"};
+static const char *const work_names[] = {"matrices", "gradient", "fused"};
 
 struct limit {
     struct settings settings;

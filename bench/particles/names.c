@@ -27,18 +27,6 @@ const char *const isa_names[] = {
     [SPHG_ISA_BEST] = "best",        [SPHG_ISA_BASE] = "baseline", [SPHG_ISA_X86_V3] = "x86-64-v3",
     [SPHG_ISA_X86_V4] = "x86-64-v4", [SPHG_ISA_NEON] = "neon",     NULL};
 
-const char *kernel_title(sphg_kernel kernel)
-{
-    static const char *const titles[] = {[SPHG_CUBIC_SPLINE] = "cubic spline",
-                                         [SPHG_QUINTIC_SPLINE] = "quintic spline",
-                                         [SPHG_WENDLAND_C2] = "Wendland C2",
-                                         [SPHG_WENDLAND_C4] = "Wendland C4",
-                                         [SPHG_WENDLAND_C6] = "Wendland C6",
-                                         [SPHG_POLY6] = "poly6",
-                                         [SPHG_SPIKY] = "spiky"};
-    return titles[kernel];
-}
-
 sphg_type position_type(enum precision precision)
 {
     return precision == PRECISION_F32 ? SPHG_F32 : SPHG_F64;

@@ -17,7 +17,6 @@ extern const char *const kernel_names[]; /* as typed */
 extern const char *const method_names[]; /* as in the paper's tables */
 extern const char *const isa_names[];
 
-const char *kernel_title(sphg_kernel kernel); /* as written in a sentence */
 sphg_type position_type(enum precision precision);
 sphg_type field_type(enum precision precision);
 

@@ -41,7 +41,6 @@ void report_open(const char *command, const struct settings *settings)
     report_text(".json", settings->json ? settings->json : "");
     report_text(".output", settings->output ? settings->output : "");
     report_text(".kernel", kernel_names[settings->kernel]);
-    report_text(".kernel_title", kernel_title(settings->kernel));
     report_text(".precision", precision_names[settings->precision]);
     report_number(".particles", settings->particles);
     report_number(".repetitions", settings->repetitions);

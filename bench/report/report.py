@@ -12,6 +12,8 @@ import subprocess
 import sys
 
 COMMA = "\037"
+KERNELS = {"cubic": "cubic spline", "quintic": "quintic spline", "wendland-c2": "Wendland C2", "wendland-c4": "Wendland C4",
+           "wendland-c6": "Wendland C6"}  # in sentences
 BENCH = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
@@ -230,6 +232,7 @@ def main():
     report, command = read_report()
     if not command:
         return 1
+    report.context[".kernel_title"] = KERNELS.get(report.context[".kernel"], report.context[".kernel"])
     spec = importlib.util.spec_from_file_location(command, os.path.join(BENCH, command, command + ".py"))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

@@ -18,18 +18,11 @@ static void make_room(struct stability_cloud *cloud, int32_t more)
     cloud->x = rows;
 }
 
-static void add(struct stability_cloud *cloud, double x, double y, double z)
-{
-    double *row = cloud->x[cloud->count++];
-    row[0] = x, row[1] = y, row[2] = z;
-}
-
 static void add_moved(struct stability_cloud *cloud, const double place[3], double reach)
 {
-    double moved[3];
+    double *row = cloud->x[cloud->count++];
     for (int axis = 0; axis < 3; ++axis)
-        moved[axis] = place[axis] + draw(cloud, -reach, reach);
-    add(cloud, moved[0], moved[1], moved[2]);
+        row[axis] = place[axis] + draw(cloud, -reach, reach);
 }
 
 /* side^3 particles, each coordinate moved by up to `jitter`. */
@@ -81,8 +74,9 @@ static void add_in_ball(struct stability_cloud *cloud, const double middle[3], d
             square += offset[axis] * offset[axis];
         }
     } while (square >= 1);
-    add(cloud, middle[0] + radius * offset[0], middle[1] + radius * offset[1],
-        middle[2] + radius * offset[2]);
+    double *row = cloud->x[cloud->count++];
+    for (int axis = 0; axis < 3; ++axis)
+        row[axis] = middle[axis] + radius * offset[axis];
 }
 
 /* Targets so far apart that each sees nothing but its own `neighbours`, anywhere in its reach, or
@@ -97,7 +91,7 @@ static void add_balls(struct stability_cloud *cloud, int32_t balls, int32_t neig
             const double middle[3] = {apart * (ball % 4), apart * (ball / 4 % 4),
                                       apart * (ball / 16)};
             if (pass == 0)
-                add(cloud, middle[0], middle[1], middle[2]);
+                memcpy(cloud->x[cloud->count++], middle, sizeof middle);
             for (int32_t k = 0; pass == 1 && k < (places > 0 ? places : neighbours); ++k)
                 add_in_ball(cloud, middle, 0.9999 * cloud->support);
             for (int32_t k = 0; pass == 1 && k < places * (neighbours - 1); ++k)
