@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Shows what sphgrad-bench has measured: lines of words on standard input (report.h) become a Report, which COMMAND.py
 prints, draws and writes as CSV, and which is written as JSON in Google Benchmark's format here."""
+import contextlib
 import datetime
 import importlib.util
 import json
 import math
 import os
 import platform
+import signal
 import statistics
 import subprocess
 import sys
@@ -14,6 +16,7 @@ import sys
 COMMA = "\037"
 KERNELS = {"cubic": "cubic spline", "quintic": "quintic spline", "wendland-c2": "Wendland C2", "wendland-c4": "Wendland C4",
            "wendland-c6": "Wendland C6"}  # in sentences
+BROKEN_PROMISES = 3  # the exit status where all is shown, but not as it should be
 BENCH = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
@@ -93,6 +96,16 @@ def names_in_files(rows):
     return [name for name in rows[0] if not name.startswith(".")]
 
 
+@contextlib.contextmanager
+def open_to_write(path):
+    """Ends the program with one line where that fails."""
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            yield file
+    except OSError as problem:
+        sys.exit(f"sphgrad-bench: cannot write {path}: {problem.strerror}")
+
+
 class Report:
     """context, and tables: names, and rows that are dictionaries of texts, numbers, Times and None."""
 
@@ -141,7 +154,7 @@ class Report:
             return ["" if v is None else f"{v:.9g}" if isinstance(v, float) else f'"{v}"' if "," in str(v) else str(v)
                     for v in numbers]
 
-        with open(os.path.join(self.context[".output"], name), "w", encoding="utf-8") as file:
+        with open_to_write(os.path.join(self.context[".output"], name)) as file:
             print(f"# {self.context['cpu_model']}, {self.context['date']}", file=file)
             print(",".join("_".join(filter(None, (key, times[key], end))) for key in keys
                            for end in (("", "least", "most") if times[key] else ("",))), file=file)
@@ -151,7 +164,7 @@ class Report:
     def draw(self, script, parts, **assignments):
         """The script is made of assignments and files of bench, which read the CSV by the names of its columns."""
         folder = self.context[".output"]
-        with open(os.path.join(folder, script), "w", encoding="utf-8") as file:
+        with open_to_write(os.path.join(folder, script)) as file:
             for name, value in assignments.items():
                 print(name, "=", value if isinstance(value, int) else '"%s"' % value, file=file)
             for part in parts:
@@ -203,7 +216,7 @@ class Report:
 
     def write_json(self):
         context = {name: value for name, value in self.context.items() if not name.startswith(".")}
-        with open(self.context[".json"], "w", encoding="utf-8") as file:
+        with open_to_write(self.context[".json"]) as file:
             print(json.dumps({"context": context, "benchmarks": list(self.benchmarks())}, indent=1), file=file)
 
 
@@ -239,12 +252,10 @@ def main():
     module.report_of(report)
     if report.context[".json"]:
         report.write_json()
-    return int(report.failed)
+    return BROKEN_PROMISES if report.failed else 0
 
 
 if __name__ == "__main__":
     sys.modules["report"] = sys.modules["__main__"]
-    try:
-        sys.exit(main())
-    except OSError as problem:
-        sys.exit(f"sphgrad-bench: cannot write {problem.filename}: {problem.strerror}")
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # nobody reads on, as with `| head`
+    sys.exit(main())
