@@ -283,7 +283,6 @@ static void report_context(const struct table1 *table)
     report_text(".volume", particles->volume_origin);
     report_text(".velocities", particles->velocities.count ? "the file's" : "");
     report_number(".side", table->source.side);
-    report_number(".wanted", settings->particles);
     report_number(".volume_ratio", table->volume_ratio);
 }
 

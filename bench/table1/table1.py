@@ -46,7 +46,7 @@ def print_particles(c):
         print(f"           columns {c['.columns']}\n           {order} order, volume {c['.volume']}, timed field: " +
               (f"{c['.velocities']} velocities" if c[".velocities"] else formula(c)))
         return
-    nearest = f" (the cube nearest to {grouped(c['.wanted'])})" if c["particles"] != c[".wanted"] else ""
+    nearest = f" (the cube nearest to {grouped(c['.particles'])})" if c["particles"] != c[".particles"] else ""
     moved = f"each coordinate moved by up to {c['jitter']:g} spacings, " if c["jitter"] > 0 else ""
     print(f"particles  {grouped(c['particles'])} in a lattice of {' x '.join(3 * [str(c['.side'])])}{nearest}, spacing 1/128\n"
           f"           {moved}{c['order']} order, volume {c['.volume']}")
