@@ -21,11 +21,6 @@ static struct trial run_at(const struct bench *bench, double at, int exponent)
     return trial_run(bench->context, bench->one, &cloud, exponent);
 }
 
-static void compare(const struct bench *bench, const struct trial *trial)
-{
-    reference_compare(trial, bench->stability->compared, bench->one);
-}
-
 static void measure_scales(const struct bench *bench)
 {
     struct stability_case *one = bench->one;
@@ -35,7 +30,7 @@ static void measure_scales(const struct bench *bench)
         struct trial trial = run_at(bench, 0, exponent);
         one->other_bits += trial_other_bits(&trial, &base, exponent);
         if (k == 0 || k == one->steps)
-            compare(bench, &trial);
+            reference_compare(&trial, bench->stability->compared, bench->one);
     }
 }
 
@@ -64,7 +59,7 @@ static void measure_merging(const struct bench *bench)
     struct trial trial = run_at(bench, one->at, 0);
     double largest = 0;
     int32_t largest_at = 1;
-    compare(bench, &trial);
+    reference_compare(&trial, bench->stability->compared, bench->one);
     for (int32_t k = 1; k <= one->steps; ++k) {
         struct trial next = run_at(bench, one->at + k * step, 0);
         const double jump = trial_jump(&trial, &next);
@@ -85,7 +80,7 @@ static void measure_case(const struct bench *bench)
         measure_merging(bench);
     } else {
         const struct trial trial = run_at(bench, bench->one->at, 0);
-        compare(bench, &trial);
+        reference_compare(&trial, bench->stability->compared, bench->one);
     }
 }
 

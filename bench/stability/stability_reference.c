@@ -60,10 +60,14 @@ static uint8_t *choose_targets(const struct trial *trial, int32_t wanted)
 
 /* ---- Comparison ------------------------------------------------------------------------------ */
 
+/* Where rounding decides which way a threshold goes, nothing is compared. */
 static void note_ratio(const struct trial *trial, const quad *exact, quad bound, bool touched,
-                       int32_t i, struct stability_case *one)
+                       bool undecided, int32_t i, struct stability_case *one)
 {
     double found[9];
+    one->undecided += undecided;
+    if (undecided)
+        return;
     for (int k = 0; k < 9; ++k)
         found[k] = numbers_get(&trial->scene.jacobians, i, k);
     const double ratio = oracle_ratio(9, found, exact, bound);
@@ -87,26 +91,23 @@ static void compare_target(const struct trial *trial, const oracle_scene *scene,
                            const oracle_field *field, int32_t i, struct stability_case *one)
 {
     const oracle_point *point = oracle_at(reference, i);
+    const int rank = trial->ranks[i];
     ++one->compared;
-    if (trial->scene.scheme.order == 2) {
+    if (scene->scheme.order == 2) {
         const oracle_curved exact = oracle_apply_second(reference, field, i);
         const oracle_second *second = oracle_second_at(reference, i);
-        one->undecided += exact.undecided;
-        if (!exact.undecided)
-            note_ratio(trial, exact.gradient, exact.gradient_bound, exact.touched, i, one);
-        note_condition(point, one);
+        note_ratio(trial, exact.gradient, exact.gradient_bound, exact.touched, exact.undecided, i,
+                   one);
         one->wrong_ranks +=
-            trial->ranks[i] != second->rank && !oracle_second_rank_is_open(scene, point, second);
-        return;
+            rank != second->rank && !oracle_second_rank_is_open(scene, point, second);
+    } else {
+        const oracle_result exact = oracle_apply(reference, field, i);
+        note_ratio(trial, exact.gradient, exact.bound, exact.touched, exact.undecided, i, one);
+        one->wrong_ranks += scene->scheme.method != SPHG_PLAIN && rank != point->rank &&
+                            !oracle_rank_is_open(scene, point);
     }
-    const oracle_result exact = oracle_apply(reference, field, i);
-    one->undecided += exact.undecided;
-    if (!exact.undecided)
-        note_ratio(trial, exact.gradient, exact.bound, exact.touched, i, one);
-    if (trial->scene.scheme.method == SPHG_PLAIN)
-        return;
-    note_condition(point, one);
-    one->wrong_ranks += trial->ranks[i] != point->rank && !oracle_rank_is_open(scene, point);
+    if (scene->scheme.method != SPHG_PLAIN)
+        note_condition(point, one);
 }
 
 void reference_compare(const struct trial *trial, int32_t wanted, struct stability_case *one)
