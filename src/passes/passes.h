@@ -37,10 +37,12 @@ struct sphgi_passes {
     double (*largest_move)(const struct sphgi_periods *periods, const void *then, const void *now,
                            int64_t begin, int64_t end);
 
-    /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another. self: row of the
-     * first, if it is a source of the first run, those of the others follow; else -1. Each list is
-     * in the order of the runs and padded to SPHGI_PAD; there is room for all candidates and
-     * SPHGI_FIND_SLACK more. */
+    /* Lays the coordinates of runs side by side in find->staged, and says where each begins. */
+    void (*stage)(const struct sphgi_find *find, struct sphgi_runs *runs);
+    /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another, in runs that are
+     * staged. self: row of the first, if it is a source of the first run, those of the others
+     * follow; else -1. Each list is in the order of the runs and padded to SPHGI_PAD; there is room
+     * for all candidates and SPHGI_FIND_SLACK more. */
     void (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs, const void *targets,
                  int32_t count, int32_t self, uint32_t *const *lists, int32_t *lengths);
 

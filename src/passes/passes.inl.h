@@ -43,6 +43,7 @@
 #include "cells.inl.h"
 #include "octaves.inl.h"
 #include "packing.inl.h"
+#include "staging.inl.h"
 #include "search.inl.h"
 #include "search_by_radii.inl.h"
 #include "near.inl.h"
@@ -92,6 +93,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .weigh_both = weigh_both,
     .gather_offsets = gather_offsets,
     .keep_factors = keep_factors,
+    .stage = stage,
     .find = find,
     .bounds = bounds,
     .pack_by_radii = pack_by_radii,

@@ -22,11 +22,12 @@ struct sphgi_periods {
 };
 
 /* Runs of rows that hold the candidates of a cell; the first one holds the cell itself, from row
- * `own` on. */
+ * `own` on. Runs may be empty. */
 enum { SPHGI_RUNS_MOST = 128 };
 struct sphgi_runs {
     int32_t count, candidates, own;
     int32_t begin[SPHGI_RUNS_MOST], length[SPHGI_RUNS_MOST];
+    int32_t staged[SPHGI_RUNS_MOST]; /* where each begins among the coordinates that are staged */
 };
 
 /* Candidates of targets with radii of their own, packed into the scratch of the search. */
@@ -48,6 +49,9 @@ struct sphgi_find {
     bool periodic;
     uint32_t dummy;                  /* id that lists are padded with */
     void *scratch;                   /* for the candidates, see find.c */
+    void *staged;                    /* coordinates of runs: all x, all y and all z */
+    int32_t staged_room;             /* numbers between x and y, and between y and z */
+    void *scan;                      /* for the vectors that a run is scanned in */
     const uint64_t *pack_order;      /* [256]: the positions of the set bits, a byte each */
     const uint8_t (*pack_bytes)[16]; /* [256]: the same for items of two bytes */
 };

@@ -1,36 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Search: which sources are neighbours of a few targets that lie close together. Candidates
  * within reach of the targets' bounding box are packed once; each target then tests the packed ones
- * with the exact predicate. Testing first and packing in a second loop over the stored bits is a
- * fifth faster than both in one loop (docs/design.md). */
-
-/* ---- Coordinates ----------------------------------------------------------------------------- */
-
-struct three {
-    vec x, y, z;
-};
-
-/* Of LANES rows that follow one another. */
-SPHGI_TEMPLATE struct three coordinates_of(const real *rows)
-{
-#if VECTOR_BYTES == 64 && !REAL_IS_F64
-    const __m512i xy = _mm512_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29);
-    const __m512i z = _mm512_setr_epi32(2, 6, 10, 14, 18, 22, 26, 30, 2, 6, 10, 14, 18, 22, 26, 30);
-    const __m512 a = _mm512_loadu_ps(rows), b = _mm512_loadu_ps(rows + 16);
-    const __m512 c = _mm512_loadu_ps(rows + 32), d = _mm512_loadu_ps(rows + 48);
-    const __m512 low = _mm512_permutex2var_ps(a, xy, b), high = _mm512_permutex2var_ps(c, xy, d);
-    return (struct three){(vec)_mm512_shuffle_f32x4(low, high, 0x44),
-                          (vec)_mm512_shuffle_f32x4(low, high, 0xee),
-                          (vec)_mm512_shuffle_f32x4(_mm512_permutex2var_ps(a, z, b),
-                                                    _mm512_permutex2var_ps(c, z, d), 0x44)};
-#else
-    const real *row[LANES];
-    for (int l = 0; l < LANES; ++l)
-        row[l] = rows + SPHGI_ROW * l;
-    const struct four v = transpose(row);
-    return (struct three){v.x, v.y, v.z};
-#endif
-}
+ * with the exact predicate. Either is done in two loops, the first of which tests and the second
+ * packs by the bits that were stored: loops without a branch are faster than one with both
+ * (docs/design.md). */
 
 /* ---- Candidates ----------------------------------------------------------------------------- */
 
@@ -71,6 +44,16 @@ struct box {
 /* Margins: rounding of the predicate, of distances to the box and of the box itself is relative, a
  * few units in 2^-24, against 2^-16 here; between periodic images it is absolute: the slack. */
 /* *a becomes the smaller, or the larger, of both. */
+#if defined(__SSE2__) && !REAL_IS_F64
+SPHGI_TEMPLATE void lower_quad(quad *a, const quad *b)
+{
+    *a = (quad)_mm_min_ps((__m128)*a, (__m128)*b);
+}
+SPHGI_TEMPLATE void raise_quad(quad *a, const quad *b)
+{
+    *a = (quad)_mm_max_ps((__m128)*a, (__m128)*b);
+}
+#else
 SPHGI_TEMPLATE void lower_quad(quad *a, const quad *b)
 {
     const quad_bits first = (quad_bits)(*a < *b);
@@ -82,6 +65,7 @@ SPHGI_TEMPLATE void raise_quad(quad *a, const quad *b)
     const quad_bits first = (quad_bits)(*a > *b);
     *a = (quad)((first & (quad_bits)*a) | (~first & (quad_bits)*b));
 }
+#endif
 
 SPHGI_TEMPLATE struct box bounding_box(const struct sphgi_find *find, const real *targets,
                                        int32_t count)
@@ -156,45 +140,36 @@ SPHGI_TEMPLATE void pad_candidates(const struct candidates *c, int32_t n)
     }
 }
 
-/* Packs the sources [begin, end) behind the n candidates there are; returns their new number. */
-SPHGI_TEMPLATE int32_t collect_run(const struct sphgi_find *find, const struct candidates *c,
-                                   const struct box *box, int32_t begin, int32_t end, int32_t n,
-                                   const struct wraps *w, bool periodic)
+/* Which of the vectors' lanes lie near the box. */
+SPHGI_TEMPLATE void scan_box(const struct sphgi_find *find, const struct scan *scan,
+                             const struct box *box, const struct wraps *w, bool periodic)
 {
-    const real *rows = (const real *)find->rows + SPHGI_ROW * (ptrdiff_t)begin;
-    mask near = {0};
-    int32_t k = begin;
-    for (; k < end; k += LANES, rows += SPHGI_ROW * LANES) {
-        const struct three at = coordinates_of(rows);
-        near = near_box(box, &at, w, periodic);
-        const packing moved = packing_of(find, near);
-        pack_places(c, n, &at, moved);
-        number_ids(c->ids + n, SPHGI_ID_STEP * (uint32_t)k, moved);
-        n += lanes_in(near);
+    for (int32_t v = 0; v < scan->count; ++v) {
+        const struct three at = staged_at(find, scan->at[v]);
+        scan->lanes[v] &= (uint16_t)bits_of(near_box(box, &at, w, periodic));
     }
-    return n - lanes_in(near & ~first_lanes(LANES - (k - end))); /* read beyond the end */
 }
 
 SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
                                          const struct sphgi_runs *runs, const struct box *box,
                                          int32_t self, const struct wraps *w, bool periodic)
 {
-    struct candidates c = carve(find->scratch, runs->candidates, false);
+    const struct candidates c = carve(find->scratch, runs->candidates, false);
+    const struct scan scan = scan_of(find, runs);
     int32_t n = 0;
-    c.self = -1;
-    for (int32_t run = 0; run < runs->count; ++run) {
-        int32_t begin = runs->begin[run];
-        const int32_t end = begin + runs->length[run];
-        if (!run && self >= 0) { /* in two parts, to see where the targets stand */
-            n = collect_run(find, &c, box, begin, self, n, w, periodic);
-            c.self = n;
-            begin = self;
-        }
-        n = collect_run(find, &c, box, begin, end, n, w, periodic);
+    scan_box(find, &scan, box, w, periodic);
+    for (int32_t v = 0; v < scan.count; ++v) {
+        const struct three at = staged_at(find, scan.at[v]);
+        const packing moved = packing_of_bits(find, scan.lanes[v]);
+        pack_places(&c, n, &at, moved);
+        number_ids(c.ids + n, SPHGI_ID_STEP * (uint32_t)scan.row[v], moved);
+        n += __builtin_popcount(scan.lanes[v]);
     }
-    c.count = (int32_t)sphgi_round_up((size_t)n, TESTED);
     pad_candidates(&c, n);
-    return c;
+    struct candidates all = c;
+    all.count = (int32_t)sphgi_round_up((size_t)n, TESTED);
+    all.self = self < 0 ? -1 : lanes_before(&scan, runs->length[0], self);
+    return all;
 }
 
 /* ---- Neighbours ----------------------------------------------------------------------------- */

@@ -6,8 +6,9 @@
 enum {
     CROWDED = -1,
     TOGETHER = 8, /* targets of an octave: more of them stand too far apart to share candidates */
-    SLOT = 512 /* candidates of a list in a slot that is not wide. Slots stand close together: the
-                  few lines that lists take of each must stay in the L1 cache */
+    SLOT = 512,   /* candidates of a list in a slot that is not wide. Slots stand close together:
+                     the few lines that lists take of each must stay in the L1 cache */
+    STAGED = 3072 /* candidates of several cells: their coordinates must stay there, too */
 };
 
 /* ---- Scratch -------------------------------------------------------------------------------- */
@@ -19,6 +20,11 @@ static int32_t room_of(const sphg_neighbors *neighbors)
     return sphgi_min32(neighbors->source_count, wide * SPHGI_CANDIDATES_MOST);
 }
 
+static size_t staged_room(const sphg_neighbors *neighbors)
+{
+    return sphgi_round_up((size_t)room_of(neighbors) + SPHGI_LANES_MOST, SPHGI_LANES_MOST);
+}
+
 static size_t candidate_bytes(const sphg_neighbors *neighbors)
 {
     const size_t size = sphgi_size_of_type(neighbors->position_type);
@@ -26,6 +32,22 @@ static size_t candidate_bytes(const sphg_neighbors *neighbors)
     const size_t numbers = neighbors->graded ? 4 : 3, sets = neighbors->graded ? 2 : 1;
     return sphgi_round_up(sets * candidates * (numbers * size + sizeof(uint32_t) + 1),
                           SPHGI_ALIGNMENT);
+}
+
+/* Coordinates of the candidates of some cells, and the vectors in which those of one are scanned:
+ * of two lanes at least, with nine numbers or less each. */
+static size_t staged_bytes(const sphg_neighbors *neighbors)
+{
+    const size_t size = sphgi_size_of_type(neighbors->position_type);
+    return neighbors->graded ? 0
+                             : sphgi_round_up(3 * size * staged_room(neighbors), SPHGI_ALIGNMENT);
+}
+
+static size_t scan_bytes(const sphg_neighbors *neighbors)
+{
+    const size_t vectors = (size_t)room_of(neighbors) / 2 + SPHGI_RUNS_MOST;
+    const size_t each = 2 * sizeof(int32_t) + sizeof(uint16_t);
+    return neighbors->graded ? 0 : sphgi_round_up(vectors * each, SPHGI_ALIGNMENT);
 }
 
 static size_t nearby_bytes(const sphg_neighbors *neighbors)
@@ -47,7 +69,8 @@ static size_t slot_bytes(const sphg_neighbors *neighbors)
 
 size_t sphgi_finder_size(const sphg_neighbors *neighbors)
 {
-    return candidate_bytes(neighbors) + nearby_bytes(neighbors) + slot_bytes(neighbors);
+    return candidate_bytes(neighbors) + staged_bytes(neighbors) + scan_bytes(neighbors) +
+           nearby_bytes(neighbors) + slot_bytes(neighbors);
 }
 
 void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
@@ -66,7 +89,10 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
                                        .pack_order = context->pack_order,
                                        .pack_bytes = context->pack_bytes};
     memcpy(finder->find.period, neighbors->period, sizeof finder->find.period);
-    finder->nearby = (void *)((char *)memory + candidate_bytes(neighbors));
+    finder->find.staged = (char *)memory + candidate_bytes(neighbors);
+    finder->find.staged_room = (int32_t)staged_room(neighbors);
+    finder->find.scan = (char *)finder->find.staged + staged_bytes(neighbors);
+    finder->nearby = (void *)((char *)finder->find.scan + scan_bytes(neighbors));
     finder->slots = (uint32_t *)(void *)((char *)finder->nearby + nearby_bytes(neighbors));
     finder->wide_slots = finder->slots + SPHGI_LISTS_MOST * slot_of(SLOT);
     for (int32_t s = 0; s < SPHGI_LISTS_MOST; ++s)
@@ -81,6 +107,7 @@ static void enter_block(struct sphgi_finder *f, int32_t block)
     const struct sphgi_grid *targets = sphgi_target_grid(f->neighbors);
     f->block = block;
     f->cell = 0;
+    f->staged_cells[0] = f->staged_cells[1] = 0;
     sphgi_cell_starts(targets, block, f->start);
     if (!f->neighbors->graded)
         sphgi_halo_of(&f->neighbors->sources, targets->blocks[block].key, &f->around);
@@ -272,6 +299,36 @@ static void find_target_in_octaves(struct sphgi_finder *f, int32_t target, sphgi
     }
 }
 
+/* ---- Cells ---------------------------------------------------------------------------------- */
+
+/* Those of the cell and, as far as they fit, of the cells behind it, so that each row is turned
+ * once for all that look at it. */
+static void stage_cells(struct sphgi_finder *f)
+{
+    const struct sphgi_raster *raster = &f->neighbors->sources.raster;
+    const int32_t from = f->cell, most = sphgi_min32(STAGED, f->room);
+    int32_t to = f->around.cells;
+    sphgi_candidate_runs(raster, &f->around, from, to, &f->staged);
+    while (f->staged.candidates > most && to > from + 1) {
+        to = from + (to - from) / 2;
+        sphgi_candidate_runs(raster, &f->around, from, to, &f->staged);
+    }
+    f->staged_cells[0] = from;
+    f->staged_cells[1] = to;
+    if (f->staged.candidates <= f->room)
+        f->passes->stage(&f->find, &f->staged);
+}
+
+/* The candidates of the cell, staged unless they are too many. */
+static void candidates_of_cell(struct sphgi_finder *f, struct sphgi_runs *runs)
+{
+    if (f->cell < f->staged_cells[0] || f->cell >= f->staged_cells[1])
+        stage_cells(f);
+    sphgi_candidate_runs(&f->neighbors->sources.raster, &f->around, f->cell, f->cell + 1, runs);
+    for (int32_t k = 0; k < runs->count; ++k)
+        runs->staged[k] = f->staged.staged[k] + runs->begin[k] - f->staged.begin[k];
+}
+
 /* Lists for what is left of the cell of the next target, as many as are found at once. */
 static void find_some(struct sphgi_finder *f)
 {
@@ -284,7 +341,7 @@ static void find_some(struct sphgi_finder *f)
         find_in_octaves(f);
         return;
     }
-    sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, &runs);
+    candidates_of_cell(f, &runs);
     const int32_t count = sphgi_min32(f->start[f->cell + 1] - f->next, SPHGI_FIND_MOST);
     open_slots(f, count, runs.candidates, lists);
     if (runs.candidates <= f->room) {
@@ -328,7 +385,8 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
         return;
     }
     enter_cell(f);
-    sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, &runs);
+    sphgi_candidate_runs(&n->sources.raster, &f->around, f->cell, f->cell + 1, &runs);
+    f->staged_cells[0] = f->staged_cells[1] = 0;
     const int32_t self = row_of_self(f, &runs, target);
     uint32_t *ids = wide_slot(f);
     for (int32_t run = 0; run < runs.count; ++run)
@@ -336,9 +394,10 @@ void sphgi_find_target(struct sphgi_finder *f, int32_t target, sphgi_take *take,
             const int32_t begin = runs.begin[run] + at;
             const int32_t count = sphgi_min32(runs.length[run] - at, f->room);
             const bool inside = self >= begin && self < begin + count;
-            const struct sphgi_runs slice = {
+            struct sphgi_runs slice = {
                 .count = 1, .candidates = count, .own = begin, .begin = {begin}, .length = {count}};
             int32_t found;
+            f->passes->stage(&f->find, &slice);
             f->passes->find(&f->find, &slice, sphgi_target_row(n, target), 1, inside ? self : -1,
                             &ids, &found);
             take(data, ids, found);

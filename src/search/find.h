@@ -23,6 +23,8 @@ struct sphgi_finder {
     int32_t block, cell; /* where it is; block -1: nowhere yet */
     int32_t start[SPHGI_BLOCK_CELLS + 1];
     struct sphgi_halo around;
+    struct sphgi_runs staged; /* of the cells staged_cells[0] .. [1] - 1 of the block */
+    int32_t staged_cells[2];
     struct sphgi_nearby
         *nearby; /* of octaves: blocks near the targets looked[0] .. looked[1] - 1 */
     int32_t looked[2];

@@ -103,26 +103,25 @@ void sphgi_halo_of(const struct sphgi_grid *sources, struct sphgi_key block,
 
 static void add_run(struct sphgi_runs *runs, int32_t begin, int32_t end)
 {
-    if (end <= begin && runs->count) /* the first run holds the cell itself, even if it is empty */
-        return;
     runs->begin[runs->count] = begin;
     runs->length[runs->count++] = end - begin;
     runs->candidates += end - begin;
 }
 
 void sphgi_candidate_runs(const struct sphgi_raster *raster, const struct sphgi_halo *around,
-                          int32_t cell, struct sphgi_runs *runs)
+                          int32_t from, int32_t to, struct sphgi_runs *runs)
 {
     const struct sphgi_axis *x = &raster->axis[0];
-    const int32_t low = cell + x->low, high = cell + x->high;
+    const int32_t low = from + x->low, high = to - 1 + x->high;
+    const bool before = low < 0, behind = high == around->cells;
     runs->count = runs->candidates = 0;
-    runs->own = around->bar[0].first[cell + 1];
+    runs->own = around->bar[0].first[from + 1];
     for (int32_t b = 0; b < around->bars; ++b) {
         const struct sphgi_bar *bar = &around->bar[b];
         add_run(runs, bar->first[low + 1], bar->first[high + 2]);
-        if (x->cells && low < 0)
-            add_run(runs, bar->before[0], bar->before[1]);
-        if (x->cells && high == around->cells)
-            add_run(runs, bar->behind[0], bar->behind[1]);
+        if (x->cells) {
+            add_run(runs, bar->before[0], before ? bar->before[1] : bar->before[0]);
+            add_run(runs, bar->behind[0], behind ? bar->behind[1] : bar->behind[0]);
+        }
     }
 }

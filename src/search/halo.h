@@ -24,8 +24,9 @@ struct sphgi_halo {
 void sphgi_halo_of(const struct sphgi_grid *sources, struct sphgi_key block,
                    struct sphgi_halo *around);
 
-/* The rows of the candidates of a cell. */
+/* The rows of the candidates of the cells [from, to). For every such range of a block there are as
+ * many runs, each of which holds those of the cells in it. */
 void sphgi_candidate_runs(const struct sphgi_raster *raster, const struct sphgi_halo *around,
-                          int32_t cell, struct sphgi_runs *runs);
+                          int32_t from, int32_t to, struct sphgi_runs *runs);
 
 #endif
