@@ -48,13 +48,86 @@ enum { TURNED = 4 };
 #define turn_lanes turn_four
 #endif
 
-static void weave(const uint32_t *const *lists, const int32_t *count, int32_t steps, uint32_t dummy,
-                  uint32_t *to)
+/* Lists that all reach as far as the longest, padding counted, many steps at a time. */
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+SPHGI_TEMPLATE void turn_pairs(const __m512i *a, __m512i *b, int apart)
+{
+    for (int i = 0; i < SPHGI_GROUP; ++i)
+        if (!(i & apart)) {
+            b[i] = apart == 1 ? _mm512_unpacklo_epi32(a[i], a[i + 1])
+                              : _mm512_unpacklo_epi64(a[i], a[i + 2]);
+            b[i + apart] = apart == 1 ? _mm512_unpackhi_epi32(a[i], a[i + 1])
+                                      : _mm512_unpackhi_epi64(a[i], a[i + 2]);
+        }
+}
+
+static void weave_padded(const uint32_t *const *lists, int32_t steps, uint32_t *to)
+{
+    for (int32_t k = 0; k < steps; k += 16) {
+        __m512i a[SPHGI_GROUP], b[SPHGI_GROUP];
+        for (int l = 0; l < SPHGI_GROUP; ++l)
+            a[l] = _mm512_loadu_si512(lists[l] + k);
+        turn_pairs(a, b, 1);
+        turn_pairs(b, a, 2);
+        /* a[4 f + s]: of lists 4 f .. 4 f + 3, a quarter each of steps s', s' + 4, ... */
+        for (int s = 0; s < 4; ++s, to += SPHGI_GROUP) {
+            const int of[4] = {0, 2, 1, 3};
+            const __m512i *q = a + of[s];
+            const __m512i low = _mm512_shuffle_i32x4(q[0], q[4], 0x88);
+            const __m512i low_odd = _mm512_shuffle_i32x4(q[0], q[4], 0xdd);
+            const __m512i high = _mm512_shuffle_i32x4(q[8], q[12], 0x88);
+            const __m512i high_odd = _mm512_shuffle_i32x4(q[8], q[12], 0xdd);
+            _mm512_storeu_si512(to, _mm512_shuffle_i32x4(low, high, 0x88));
+            _mm512_storeu_si512(to + 4 * SPHGI_GROUP,
+                                _mm512_shuffle_i32x4(low_odd, high_odd, 0x88));
+            _mm512_storeu_si512(to + 8 * SPHGI_GROUP, _mm512_shuffle_i32x4(low, high, 0xdd));
+            _mm512_storeu_si512(to + 12 * SPHGI_GROUP,
+                                _mm512_shuffle_i32x4(low_odd, high_odd, 0xdd));
+        }
+        to += 12 * SPHGI_GROUP;
+    }
+}
+#else
+static void weave_padded(const uint32_t *const *lists, int32_t steps, uint32_t *to)
+{
+    for (int32_t k = 0; k < steps; k += 4, to += 4 * SPHGI_GROUP)
+        for (int32_t l = 0; l < SPHGI_GROUP; l += TURNED)
+            turn_lanes(lists + l, NULL, k, NULL, SPHGI_GROUP, to + l);
+}
+#endif
+
+static void weave(const uint32_t *const *lists, const int32_t *count, int32_t steps, int32_t padded,
+                  uint32_t dummy, uint32_t *to)
 {
     const four_ids none = (four_ids){0} + dummy;
+    int32_t shortest = count[0];
+    for (int32_t l = 1; l < SPHGI_GROUP; ++l)
+        shortest = sphgi_min32(shortest, count[l]);
+    if (steps + 3 <= shortest + padded) {
+        weave_padded(lists, steps, to);
+        return;
+    }
     for (int32_t k = 0; k < steps; k += 4, to += 4 * SPHGI_GROUP)
         for (int32_t l = 0; l < SPHGI_GROUP; l += TURNED)
             turn_lanes(lists + l, count + l, k, &none, SPHGI_GROUP, to + l);
+}
+
+/* Memory that will not be read soon is written past the caches, which need not read it first then.
+ * Whole lines, in full. */
+static void stream(const uint32_t *from, size_t count, uint32_t *to)
+{
+#if VECTOR_BYTES == 64
+    for (size_t k = 0; k < count; k += 16)
+        _mm512_stream_si512((void *)(to + k), _mm512_loadu_si512(from + k));
+    _mm_sfence();
+#elif defined(__SSE2__)
+    for (size_t k = 0; k < count; k += 4)
+        _mm_stream_si128((__m128i *)(void *)(to + k),
+                         _mm_loadu_si128((const __m128i *)(const void *)(from + k)));
+    _mm_sfence();
+#else
+    memcpy(to, from, count * sizeof *to);
+#endif
 }
 
 SPHGI_TEMPLATE bool follow_one_another(const struct sphgi_lane_lists *lists)

@@ -41,8 +41,8 @@ struct sphgi_passes {
     void (*stage)(const struct sphgi_find *find, struct sphgi_runs *runs);
     /* Search for up to SPHGI_FIND_MOST targets, whose rows follow one another, in runs that are
      * staged. self: row of the first, if it is a source of the first run, those of the others
-     * follow; else -1. Each list is in the order of the runs and padded to SPHGI_PAD; there is room
-     * for all candidates and SPHGI_FIND_SLACK more. */
+     * follow; else -1. Each list is in the order of the runs, and SPHGI_FIND_PAD dummies follow;
+     * there is room for all candidates and SPHGI_FIND_SLACK more. */
     void (*find)(const struct sphgi_find *find, const struct sphgi_runs *runs, const void *targets,
                  int32_t count, int32_t self, uint32_t *const *lists, int32_t *lengths);
 
@@ -91,10 +91,12 @@ struct sphgi_passes {
                            const int32_t *targets, struct sphgi_tile *tile);
     void (*keep_factors)(const struct sphgi_tile *tile, void *kept);
 
-    /* SPHGI_GROUP lists padded to four with the dummy, side by side: [step][list]. Steps are
-     * rounded up to four. */
-    void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, uint32_t dummy,
-                  uint32_t *to);
+    /* SPHGI_GROUP lists side by side: [step][list]. Each is padded to four with the dummy or, if
+     * that is not 0, has `padded` dummies behind it; then up to sixteen steps more are written. */
+    void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, int32_t padded,
+                  uint32_t dummy, uint32_t *to);
+    /* Copies ids to whole lines of memory, past the caches where the machine can. */
+    void (*stream)(const uint32_t *from, size_t count, uint32_t *to);
     /* Steps [begin, begin + tile->steps) of the lists become the ids of the tile. Lists with a
      * stride of 1 are padded to a multiple of four with the dummy. */
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,

@@ -248,7 +248,8 @@ SPHGI_TEMPLATE void test_few(const struct candidates *c, const struct seeker *ta
     }
 }
 
-typedef uint32_t padding __attribute__((vector_size(4 * SPHGI_PAD), aligned(4), may_alias));
+typedef uint32_t padding __attribute__((vector_size(VECTOR_BYTES), aligned(4), may_alias));
+enum { PADDING = VECTOR_BYTES / 4 };
 
 /* No target is its own neighbour. */
 SPHGI_TEMPLATE void leave_out_selves(const struct candidates *c, int32_t first, int32_t many)
@@ -271,7 +272,8 @@ SPHGI_TEMPLATE void pack_few(const struct sphgi_find *find, const struct candida
         for (int32_t t = 0; t < many; ++t)
             to[t] = pack_tested(find, to[t], c->ids + k * TESTED, c->bits[t * stride + k]);
     for (int32_t t = 0; t < many; ++t) {
-        *(padding *)to[t] = (padding){0} + find->dummy;
+        for (int32_t k = 0; k < SPHGI_FIND_PAD; k += PADDING)
+            *(padding *)(to[t] + k) = (padding){0} + find->dummy;
         lengths[t] = (int32_t)(to[t] - lists[t]);
     }
 }

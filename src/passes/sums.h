@@ -31,8 +31,8 @@ enum {
     SPHGI_WIDTH = 32,                                 /* targets that are finished together */
     SPHGI_GROUP = 16,                                 /* targets whose lists stand side by side */
     SPHGI_FIND_MOST = 16,                             /* targets that share one set of candidates */
-    SPHGI_FIND_SLACK =
-        2 * SPHGI_LANES_MOST /* candidates, and ids, that are written beyond the last */
+    SPHGI_FIND_PAD = 2 * SPHGI_LANES_MOST,            /* dummies behind each list that is found */
+    SPHGI_FIND_SLACK = SPHGI_FIND_PAD /* candidates, and ids, that are written beyond the last */
 };
 
 /* Arrays of a tile, SPHGI_TILE numbers each. */

@@ -10,7 +10,9 @@ enum {
     SAMPLE = 64,           /* one group of so many is looked at for a first guess */
     WAITING_IDS = 1 << 14, /* of groups that are stored together: a copy at once does not read first
                               what it overwrites */
-    WAITING_GROUPS = 256
+    WAITING_ROOM = WAITING_IDS + 16 * SPHGI_GROUP, /* more steps are woven than count */
+    WAITING_GROUPS = 256,
+    CACHED_IDS = 1 << 23 /* lists that are larger have left the caches when they are read */
 };
 
 struct build {
@@ -21,6 +23,8 @@ struct build {
     char *memory;            /* of the workers */
     size_t memory_each;
     int32_t step; /* groups: every one, or a sample */
+    const struct sphgi_passes *passes;
+    void (*store)(const uint32_t *from, size_t count, uint32_t *to);
     atomic_int_least64_t ids, pairs;
     atomic_bool crowded;
     atomic_int bad_target; /* the lowest whose list is wrong, or INT32_MAX */
@@ -41,7 +45,7 @@ struct waiting {
 static size_t memory_of_worker(const struct build *build)
 {
     return sphgi_round_up(sizeof(struct waiting), SPHGI_ALIGNMENT) +
-           WAITING_IDS * sizeof(uint32_t) +
+           WAITING_ROOM * sizeof(uint32_t) +
            (build->lists ? sphgi_copier_size() : sphgi_finder_size(build->neighbors));
 }
 
@@ -55,13 +59,18 @@ static struct waiting *open_worker(struct build *build, int32_t number)
     w->used = w->groups = 0;
     w->pairs = 0;
     w->dummy = (uint32_t)build->neighbors->source_count * SPHGI_ID_STEP;
-    memory += WAITING_IDS * sizeof(uint32_t);
+    memory += WAITING_ROOM * sizeof(uint32_t);
     if (build->lists)
         sphgi_copier_open(&w->copier, build->context, build->neighbors, build->lists, number,
                           memory);
     else
         sphgi_finder_open(&w->finder, build->context, build->neighbors, memory);
     return w;
+}
+
+static void copy_ids(const uint32_t *from, size_t count, uint32_t *to)
+{
+    memcpy(to, from, count * sizeof *to);
 }
 
 /* A place for so many ids, -1 if they do not fit; counts them in any case. */
@@ -82,7 +91,7 @@ static void store_waiting(struct waiting *w)
 {
     const int64_t place = claim(w->build, w->used);
     if (place >= 0)
-        memcpy(w->build->neighbors->found.ids + place, w->ids, (size_t)w->used * sizeof *w->ids);
+        w->build->store(w->ids, (size_t)w->used, w->build->neighbors->found.ids + place);
     for (int32_t k = 0; k < w->groups; ++k)
         note_place(w->build, w->group[k], place < 0 ? -1 : place + w->place[k], w->steps[k]);
     w->used = w->groups = 0;
@@ -155,8 +164,10 @@ static void store_group(struct waiting *w, int32_t group, const uint32_t *const 
         return;
     }
     uint32_t *to = place_for(w, group, woven, longest);
+    const bool full = sphgi_targets_in(w->build->neighbors, group) == SPHGI_GROUP;
+    const bool found = !w->build->lists && full && woven <= WAITING_IDS;
     if (to)
-        sphgi_passes_of(w->build->context, SPHG_F32)->weave(lists, lengths, longest, w->dummy, to);
+        w->build->passes->weave(lists, lengths, longest, found ? SPHGI_FIND_PAD : 0, w->dummy, to);
 }
 
 /* ---- Clumps --------------------------------------------------------------------------------- */
@@ -262,6 +273,8 @@ static void find_groups(struct build *build, int32_t step)
     struct sphgi_found *found = &build->neighbors->found;
     const int32_t groups = sphgi_group_count(build->neighbors->target_count);
     build->step = step;
+    build->passes = sphgi_passes_of(build->context, SPHG_F32);
+    build->store = found->room > CACHED_IDS ? build->passes->stream : copy_ids;
     atomic_store(&build->ids, 0);
     atomic_store(&build->pairs, 0);
     atomic_store(&build->crowded, false);
