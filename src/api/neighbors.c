@@ -180,7 +180,7 @@ static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n
     sphg_result result = SPHG_ERROR_MEMORY;
     if (sphgi_reserve(&context->allocator, tables, sphgi_grid_tables(n->source_count, false), 1))
         result = sphgi_grid_build(context, &grid, &context->allocator, &raster, n->position_type,
-                                  n->sources.rows.data, n->source_count, tables->data);
+                                  n->sources.rows.data, n->source_count, tables->data, NULL);
     if (!result)
         memcpy(order, grid.order.data, (size_t)n->source_count * sizeof *order);
     for (int k = 0; k < 3; ++k)

@@ -32,6 +32,11 @@ static void stage(const struct sphgi_find *find, struct sphgi_runs *runs)
 {
     real *x = find->staged, *y = x + find->staged_room, *z = y + find->staged_room;
     int32_t at = 0;
+    for (int32_t run = 0; run < runs->count;
+         ++run) /* the machine cannot know where the next begins */
+        for (int32_t line = 0; line < 4; ++line)
+            __builtin_prefetch((const real *)find->rows +
+                               SPHGI_ROW * ((ptrdiff_t)runs->begin[run] + LANES / 4 * line));
     for (int32_t run = 0; run < runs->count; ++run) {
         const real *rows = (const real *)find->rows + SPHGI_ROW * (ptrdiff_t)runs->begin[run];
         const int32_t length = runs->length[run];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "grid.h"
+#include <string.h>
 
 static size_t hash_bytes(size_t blocks)
 {
@@ -48,7 +49,15 @@ void sphgi_cell_starts(const struct sphgi_grid *grid, int32_t block, int32_t *st
 {
     const struct sphgi_block *own = &grid->blocks[block];
     const int32_t *next = (const int32_t *)grid->cell_start.data + own->first;
-    for (int32_t c = 0; c < SPHGI_BLOCK_CELLS; ++c) {
+    const uint32_t gaps = ~own->occupied;
+    int32_t c = gaps ? __builtin_ctz(gaps) : SPHGI_BLOCK_CELLS; /* most have none before the last */
+    memcpy(start, next, (size_t)c * sizeof *start);
+    next += c;
+    if (c < SPHGI_BLOCK_CELLS && !(own->occupied >> c)) {
+        for (; c < SPHGI_BLOCK_CELLS; ++c)
+            start[c] = *next;
+    }
+    for (; c < SPHGI_BLOCK_CELLS; ++c) {
         start[c] = *next;
         next += own->occupied >> c & 1;
     }

@@ -52,12 +52,16 @@ void sphgi_grid_use_tables(struct sphgi_grid *grid, void *tables);
 
 /* Sorts the rows (x y z 0, finite; SPHGI_LANES_MOST - 1 more are read) of count particles; type is
  * that of the positions. tables: memory for the tables of as many blocks as particles, which is
- * used from its beginning on. Gives OK or MEMORY. Cost: O(count), and O(blocks log blocks) where
+ * used from its beginning on. place: becomes the number of each particle's row; or NULL. Gives OK
+ * or MEMORY. Cost: O(count), and O(blocks log blocks) where
  * the host's order is another one. */
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
                              const struct sphgi_raster *raster, sphg_type type, const void *rows,
-                             int32_t count, void *tables);
+                             int32_t count, void *tables, struct sphgi_buffer *place);
+/* The number of each particle's row, of a grid that stands. */
+bool sphgi_grid_places(sphg_context *context, const struct sphgi_grid *grid,
+                       const struct sphgi_allocator *allocator, struct sphgi_buffer *place);
 void sphgi_grid_free(struct sphgi_grid *grid, const struct sphgi_allocator *allocator);
 
 /* A number in [0, slots). */

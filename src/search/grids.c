@@ -7,31 +7,6 @@
 
 enum { GRAIN = 4096 }; /* particles */
 
-/* ---- Places ---------------------------------------------------------------------------------- */
-
-struct inversion {
-    const int32_t *order;
-    int32_t *place;
-};
-
-static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    const struct inversion *inversion = data;
-    (void)worker;
-    for (int32_t k = begin; k < end; ++k)
-        inversion->place[inversion->order[k]] = k;
-}
-
-static bool invert_order(sphg_context *context, const sphg_neighbors *n,
-                         const struct sphgi_grid *grid, struct sphgi_buffer *place)
-{
-    if (!sphgi_reserve(&n->allocator, place, (size_t)grid->count, sizeof(int32_t)))
-        return false;
-    struct inversion inversion = {grid->order.data, place->data};
-    sphgi_parallel_for(context, invert_task, &inversion, grid->count, GRAIN);
-    return true;
-}
-
 /* ---- Particles that have not moved ----------------------------------------------------------- */
 
 struct comparison {
@@ -103,10 +78,11 @@ static void move_tables(struct sphgi_grid *grid, char *to)
 }
 
 static sphg_result build_sources(sphg_context *context, sphg_neighbors *n,
-                                 const struct sphgi_raster *raster, const struct sphgi_geometry *g)
+                                 const struct sphgi_raster *raster, const struct sphgi_geometry *g,
+                                 struct sphgi_buffer *place)
 {
     return sphgi_grid_build(context, &n->sources, &n->allocator, raster, n->position_type,
-                            g->source_rows, n->source_count, n->shared.data);
+                            g->source_rows, n->source_count, n->shared.data, place);
 }
 
 /* Each grid is built that does not stand already. Tables of targets follow those of the sources,
@@ -121,7 +97,7 @@ static sphg_result build_both(sphg_context *context, sphg_neighbors *n,
     if (!stands(context, &n->sources, raster, type, g->source_rows, n->source_count)) {
         if (targets)
             move_tables(&n->targets, tables + most_of(n, n->source_count));
-        if (build_sources(context, n, raster, g))
+        if (build_sources(context, n, raster, g, NULL))
             return SPHG_ERROR_MEMORY;
     }
     tables += sphgi_tables_of(&n->sources);
@@ -129,10 +105,8 @@ static sphg_result build_both(sphg_context *context, sphg_neighbors *n,
         move_tables(&n->targets, tables);
     if (targets || n->targets_of)
         return SPHG_OK;
-    if (sphgi_grid_build(context, &n->targets, &n->allocator, raster, type, g->target_rows,
-                         n->target_count, tables))
-        return SPHG_ERROR_MEMORY;
-    return invert_order(context, n, &n->targets, &n->target_place) ? SPHG_OK : SPHG_ERROR_MEMORY;
+    return sphgi_grid_build(context, &n->targets, &n->allocator, raster, type, g->target_rows,
+                            n->target_count, tables, &n->target_place);
 }
 
 /* One grid serves both: who searches again for particles of which none has moved is not helped. */
@@ -140,10 +114,7 @@ static sphg_result build_same(sphg_context *context, sphg_neighbors *n,
                               const struct sphgi_raster *raster, const struct sphgi_geometry *g)
 {
     n->targets.sorted = false;
-    if (build_sources(context, n, raster, g) ||
-        !invert_order(context, n, &n->sources, &n->target_place))
-        return SPHG_ERROR_MEMORY;
-    return SPHG_OK;
+    return build_sources(context, n, raster, g, &n->target_place);
 }
 
 sphg_result sphgi_grids_build(sphg_context *context, sphg_neighbors *n,
@@ -161,7 +132,7 @@ sphg_result sphgi_grids_build(sphg_context *context, sphg_neighbors *n,
     const sphg_result result =
         n->same ? build_same(context, n, &g->raster, g) : build_both(context, n, &g->raster, g);
     if (!result && n->graded && n->part_of && !n->same &&
-        !invert_order(context, n, &n->sources, &n->source_place))
+        !sphgi_grid_places(context, &n->sources, &n->allocator, &n->source_place))
         return SPHG_ERROR_MEMORY;
     return result;
 }

@@ -33,17 +33,27 @@ static int32_t neighbour_of(const struct sphgi_grid *grid, const int64_t *at, in
     return is_block_at(grid, block + step, sphgi_key_of(beside)) ? block + step : -1;
 }
 
+/* The block at `at`; it often stands behind the one that was there when the bar was looked up for
+ * the block before. */
+static int32_t block_of_bar(const struct sphgi_grid *grid, const int64_t *at,
+                            const struct sphgi_bar *bar)
+{
+    const int32_t next = bar->block + 1;
+    return is_block_at(grid, next, sphgi_key_of(at)) ? next : sphgi_find_block(grid, at);
+}
+
 /* The bar at `at`, and what lies before and behind it in storage, too. */
 static void bar_at(const struct sphgi_grid *grid, const int64_t *at, struct sphgi_bar *bar)
 {
     const struct sphgi_block *blocks = grid->blocks;
-    const int32_t own = sphgi_find_block(grid, at);
+    const int32_t own = block_of_bar(grid, at, bar);
     const int32_t low = neighbour_of(grid, at, own, -1), high = neighbour_of(grid, at, own, 1);
     const int32_t begin = own >= 0    ? blocks[own].first
                           : low >= 0  ? blocks[low + 1].first
                           : high >= 0 ? blocks[high].first
                                       : 0;
     int32_t *first = bar->first + 1, range[2];
+    bar->block = own;
     if (own >= 0)
         sphgi_cell_starts(grid, own, first);
     for (int32_t c = 0; own < 0 && c <= SPHGI_BLOCK_CELLS; ++c)
@@ -101,27 +111,31 @@ void sphgi_halo_of(const struct sphgi_grid *sources, struct sphgi_key block,
 
 /* ---- Candidates ----------------------------------------------------------------------------- */
 
-static void add_run(struct sphgi_runs *runs, int32_t begin, int32_t end)
-{
-    runs->begin[runs->count] = begin;
-    runs->length[runs->count++] = end - begin;
-    runs->candidates += end - begin;
-}
-
 void sphgi_candidate_runs(const struct sphgi_raster *raster, const struct sphgi_halo *around,
                           int32_t from, int32_t to, struct sphgi_runs *runs)
 {
     const struct sphgi_axis *x = &raster->axis[0];
-    const int32_t low = from + x->low, high = to - 1 + x->high;
-    const bool before = low < 0, behind = high == around->cells;
-    runs->count = runs->candidates = 0;
-    runs->own = around->bar[0].first[from + 1];
-    for (int32_t b = 0; b < around->bars; ++b) {
+    const int32_t low = from + x->low, high = to - 1 + x->high, bars = around->bars;
+    const int32_t each = x->cells ? 3 : 1; /* runs of a bar: it, and what a period puts around it */
+    int32_t candidates = 0;
+    for (int32_t b = 0; b < bars; ++b) {
         const struct sphgi_bar *bar = &around->bar[b];
-        add_run(runs, bar->first[low + 1], bar->first[high + 2]);
-        if (x->cells) {
-            add_run(runs, bar->before[0], before ? bar->before[1] : bar->before[0]);
-            add_run(runs, bar->behind[0], behind ? bar->behind[1] : bar->behind[0]);
-        }
+        const int32_t length = bar->first[high + 2] - bar->first[low + 1];
+        runs->begin[each * b] = bar->first[low + 1];
+        runs->length[each * b] = length;
+        candidates += length;
     }
+    for (int32_t b = 0; x->cells && b < bars; ++b) {
+        const struct sphgi_bar *bar = &around->bar[b];
+        const int32_t before = low < 0 ? bar->before[1] - bar->before[0] : 0;
+        const int32_t behind = high == around->cells ? bar->behind[1] - bar->behind[0] : 0;
+        runs->begin[each * b + 1] = bar->before[0];
+        runs->length[each * b + 1] = before;
+        runs->begin[each * b + 2] = bar->behind[0];
+        runs->length[each * b + 2] = behind;
+        candidates += before + behind;
+    }
+    runs->count = each * bars;
+    runs->candidates = candidates;
+    runs->own = around->bar[0].first[from + 1];
 }

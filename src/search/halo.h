@@ -11,6 +11,7 @@ enum { SPHGI_BARS_MOST = 9 /* a block and the bars beside it */ };
  * before or behind it stands somewhere else in storage: from row before[0] up to, and without,
  * before[1]. */
 struct sphgi_bar {
+    int32_t block; /* of the bar, -1: none is there */
     int32_t first[SPHGI_BLOCK_CELLS + 3];
     int32_t before[2], behind[2];
 };
@@ -21,6 +22,7 @@ struct sphgi_halo {
     struct sphgi_bar bar[SPHGI_BARS_MOST];
 };
 
+/* around: what it was for the block before, or 0. */
 void sphgi_halo_of(const struct sphgi_grid *sources, struct sphgi_key block,
                    struct sphgi_halo *around);
 

@@ -152,16 +152,20 @@ static void store_apart(struct waiting *w, int32_t group, const uint32_t *const 
 static void store_group(struct waiting *w, int32_t group, const uint32_t *const *lists,
                         const int32_t *lengths)
 {
-    int32_t longest = 0;
-    int64_t count[SPHGI_GROUP];
+    int32_t longest = 0, pairs = 0;
     for (int32_t k = 0; k < SPHGI_GROUP; ++k) {
         longest = sphgi_max32(longest, lengths[k]);
-        count[k] = lengths[k];
+        pairs += lengths[k];
     }
     const int64_t woven = (int64_t)sphgi_round_up((size_t)longest, 4) * SPHGI_GROUP;
-    if (woven > 2 * ids_apart(count) || w->build->all_apart) {
-        store_apart(w, group, lists, count);
-        return;
+    if (woven > 2 * (int64_t)pairs || w->build->all_apart) { /* else they are not more than twice */
+        int64_t count[SPHGI_GROUP];
+        for (int32_t k = 0; k < SPHGI_GROUP; ++k)
+            count[k] = lengths[k];
+        if (woven > 2 * ids_apart(count) || w->build->all_apart) {
+            store_apart(w, group, lists, count);
+            return;
+        }
     }
     uint32_t *to = place_for(w, group, woven, longest);
     const bool full = sphgi_targets_in(w->build->neighbors, group) == SPHGI_GROUP;

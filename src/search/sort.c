@@ -10,7 +10,8 @@ enum {
     BATCH = 256,
     RECENT = 4, /* blocks that are not looked up again: one for each of four beside each other */
     BLOCK_GRAIN = 16,
-    PARTS = 8 /* of a cell of octaves, in which its particles follow one another */
+    GRAIN = 4096, /* particles */
+    PARTS = 8     /* of a cell of octaves, in which its particles follow one another */
 };
 
 /* Each chunk of particles collects the blocks it meets on its own; the results are merged in order,
@@ -22,6 +23,8 @@ struct chunk {
     struct sphgi_key *keys; /* of the blocks, in order of appearance */
     int32_t *hash;          /* block + 1; grows inside its share */
     int32_t *counts;        /* particles per block; later: where the next one goes */
+    int32_t *cells;         /* the same per cell, as long as blocks hold enough on average */
+    int32_t cells_most;     /* blocks that there is room for then; 0: none */
     int32_t *global;        /* number in the grid */
 };
 
@@ -35,10 +38,11 @@ struct sort {
     int32_t chunk_count;
     int32_t *block; /* per particle: block of its chunk */
     uint8_t *cell;  /* per particle */
-    int32_t *order; /* particles by block */
+    int32_t *order; /* particles by block, or the chunks' counts of cells */
     uint8_t *sorted_cell;
     struct sphgi_key *keys; /* of all blocks, in order of appearance */
     int32_t *numbers, *scratch;
+    int32_t *place; /* of each particle in the grid, or NULL */
     struct sphgi_grid *grid;
     atomic_int_least32_t fullest;
 };
@@ -63,6 +67,36 @@ static void rehash(struct chunk *chunk, uint32_t slots)
         chunk->hash[find_slot(chunk->hash, slots, chunk->keys, chunk->keys[b])] = b + 1;
 }
 
+/* Blocks beyond those whose cells can be counted: particles are sorted by block first. */
+static void count_by_block(struct chunk *chunk, int32_t blocks)
+{
+    for (int32_t b = 0; b < blocks; ++b) {
+        chunk->counts[b] = 0;
+        for (int32_t c = 0; c < SPHGI_BLOCK_CELLS; ++c)
+            chunk->counts[b] += chunk->cells[b * SPHGI_BLOCK_CELLS + c];
+    }
+    chunk->cells_most = 0;
+}
+
+static void open_counts(struct chunk *chunk, int32_t b)
+{
+    if (chunk->cells_most && b == chunk->cells_most)
+        count_by_block(chunk, b);
+    if (chunk->cells_most)
+        memset(chunk->cells + (ptrdiff_t)b * SPHGI_BLOCK_CELLS, 0,
+               SPHGI_BLOCK_CELLS * sizeof *chunk->cells);
+    else
+        chunk->counts[b] = 0;
+}
+
+static void count_particle(struct chunk *chunk, int32_t block, int32_t cell)
+{
+    if (chunk->cells_most)
+        ++chunk->cells[block * SPHGI_BLOCK_CELLS + cell];
+    else
+        ++chunk->counts[block];
+}
+
 static int32_t block_in_chunk(struct chunk *chunk, struct sphgi_key key)
 {
     const uint32_t slot = find_slot(chunk->hash, chunk->slots, chunk->keys, key);
@@ -70,7 +104,7 @@ static int32_t block_in_chunk(struct chunk *chunk, struct sphgi_key key)
         return chunk->hash[slot] - 1;
     const int32_t b = chunk->block_count++;
     chunk->keys[b] = key;
-    chunk->counts[b] = 0;
+    open_counts(chunk, b);
     chunk->hash[slot] = b + 1;
     if ((uint32_t)chunk->block_count > chunk->slots / 2)
         rehash(chunk, 2 * chunk->slots);
@@ -93,7 +127,7 @@ static void collect_cut(const struct sort *sort, struct chunk *chunk, int32_t be
             memcpy(seen[r], block[k], sizeof *seen);
         }
         sort->block[begin + k] = number[r];
-        ++chunk->counts[number[r]];
+        count_particle(chunk, number[r], sort->cell[begin + k]);
     }
 }
 
@@ -118,7 +152,7 @@ static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t be
         for (int32_t a = 0; a < 3; ++a)
             cell[a] >>= axis[a].shift;
         sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
-        ++chunk->counts[sort->block[i]];
+        count_particle(chunk, sort->block[i], sort->cell[i]);
     }
 }
 
@@ -142,7 +176,7 @@ static void collect_octaves(const struct sort *sort, struct chunk *chunk, int32_
             cell[a] >>= raster->axis[a].shift;
         sphgi_raise_octave(octave, cell);
         sort->block[i] = block_in_chunk(chunk, sphgi_key_of(cell));
-        ++chunk->counts[sort->block[i]];
+        count_particle(chunk, sort->block[i], sort->cell[i]);
     }
 }
 
@@ -284,21 +318,7 @@ static void place_blocks(struct sort *sort)
         }
 }
 
-/* ---- Particles ------------------------------------------------------------------------------ */
-
-static void scatter_task(void *data, int32_t begin, int32_t end, int32_t worker)
-{
-    const struct sort *sort = data;
-    (void)worker;
-    for (int32_t c = begin; c < end; ++c) {
-        const struct chunk *chunk = &sort->chunks[c];
-        for (int32_t i = chunk->begin; i < chunk->end; ++i) {
-            const int32_t place = chunk->counts[sort->block[i]]++;
-            sort->order[place] = i;
-            sort->sorted_cell[place] = sort->cell[i];
-        }
-    }
-}
+/* ---- Cells of a block ----------------------------------------------------------------------- */
 
 /* Starts of the block's cells, of which place[] holds the sizes; these become places. Returns the
  * size of the fullest. */
@@ -325,6 +345,111 @@ SPHGI_TEMPLATE int32_t place_cells(struct sphgi_block *block, int32_t *place, in
     if (start < cell_start + next) /* else the next block's first start is the same number */
         *start = next;
     return fullest;
+}
+
+/* ---- Particles by cell ---------------------------------------------------------------------- */
+
+/* Where every chunk has counted its cells, each particle goes to its place at once. */
+static bool are_cells_counted(const struct sort *sort)
+{
+    bool all = true;
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        all &= sort->chunks[c].cells_most > 0;
+    return all;
+}
+
+static void count_blocks_of_chunks(struct sort *sort)
+{
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        if (sort->chunks[c].cells_most)
+            count_by_block(&sort->chunks[c], sort->chunks[c].block_count);
+}
+
+/* Particles in each cell of the grid, 32 numbers a block: no more than particles. */
+static int32_t *add_up_cells(struct sort *sort)
+{
+    int32_t *total = sort->numbers;
+    memset(total, 0, (size_t)sort->grid->block_count * SPHGI_BLOCK_CELLS * sizeof *total);
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        for (int32_t b = 0; b < sort->chunks[c].block_count; ++b) {
+            const int32_t *cells = sort->chunks[c].cells + (ptrdiff_t)b * SPHGI_BLOCK_CELLS;
+            int32_t *sum = total + (ptrdiff_t)sort->chunks[c].global[b] * SPHGI_BLOCK_CELLS;
+            for (int32_t k = 0; k < SPHGI_BLOCK_CELLS; ++k)
+                sum[k] += cells[k];
+        }
+    return total;
+}
+
+/* Sizes of the cells of all blocks become the places of their first particles, and the chunks'
+ * counts those of their own first. */
+static void place_counted_cells(struct sort *sort)
+{
+    struct sphgi_grid *grid = sort->grid;
+    int32_t *next = add_up_cells(sort), fullest = 0;
+    grid->blocks[0].first = 0;
+    for (int32_t b = 0; b < grid->block_count; ++b) {
+        int32_t *place = next + (ptrdiff_t)b * SPHGI_BLOCK_CELLS, size = 0;
+        for (int32_t k = 0; k < SPHGI_BLOCK_CELLS; ++k)
+            size += place[k];
+        grid->blocks[b + 1].first = grid->blocks[b].first + size;
+        const int32_t most = place_cells(&grid->blocks[b], place, grid->cell_start.data, 1);
+        fullest = sphgi_max32(fullest, most);
+    }
+    atomic_store(&sort->fullest, fullest);
+    for (int32_t c = 0; c < sort->chunk_count; ++c)
+        for (int32_t b = 0; b < sort->chunks[c].block_count; ++b) {
+            int32_t *cells = sort->chunks[c].cells + (ptrdiff_t)b * SPHGI_BLOCK_CELLS;
+            int32_t *place = next + (ptrdiff_t)sort->chunks[c].global[b] * SPHGI_BLOCK_CELLS;
+            for (int32_t k = 0; k < SPHGI_BLOCK_CELLS; ++k) {
+                const int32_t size = cells[k];
+                cells[k] = place[k];
+                place[k] += size;
+            }
+        }
+}
+
+SPHGI_TEMPLATE void move_chunk(const struct sort *sort, const struct chunk *chunk, size_t row_size,
+                               bool places)
+{
+    int32_t *order = sort->grid->order.data;
+    char *rows = sort->grid->rows.data;
+    for (int32_t i = chunk->begin; i < chunk->end; ++i) {
+        const int32_t to = chunk->cells[sort->block[i] * SPHGI_BLOCK_CELLS + sort->cell[i]]++;
+        memcpy(rows + (size_t)to * row_size, (const char *)sort->rows + (size_t)i * row_size,
+               row_size);
+        order[to] = i;
+        if (places)
+            sort->place[i] = to;
+    }
+}
+
+static void move_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct sort *sort = data;
+    (void)worker;
+    for (int32_t c = begin; c < end; ++c)
+        if (sort->type == SPHG_F64)
+            move_chunk(sort, &sort->chunks[c], SPHGI_ROW * sizeof(double), sort->place != NULL);
+        else if (sort->place)
+            move_chunk(sort, &sort->chunks[c], SPHGI_ROW * sizeof(float), true);
+        else
+            move_chunk(sort, &sort->chunks[c], SPHGI_ROW * sizeof(float), false);
+}
+
+/* ---- Particles by block, then by cell ------------------------------------------------------- */
+
+static void scatter_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct sort *sort = data;
+    (void)worker;
+    for (int32_t c = begin; c < end; ++c) {
+        const struct chunk *chunk = &sort->chunks[c];
+        for (int32_t i = chunk->begin; i < chunk->end; ++i) {
+            const int32_t place = chunk->counts[sort->block[i]]++;
+            sort->order[place] = i;
+            sort->sorted_cell[place] = sort->cell[i];
+        }
+    }
 }
 
 /* A counting sort by cell, or by the parts of cells, and the rows follow. */
@@ -365,6 +490,37 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
     int_least32_t seen = atomic_load(&sort->fullest);
     while (seen < fullest && !atomic_compare_exchange_weak(&sort->fullest, &seen, fullest))
         ;
+}
+
+struct inversion {
+    const int32_t *order;
+    int32_t *place;
+};
+
+static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
+{
+    const struct inversion *inversion = data;
+    (void)worker;
+    for (int32_t k = begin; k < end; ++k)
+        inversion->place[inversion->order[k]] = k;
+}
+
+bool sphgi_grid_places(sphg_context *context, const struct sphgi_grid *grid,
+                       const struct sphgi_allocator *allocator, struct sphgi_buffer *place)
+{
+    if (!sphgi_reserve(allocator, place, (size_t)grid->count, sizeof(int32_t)))
+        return false;
+    struct inversion inversion = {grid->order.data, place->data};
+    sphgi_parallel_for(context, invert_task, &inversion, grid->count, GRAIN);
+    return true;
+}
+
+static void sort_by_block(sphg_context *context, struct sort *sort)
+{
+    count_blocks_of_chunks(sort);
+    place_blocks(sort);
+    sphgi_parallel_for(context, scatter_task, sort, sort->chunk_count, 1);
+    sphgi_parallel_for(context, cells_task, sort, sort->grid->block_count, BLOCK_GRAIN);
 }
 
 /* ---- Memory --------------------------------------------------------------------------------- */
@@ -418,8 +574,12 @@ static size_t carve_sort(struct sort *sort, char *base, int32_t count)
         struct chunk chunk = {.begin = begin < count ? (int32_t)begin : count,
                               .end = end < count ? (int32_t)end : count};
         carve_chunk(&chunk, &carver, each);
-        if (base)
-            sort->chunks[c] = chunk;
+        if (!base)
+            continue;
+        chunk.cells = sort->order + chunk.begin;
+        if (!sort->raster->octaves)
+            chunk.cells_most = (chunk.end - chunk.begin) / SPHGI_BLOCK_CELLS;
+        sort->chunks[c] = chunk;
     }
     return carver.used;
 }
@@ -427,7 +587,7 @@ static size_t carve_sort(struct sort *sort, char *base, int32_t count)
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                              const struct sphgi_allocator *allocator,
                              const struct sphgi_raster *raster, sphg_type type, const void *rows,
-                             int32_t count, void *tables)
+                             int32_t count, void *tables, struct sphgi_buffer *place)
 {
     const size_t n = (size_t)count, row_size = SPHGI_ROW * sphgi_size_of_type(type);
     struct sort sort = {.raster = raster,
@@ -441,18 +601,25 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     if (!sphgi_reserve(&context->allocator, &context->sort, carve_sort(&sort, NULL, count), 1) ||
         !sphgi_reserve(allocator, &grid->rows, n + SPHGI_LANES_MOST, row_size) ||
         !sphgi_reserve(allocator, &grid->cell_start, n + 1, sizeof(int32_t)) ||
-        !sphgi_reserve(allocator, &grid->order, n, sizeof(int32_t)))
+        !sphgi_reserve(allocator, &grid->order, n, sizeof(int32_t)) ||
+        (place && !sphgi_reserve(allocator, place, n, sizeof(int32_t))))
         return SPHG_ERROR_MEMORY;
+    sort.place = place ? place->data : NULL;
     carve_sort(&sort, context->sort.data, count);
     grid->raster = *raster;
     grid->type = type;
     grid->count = count;
     sphgi_parallel_for(context, collect_task, &sort, sort.chunk_count, 1);
     number_blocks(&sort, merge_keys(&sort, tables), tables); /* the tables are scratch at first */
-    place_blocks(&sort);
-    sphgi_parallel_for(context, scatter_task, &sort, sort.chunk_count, 1);
     ((int32_t *)grid->cell_start.data)[count] = count;
-    sphgi_parallel_for(context, cells_task, &sort, grid->block_count, BLOCK_GRAIN);
+    if (are_cells_counted(&sort)) {
+        place_counted_cells(&sort);
+        sphgi_parallel_for(context, move_task, &sort, sort.chunk_count, 1);
+    } else {
+        sort_by_block(context, &sort);
+        if (place)
+            (void)sphgi_grid_places(context, grid, allocator, place); /* there is room */
+    }
     memset((char *)grid->rows.data + n * row_size, 0, SPHGI_LANES_MOST * row_size);
     grid->fullest = (int32_t)atomic_load(&sort.fullest);
     if (raster->octaves)
