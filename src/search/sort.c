@@ -347,6 +347,13 @@ SPHGI_TEMPLATE int32_t place_cells(struct sphgi_block *block, int32_t *place, in
     return fullest;
 }
 
+static void note_fullest(struct sort *sort, int32_t fullest)
+{
+    int_least32_t seen = atomic_load(&sort->fullest);
+    while (seen < fullest && !atomic_compare_exchange_weak(&sort->fullest, &seen, fullest))
+        ;
+}
+
 /* ---- Particles by cell ---------------------------------------------------------------------- */
 
 /* Where every chunk has counted its cells, each particle goes to its place at once. */
@@ -380,22 +387,34 @@ static int32_t *add_up_cells(struct sort *sort)
     return total;
 }
 
-/* Sizes of the cells of all blocks become the places of their first particles, and the chunks'
- * counts those of their own first. */
-static void place_counted_cells(struct sort *sort)
+static void place_cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
+    struct sort *sort = data;
     struct sphgi_grid *grid = sort->grid;
-    int32_t *next = add_up_cells(sort), fullest = 0;
-    grid->blocks[0].first = 0;
-    for (int32_t b = 0; b < grid->block_count; ++b) {
-        int32_t *place = next + (ptrdiff_t)b * SPHGI_BLOCK_CELLS, size = 0;
-        for (int32_t k = 0; k < SPHGI_BLOCK_CELLS; ++k)
-            size += place[k];
-        grid->blocks[b + 1].first = grid->blocks[b].first + size;
+    int32_t fullest = 0;
+    (void)worker;
+    for (int32_t b = begin; b < end; ++b) {
+        int32_t *place = sort->numbers + (ptrdiff_t)b * SPHGI_BLOCK_CELLS;
         const int32_t most = place_cells(&grid->blocks[b], place, grid->cell_start.data, 1);
         fullest = sphgi_max32(fullest, most);
     }
-    atomic_store(&sort->fullest, fullest);
+    note_fullest(sort, fullest);
+}
+
+/* Sizes of the cells of all blocks become the places of their first particles, and the chunks'
+ * counts those of their own first. */
+static void place_counted_cells(sphg_context *context, struct sort *sort)
+{
+    struct sphgi_block *blocks = sort->grid->blocks;
+    int32_t *next = add_up_cells(sort);
+    blocks[0].first = 0;
+    for (int32_t b = 0; b < sort->grid->block_count; ++b) {
+        int32_t size = 0;
+        for (int32_t k = 0; k < SPHGI_BLOCK_CELLS; ++k)
+            size += next[(ptrdiff_t)b * SPHGI_BLOCK_CELLS + k];
+        blocks[b + 1].first = blocks[b].first + size;
+    }
+    sphgi_parallel_for(context, place_cells_task, sort, sort->grid->block_count, BLOCK_GRAIN);
     for (int32_t c = 0; c < sort->chunk_count; ++c)
         for (int32_t b = 0; b < sort->chunks[c].block_count; ++b) {
             int32_t *cells = sort->chunks[c].cells + (ptrdiff_t)b * SPHGI_BLOCK_CELLS;
@@ -487,9 +506,7 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
                                           : sort_block(sort, b, SPHGI_ROW * sizeof(float), 1);
         fullest = sphgi_max32(fullest, most);
     }
-    int_least32_t seen = atomic_load(&sort->fullest);
-    while (seen < fullest && !atomic_compare_exchange_weak(&sort->fullest, &seen, fullest))
-        ;
+    note_fullest(sort, fullest);
 }
 
 struct inversion {
@@ -613,7 +630,7 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
     number_blocks(&sort, merge_keys(&sort, tables), tables); /* the tables are scratch at first */
     ((int32_t *)grid->cell_start.data)[count] = count;
     if (are_cells_counted(&sort)) {
-        place_counted_cells(&sort);
+        place_counted_cells(context, &sort);
         sphgi_parallel_for(context, move_task, &sort, sort.chunk_count, 1);
     } else {
         sort_by_block(context, &sort);
