@@ -94,12 +94,12 @@ SPHGI_TEMPLATE bool are_near(const four_bits *far)
 
 /* Block and local cell of each row, all axes at once. Products are rounded on their own: the same
  * cell must come out wherever it is computed (raster.c). False: a row is too far away. */
-static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
-                int32_t (*block)[4], uint8_t *local)
+SPHGI_TEMPLATE bool cut_one_by_one(const struct sphgi_cutting *cutting, const void *rows,
+                                   int32_t begin, int32_t end, int32_t (*block)[4], uint8_t *local)
 {
     const struct cutter c = cutter_of(cutting);
     four_bits far = {0};
-    for (int32_t k = 0; k < count; ++k) {
+    for (int32_t k = begin; k < end; ++k) {
         const four_reals row = *(const four_reals *)((const real *)rows + SPHGI_ROW * k);
         const four_doubles t = __builtin_convertvector(row, four_doubles) * c.scale;
         const four_bits bits = (four_bits)(t - 0.5 + c.magic);
@@ -110,4 +110,66 @@ static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t c
         local[k] = (uint8_t)(parts[0] | parts[1] | parts[2]);
     }
     return are_near(&far);
+}
+
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+/* The same of LANES rows, an axis after the other. */
+SPHGI_TEMPLATE __m512i cells_along(vec x, double inverse, __m512i *far)
+{
+    const __m512d scale = _mm512_set1_pd(inverse), half = _mm512_set1_pd(0.5);
+    const __m512d magic = _mm512_set1_pd(0x1.8p52);
+    const __m512i nearest =
+        _mm512_sub_epi64(_mm512_castpd_si512(magic), _mm512_set1_epi64(SPHGI_CUT_MOST));
+    const __m256 parts[2] = {_mm512_castps512_ps256((__m512)x),
+                             _mm512_extractf32x8_ps((__m512)x, 1)};
+    __m256i cells[2];
+    for (int k = 0; k < 2; ++k) {
+        const __m512d t = _mm512_mul_pd(_mm512_cvtps_pd(parts[k]), scale);
+        const __m512i bits = _mm512_castpd_si512(_mm512_add_pd(_mm512_sub_pd(t, half), magic));
+        *far = _mm512_or_si512(*far, _mm512_sub_epi64(bits, nearest));
+        cells[k] = _mm512_cvtepi64_epi32(bits);
+    }
+    return _mm512_inserti64x4(_mm512_castsi256_si512(cells[0]), cells[1], 1);
+}
+
+SPHGI_TEMPLATE int32_t cut_together(const struct sphgi_cutting *cutting, const real *rows,
+                                    int32_t count, int32_t (*block)[4], uint8_t *local, bool *near)
+{
+    __m512i far = _mm512_setzero_si512();
+    int32_t k = 0;
+    for (; k + LANES <= count; k += LANES) {
+        const struct three at = coordinates_of(rows + SPHGI_ROW * k);
+        const vec x[3] = {at.x, at.y, at.z};
+        __m512i blocks[3], inside = _mm512_setzero_si512();
+        for (int a = 0; a < 3; ++a) {
+            const __m512i cells = cells_along(x[a], cutting->inverse[a], &far);
+            const __m512i own =
+                _mm512_and_si512(cells, _mm512_set1_epi32((1 << cutting->shift[a]) - 1));
+            blocks[a] = _mm512_sra_epi32(cells, _mm_cvtsi32_si128(cutting->shift[a]));
+            inside = _mm512_or_si512(
+                inside, _mm512_sll_epi32(own, _mm_cvtsi32_si128(cutting->local_shift[a])));
+        }
+        rows_of((struct four){(vec)blocks[0], (vec)blocks[1], (vec)blocks[2], (vec){0}},
+                (quad *)(void *)block[k]);
+        _mm_storeu_si128((__m128i *)(void *)(local + k), _mm512_cvtepi32_epi8(inside));
+    }
+    *near = _mm512_cmpge_epu64_mask(far, _mm512_set1_epi64(2 * (int64_t)SPHGI_CUT_MOST)) == 0;
+    return k;
+}
+#else
+SPHGI_TEMPLATE int32_t cut_together(const struct sphgi_cutting *cutting, const real *rows,
+                                    int32_t count, int32_t (*block)[4], uint8_t *local, bool *near)
+{
+    (void)cutting, (void)rows, (void)count, (void)block, (void)local;
+    *near = true;
+    return 0;
+}
+#endif
+
+static bool cut(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
+                int32_t (*block)[4], uint8_t *local)
+{
+    bool near;
+    const int32_t done = cut_together(cutting, rows, count, block, local, &near);
+    return cut_one_by_one(cutting, rows, done, count, block, local) && near;
 }

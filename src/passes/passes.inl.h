@@ -40,10 +40,10 @@
 #undef OUT
 #undef OUT_NAME
 #endif
-#include "cells.inl.h"
-#include "octaves.inl.h"
 #include "packing.inl.h"
 #include "staging.inl.h"
+#include "cells.inl.h"
+#include "octaves.inl.h"
 #include "search.inl.h"
 #include "search_by_radii.inl.h"
 #include "near.inl.h"
