@@ -56,6 +56,29 @@ SPHGI_TEMPLATE vec square_of_cutoff(const struct sphgi_gather *g, vec radius)
 
 enum { AHEAD = 64 /* steps: ids come from memory, those to come are asked for */ };
 
+/* Rows come from far, those to come are asked for, too: ids behind the tile's are those of targets
+ * that follow. Lanes beside each other read the same lines. */
+enum { ROWS_AHEAD = 24 /* steps */, LANES_A_LINE = 2 };
+
+/* From an id to that whose rows are asked for; 0 where memory ends before. */
+SPHGI_TEMPLATE ptrdiff_t to_rows_ahead(const struct sphgi_tile *tile)
+{
+    const ptrdiff_t steps = tile->steps + ROWS_AHEAD;
+    const bool there = tile->ids_end && tile->ids_end - tile->ids >= steps * tile->id_stride;
+    return there ? ROWS_AHEAD * tile->id_stride : 0;
+}
+
+/* also NULL: there is one array of rows. */
+SPHGI_TEMPLATE void ask_for_rows(const real *rows, const real *also, const uint32_t *ids)
+{
+    for (int l = LANES_A_LINE - 1; l < LANES; l += LANES_A_LINE) {
+        const size_t at = SPHGI_ROW / SPHGI_ID_STEP * (size_t)ids[l];
+        __builtin_prefetch(rows + at);
+        if (also)
+            __builtin_prefetch(also + at);
+    }
+}
+
 /* LANES ids: those of what is no pair become the dummy's, for a field that is not finite must not
  * enter through 0 * NaN. */
 SPHGI_TEMPLATE void keep_ids(mask inside, uint32_t dummy, const uint32_t *ids, uint32_t *to)

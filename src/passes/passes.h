@@ -91,6 +91,11 @@ struct sphgi_passes {
                            const int32_t *targets, struct sphgi_tile *tile);
     void (*keep_factors)(const struct sphgi_tile *tile, void *kept);
 
+    /* Ids to sums of a vector of targets at once, of pairs that need no test. The tile lends its
+     * arrays. */
+    void (*sum_group)(const struct sphgi_group_sums *group, const struct sphgi_shape *shape,
+                      const struct sphgi_group_lists *lists, struct sphgi_tile *tile);
+
     /* SPHGI_GROUP lists side by side: [step][list]. Each is padded to four with the dummy or, if
      * that is not 0, has `padded` dummies behind it; then up to sixteen steps more are written. */
     void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, int32_t padded,

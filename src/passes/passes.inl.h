@@ -56,6 +56,7 @@
 #include "both_sides.inl.h"
 #include "contracted.inl.h"
 #include "folded.inl.h"
+#include "group_sums.inl.h"
 #include "classic.inl.h"
 #include "quadratic_sums.inl.h"
 #include "diffusion.inl.h"
@@ -94,6 +95,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .gather_offsets = gather_offsets,
     .keep_factors = keep_factors,
     .stage = stage,
+    .sum_group = sum_group,
     .find = find,
     .bounds = bounds,
     .pack_by_radii = pack_by_radii,

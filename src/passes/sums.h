@@ -67,12 +67,14 @@ enum sphgi_vectors {
 
 struct sphgi_tile {
     void *arrays;
-    const uint32_t *ids; /* of rows: [step][lane]; the dummy's where there is no pair */
-    ptrdiff_t id_stride; /* from step to step */
-    uint32_t *own_ids;   /* SPHGI_TILE: room for ids that do not stand like this in memory */
-    int32_t steps;       /* SPHGI_CHUNK at most */
-    int32_t chunk;       /* of the lists, that the tile holds: 0 starts the sums */
-    bool spread;         /* the lanes hold one list, a chunk each */
+    const uint32_t *ids;     /* of rows: [step][lane]; the dummy's where there is no pair */
+    ptrdiff_t id_stride;     /* from step to step */
+    const uint32_t *ids_end; /* of the memory they stand in; NULL: they are the tile's own */
+    const void *also;        /* rows that are read by the same ids afterwards; NULL: none */
+    uint32_t *own_ids;       /* SPHGI_TILE: room for ids that do not stand like this in memory */
+    int32_t steps;           /* SPHGI_CHUNK at most */
+    int32_t chunk;           /* of the lists, that the tile holds: 0 starts the sums */
+    bool spread;             /* the lanes hold one list, a chunk each */
     ptrdiff_t section; /* numbers from a sum to its carry, and on to what a spread chunk comes to */
 };
 
@@ -102,6 +104,23 @@ struct sphgi_gather {
     double volume; /* V_j otherwise */
     int32_t dimension;
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
+};
+
+/* All sums of targets whose lists stand side by side, in 3D: moments, and those of one field. */
+struct sphgi_group_sums {
+    const struct sphgi_gather *gather;
+    bool moments, divergence; /* of a vector */
+    int32_t numbers;          /* of the field whose gradient is summed, 1 or 3; 0: there is none */
+    int32_t own;              /* A_j - A_i: 1, A_j + A_i: -1, A_j: 0 */
+    const void *field;        /* rows of A_j, those of the targets among them, at the same places */
+};
+struct sphgi_group_lists {
+    const uint32_t *ids;
+    int32_t steps;
+    bool kept_stand;       /* what is kept is read, not written */
+    const int32_t *places; /* of the targets, a lane each */
+    void *kept;            /* s_ij of the first lane's list; NULL: none */
+    void *moments, *sums;  /* [sum][SPHGI_WIDTH] */
 };
 
 /* What becomes of the host's numbers of sources; the dummy is the row behind these. */

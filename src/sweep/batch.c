@@ -98,7 +98,7 @@ static void run_long_list(struct sphgi_worker *w)
 
 /* ---- Rounds ---------------------------------------------------------------------------------- */
 
-static void settle(struct sphgi_worker *w)
+void sphgi_batch_settle(struct sphgi_worker *w)
 {
     const struct sphgi_sums sums = sums_of_round(w);
     if (w->batch.longest > SPHGI_PLAIN_CHUNKS * SPHGI_CHUNK)
@@ -146,14 +146,14 @@ static void sum_held(struct sphgi_worker *w)
         sphgi_evaluate_tile(w);
         join(w);
     }
-    settle(w);
+    sphgi_batch_settle(w);
 }
 
 /* All pairs were added once: is another round over them needed? Moments, slopes and fields of one
  * sweep are summed one after the other where each needs what the one before gave. */
 bool sphgi_batch_again(struct sphgi_worker *w)
 {
-    settle(w);
+    sphgi_batch_settle(w);
     while (w->held.room) {
         finish_round(w);
         const unsigned next = next_step(w);

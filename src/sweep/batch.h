@@ -22,6 +22,9 @@ void sphgi_batch_begin(struct sphgi_worker *worker);
 bool sphgi_batch_again(struct sphgi_worker *worker);
 void sphgi_batch_end(struct sphgi_worker *worker);
 
+/* The rounding of long lists, which was carried along, comes in. */
+void sphgi_batch_settle(struct sphgi_worker *worker);
+
 /* All lanes for one target: a chunk each, of `count` pairs up to sphgi_spread_most(), which are
  * numbers `at` and so on of its list. */
 void sphgi_run_spread(struct sphgi_worker *worker, const uint32_t *ids, int32_t count,

@@ -62,22 +62,27 @@ static void load_target(struct sphgi_worker *w, int32_t number, char *to)
                               sphgi_lane(w, w->own.field, field->coefficient_at_target));
 }
 
+void sphgi_load_target_volumes(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (!plan->adjoint && !plan->transposes[1])
+        return;
+    if (plan->target_volume.count)
+        sphgi_load_volume(w, &plan->target_volume, sphgi_lane(w, w->own.volume, 0));
+    if (plan->target_density.count)
+        w->passes->load_lanes(w->batch.width, &plan->target_density, sphgi_targets(w),
+                              sphgi_lane(w, w->own.density, 0));
+}
+
 void sphgi_load_targets(struct sphgi_worker *w)
 {
     if (w->own.loaded)
         return;
     w->own.loaded = true;
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_passes *p = w->passes;
     for (int32_t k = 0; k < plan->field_count; ++k)
         load_target(w, k, sphgi_lane(w, w->own.field, plan->fields[k].at_target));
-    if (plan->adjoint || plan->transposes[1]) {
-        if (plan->target_volume.count)
-            sphgi_load_volume(w, &plan->target_volume, sphgi_lane(w, w->own.volume, 0));
-        if (plan->target_density.count)
-            p->load_lanes(w->batch.width, &plan->target_density, sphgi_targets(w),
-                          sphgi_lane(w, w->own.density, 0));
-    }
+    sphgi_load_target_volumes(w);
 }
 
 void sphgi_ask_for_targets(const struct sphgi_worker *w, int32_t count, const int32_t *targets)

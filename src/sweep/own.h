@@ -10,6 +10,9 @@ void sphgi_find_targets_in_rows(struct sphgi_worker *worker);
 /* A_i, V_i, rho_i of the targets at work, once a batch. */
 void sphgi_load_targets(struct sphgi_worker *worker);
 
+/* Of these V_i and rho_i alone. */
+void sphgi_load_target_volumes(struct sphgi_worker *worker);
+
 /* The host's arrays may have another order than the targets: what these will read and write there
  * comes while their pairs are summed. */
 void sphgi_ask_for_targets(const struct sphgi_worker *worker, int32_t count,

@@ -58,6 +58,8 @@ void sphgi_use_rows(struct sphgi_worker *w)
         use_local_rows(w);
     else
         use_packed_rows(w);
+    if (!w->rows.local && (w->sweep->steps & SPHGI_SUM_FIELDS) && w->sweep->plan->row_count)
+        w->tile.also = w->rows.at[0];
 }
 
 /* ---- What the host has becomes rows --------------------------------------------------------- */

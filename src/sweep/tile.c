@@ -78,6 +78,7 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         count_pairs(w, lists, begin);
     if (w->held.room)
         sphgi_place_tile(w);
+    w->tile.ids_end = lists->side_by_side ? w->ids_end : NULL;
     if (w->rows.local)
         copy_steps(w, lists, begin);
     else if (lists->numbers)

@@ -5,6 +5,7 @@
 #include "held.h"
 #include "own.h"
 #include "pieces.h"
+#include "short_way.h"
 #include "waiting.h"
 #include "rows.h"
 #include "search/find.h"
@@ -78,6 +79,26 @@ static void put_into_lanes(struct sphgi_worker *w, const int32_t *targets, int32
     w->bundle.count += w->passes->lanes;
 }
 
+static int32_t longest_of(const uint16_t *lengths, int32_t count)
+{
+    int32_t longest = 0;
+    for (int32_t l = 0; l < count; ++l)
+        longest = sphgi_max32(longest, lengths[l]);
+    return longest;
+}
+
+static void run_side_by_side(struct sphgi_worker *w, const uint32_t *ids, const uint16_t *lengths)
+{
+    struct sphgi_lane_lists *lists = w->batch.lists;
+    lists->ids[0] = ids;
+    lists->stride[0] = SPHGI_GROUP;
+    lists->side_by_side = true;
+    for (int32_t l = 0; l < w->passes->lanes; ++l)
+        lists->count[l] = lengths[l];
+    sphgi_batch_run(w);
+    lists->side_by_side = false;
+}
+
 /* A group whose lists stand side by side, and no others wait. All its targets are summed, and those
  * that are not active dropped: where there are few of these that costs less than laying the lists
  * of the others side by side anew. */
@@ -92,23 +113,20 @@ static void add_group(struct sphgi_worker *w, int32_t place, const uint32_t *ids
         sphgi_finish_lanes(w);
     int32_t targets[SPHGI_GROUP];
     targets_of_group(w, place, active, targets);
-    w->batch.lists->stride[0] = SPHGI_GROUP;
-    w->batch.lists->side_by_side = true;
     w->batch.kept_stand = kept->number && kept->marks[group] == kept->number;
     for (int32_t first = 0; first < SPHGI_GROUP; first += lanes) {
-        w->batch.lists->ids[0] = ids + first;
-        w->batch.kept = kept->number ? kept_factors(w, w->batch.lists->ids[0]) : NULL;
-        for (int32_t l = 0; l < lanes; ++l)
-            w->batch.lists->count[l] = lengths[first + l];
+        w->batch.kept = kept->number ? kept_factors(w, ids + first) : NULL;
         put_into_lanes(w, targets + first, place + first);
         const bool some = (active >> first & all) != all;
         w->batch.drops = some && w->held.room;
-        sphgi_batch_run(w);
+        if (w->is_short)
+            sphgi_short_way_run(w, ids + first, longest_of(lengths + first, lanes));
+        else
+            run_side_by_side(w, ids + first, lengths + first);
         if (some)
             sphgi_batch_keep(w, active >> first & all);
     }
     w->batch.drops = false;
-    w->batch.lists->side_by_side = false;
     w->batch.kept = NULL;
     if (kept->number)
         kept->marks[group] = kept->number;
@@ -246,6 +264,15 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     }
 }
 
+/* Behind the last id that was written. */
+static const uint32_t *end_of_ids(const sphg_neighbors *n)
+{
+    const struct sphgi_found *found = &n->found;
+    if (!found->ids)
+        return NULL;
+    return found->ids + (found->ids_used < found->room ? found->ids_used : found->room);
+}
+
 void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
@@ -257,6 +284,8 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     sphgi_held_open(&w);
     sphgi_find_targets_in_rows(&w);
     sphgi_use_rows(&w);
+    sphgi_short_way_open(&w);
+    w.ids_end = end_of_ids(n);
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t group = groups ? groups[k] : k;

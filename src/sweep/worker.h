@@ -109,6 +109,9 @@ struct sphgi_worker {
     double factor_of_h;                     /* w_scale, times H */
     struct sphgi_share share[SPHGI_SHARES]; /* of the table of corrections */
     bool factors_at_once;    /* s_ij come with the pairs, for nobody asks for distances */
+    const uint32_t *ids_end; /* of the lists that are kept */
+    bool is_short;           /* whole groups are summed by one pass, which is told ... */
+    struct sphgi_group_sums short_way;
     bool both_as_gathered;   /* pairs that count with two radii are weighed then, too */
     bool coefficients_first; /* they must be known before all that this sweep sums can be: it comes
                                 in rounds, or they are there */

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+/* Groups whose lists stand side by side go from ids to sums in one pass, where one field or the
+ * corrections alone are wanted: the bits are those of pairs that are found on the spot, which go
+ * step by step. */
+#include "support/setup.h"
+#include <math.h>
+
+typedef struct scene {
+    const test_case *test;
+    sphg_context *context;
+    sphg_scheme scheme;
+    cloud points;
+    setup_array positions, volume, one_volume, scalar, vector;
+    const sphg_neighbors *kept, *found;
+} scene;
+
+static setup_array numbers_of(const scene *of, int width, random_state *random)
+{
+    const setup_array numbers = setup_output(test_field_type(of->test), of->points.count, width);
+    for (int k = 0; k < of->points.count * width; ++k)
+        setup_put(&numbers, k, random_between(random, -1, 1));
+    return numbers;
+}
+
+static const sphg_neighbors *neighbors_of(const scene *of, int list_free, int keep_weights)
+{
+    cloud points = of->points;
+    sphg_geometry geometry = setup_geometry(of->test, &points, &of->positions);
+    geometry.list_free = list_free;
+    geometry.keep_weights = keep_weights;
+    return setup_search(of->context, &of->scheme, &geometry);
+}
+
+static scene scene_on(const test_case *test, sphg_context *context, double radius, int keep_weights)
+{
+    scene of = {.test = test, .context = context, .scheme = setup_scheme(test, radius)};
+    random_state random = random_seeded(83);
+    of.points = cloud_jittered(3, 9, 1, .3, &random);
+    of.positions = setup_positions(test, &of.points);
+    of.volume = setup_numbers(test_field_type(test), of.points.count, 1,
+                              cloud_volumes(&of.points, .3, &random));
+    of.one_volume = setup_numbers(test_field_type(test), 1, 1, (const double[]){.875});
+    of.scalar = numbers_of(&of, 1, &random);
+    of.vector = numbers_of(&of, 3, &random);
+    of.kept = neighbors_of(&of, 0, keep_weights);
+    of.found = neighbors_of(&of, 1, 0);
+    return of;
+}
+
+typedef struct wish {
+    const char *name;
+    int corrections;  /* a table is wanted */
+    sphg_shape shape; /* 0: no field */
+    sphg_form form;
+    int divergence; /* instead of the gradient */
+} wish;
+
+static const wish wishes[] = {
+    {"corrections", 1, 0, SPHG_DIFFERENCE, 0},
+    {"gradient of a scalar", 0, SPHG_SCALAR, SPHG_DIFFERENCE, 0},
+    {"gradient of a scalar, and corrections", 1, SPHG_SCALAR, SPHG_DIFFERENCE, 0},
+    {"Jacobian", 0, SPHG_VECTOR, SPHG_DIFFERENCE, 0},
+    {"Jacobian and corrections", 1, SPHG_VECTOR, SPHG_DIFFERENCE, 0},
+    {"direct Jacobian", 0, SPHG_VECTOR, SPHG_DIRECT, 0},
+    {"divergence", 0, SPHG_VECTOR, SPHG_DIFFERENCE, 1},
+    {"direct divergence", 0, SPHG_VECTOR, SPHG_DIRECT, 1},
+    {"force of a pressure", 0, SPHG_SCALAR, SPHG_ADJOINT, 0},
+    {"adjoint divergence", 0, SPHG_VECTOR, SPHG_ADJOINT, 1},
+};
+enum { WISHES = sizeof wishes / sizeof wishes[0] };
+
+/* Of the others' forms and of PLAIN, which has no corrections. */
+static int is_offered(const scene *of, const wish *w)
+{
+    const int plain = of->test->method == SPHG_PLAIN;
+    return plain ? !w->corrections : w->form != SPHG_ADJOINT;
+}
+
+static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neighbors,
+                     sphg_view volume, const sphg_subset *subset, setup_array *table,
+                     setup_array *result)
+{
+    const sphg_type type = test_field_type(of->test);
+    const int scalar = w->shape == SPHG_SCALAR;
+    const sphg_view field = setup_view(scalar ? &of->scalar : &of->vector);
+    *table = setup_output(type, of->points.count, 6);
+    *result = setup_output(type, of->points.count, w->divergence ? 1 : scalar ? 3 : 9);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = volume, .same_volumes = 1};
+    sphg_field wanted = {.shape = w->shape, .form = w->form, .at_sources = &field};
+    if (w->divergence)
+        wanted.divergence = setup_view(result);
+    else
+        wanted.gradient = setup_view(result);
+    sphg_request request = {.sources = &sources,
+                            .fields = w->shape ? &wanted : NULL,
+                            .set_count = 1,
+                            .field_count = w->shape ? 1 : 0,
+                            .subset = subset};
+    if (w->corrections)
+        request.correction = setup_view(table);
+    SETUP_OK(of->context, sphg_evaluate(of->context, &of->scheme, &request));
+}
+
+static void require_same(const scene *of, const wish *w, sphg_view volume,
+                         const sphg_subset *subset, const char *how)
+{
+    setup_array tables[2], results[2];
+    evaluate(of, w, of->found, volume, subset, &tables[0], &results[0]);
+    for (int turn = 0; turn < 2; ++turn) { /* weights: written, then read */
+        evaluate(of, w, of->kept, volume, subset, &tables[1], &results[1]);
+        TEST_REQUIRE(setup_same_bits(&tables[0], &tables[1]), "%s, %s: corrections", w->name, how);
+        TEST_REQUIRE(setup_same_bits(&results[0], &results[1]), "%s, %s", w->name, how);
+    }
+}
+
+static void require_all(const scene *of, const char *how)
+{
+    sphg_view one = setup_view(&of->one_volume);
+    one.stride = 0;
+    uint8_t *mask = test_memory((size_t)of->points.count);
+    for (int i = 0; i < of->points.count; ++i)
+        mask[i] = i % 8 != 3;
+    const sphg_subset most = sphg_masked(mask, of->points.count);
+    for (int k = 0; k < WISHES; ++k) {
+        if (!is_offered(of, &wishes[k]))
+            continue;
+        require_same(of, &wishes[k], one, NULL, test_text("%s, one volume", how));
+        require_same(of, &wishes[k], setup_view(&of->volume), NULL, how);
+        require_same(of, &wishes[k], setup_view(&of->volume), &most, test_text("%s, most", how));
+    }
+}
+
+/* Lists of one chunk, of several, and of so many that rounding is carried along. */
+static void the_bits_are_those_of_the_long_way(const test_case *test)
+{
+    const double radius[] = {2, 3, 4.5};
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        sphg_context *context = setup_context_on(isa);
+        for (int k = 0; context && k < 6; ++k) {
+            const scene of = scene_on(test, context, radius[k / 2], k % 2);
+            require_all(&of, test_text("path %d, H = %g, weights %s", (int)isa, radius[k / 2],
+                                       k % 2 ? "kept" : "formed"));
+        }
+    }
+}
+
+static void every_kernel_goes_it(const test_case *test)
+{
+    scene of = scene_on(test, setup_context(), 2, 0);
+    for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
+        of.scheme.kernel = (sphg_kernel)kernel;
+        require_all(&of, test_text("kernel %d", kernel));
+    }
+}
+
+/* A_i that is not finite reaches no sum of the direct form at i. */
+static void the_direct_form_does_not_look_at_the_target(const test_case *test)
+{
+    const scene of = scene_on(test, setup_context(), 2, 0);
+    const int odd = of.points.count / 2;
+    setup_put(&of.vector, 3 * odd, NAN);
+    setup_array table, result;
+    const wish direct = {"direct Jacobian", 0, SPHG_VECTOR, SPHG_DIRECT, 0};
+    evaluate(&of, &direct, of.kept, setup_view(&of.volume), NULL, &table, &result);
+    for (int c = 0; c < 9; ++c)
+        TEST_REQUIRE(isfinite(setup_get(&result, odd, c)), "number %d is not", c);
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(the_bits_are_those_of_the_long_way, TEST_ALL_PRECISIONS, 0,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(every_kernel_goes_it, TEST_SINGLE_AND_DOUBLE, 0,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(the_direct_form_does_not_look_at_the_target, TEST_SINGLE_AND_DOUBLE, 0,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
+};
+TEST_MAIN(entries)
