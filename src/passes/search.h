@@ -23,7 +23,10 @@ struct sphgi_periods {
 
 /* Runs of rows that hold the candidates of a cell; the first one holds the cell itself, from row
  * `own` on. Runs may be empty. */
-enum { SPHGI_RUNS_MOST = 128 };
+enum {
+    SPHGI_RUNS_MOST = 128,
+    SPHGI_SCANNED = 4 /* vectors of a run that are noted at a time: most runs are no longer */
+};
 struct sphgi_runs {
     int32_t count, candidates, own;
     int32_t begin[SPHGI_RUNS_MOST], length[SPHGI_RUNS_MOST];

@@ -41,8 +41,8 @@ static void stage(const struct sphgi_find *find, struct sphgi_runs *runs)
         const real *rows = (const real *)find->rows + SPHGI_ROW * (ptrdiff_t)runs->begin[run];
         const int32_t length = runs->length[run];
         runs->staged[run] = at;
-        for (int32_t k = 0; k < length;
-             k += LANES) { /* what is read beyond the end is overwritten */
+        /* What is read beyond the end is overwritten. */
+        for (int32_t k = 0; k < length; k += LANES) {
             const struct three v = coordinates_of(rows + SPHGI_ROW * (ptrdiff_t)k);
             store(x + at + k, v.x);
             store(y + at + k, v.y);
@@ -68,21 +68,21 @@ struct scan {
     int32_t count;
 };
 
-enum { SCANNED = 4 /* vectors that are noted at a time: most runs are no longer */ };
-typedef int32_t scanned __attribute__((vector_size(4 * SCANNED), aligned(4), may_alias));
-typedef uint16_t scanned_lanes __attribute__((vector_size(2 * SCANNED), aligned(2), may_alias));
+typedef int32_t scanned __attribute__((vector_size(4 * SPHGI_SCANNED), aligned(4), may_alias));
+typedef uint16_t scanned_lanes
+    __attribute__((vector_size(2 * SPHGI_SCANNED), aligned(2), may_alias));
 
 /* Behind the last vector of a run something is written that the next run overwrites. */
 SPHGI_TEMPLATE struct scan scan_of(const struct sphgi_find *find, const struct sphgi_runs *runs)
 {
-    const size_t most = (size_t)runs->candidates / LANES + (size_t)runs->count + SCANNED;
+    const size_t most = (size_t)runs->candidates / LANES + (size_t)runs->count + SPHGI_SCANNED;
     const scanned first = {0, LANES, 2 * LANES, 3 * LANES};
     struct scan s = {.at = find->scan};
     s.row = s.at + most;
     s.lanes = (uint16_t *)(void *)(s.row + most);
     for (int32_t run = 0; run < runs->count; ++run) {
         const int32_t length = runs->length[run], vectors = (length + LANES - 1) / LANES;
-        for (int32_t v = 0; v < vectors; v += SCANNED) {
+        for (int32_t v = 0; v < vectors; v += SPHGI_SCANNED) {
             *(scanned *)(s.at + s.count + v) = first + (runs->staged[run] + v * LANES);
             *(scanned *)(s.row + s.count + v) = first + (runs->begin[run] + v * LANES);
             *(scanned_lanes *)(s.lanes + s.count + v) = (scanned_lanes){0} + (uint16_t)ALL;

@@ -45,7 +45,7 @@ static size_t staged_bytes(const sphg_neighbors *neighbors)
 
 static size_t scan_bytes(const sphg_neighbors *neighbors)
 {
-    const size_t vectors = (size_t)room_of(neighbors) / 2 + SPHGI_RUNS_MOST;
+    const size_t vectors = (size_t)room_of(neighbors) / 2 + SPHGI_RUNS_MOST + SPHGI_SCANNED;
     const size_t each = 2 * sizeof(int32_t) + sizeof(uint16_t);
     return neighbors->graded ? 0 : sphgi_round_up(vectors * each, SPHGI_ALIGNMENT);
 }
