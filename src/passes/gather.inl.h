@@ -60,12 +60,15 @@ enum { AHEAD = 64 /* steps: ids come from memory, those to come are asked for */
  * that follow. Lanes beside each other read the same lines. */
 enum { ROWS_AHEAD = 24 /* steps */, LANES_A_LINE = 2 };
 
-/* From an id to that whose rows are asked for; 0 where memory ends before. */
-SPHGI_TEMPLATE ptrdiff_t to_rows_ahead(const struct sphgi_tile *tile)
+/* The first ids whose rows are asked for; where memory ends before, they are those that are read.
+ */
+SPHGI_TEMPLATE const uint32_t *ids_ahead(const struct sphgi_tile *tile)
 {
     const ptrdiff_t steps = tile->steps + ROWS_AHEAD;
     const bool there = tile->ids_end && tile->ids_end - tile->ids >= steps * tile->id_stride;
-    return there ? ROWS_AHEAD * tile->id_stride : 0;
+    const uint32_t *ids = tile->ids + (there ? ROWS_AHEAD * tile->id_stride : 0);
+    __asm__("" : "+r"(ids)); /* else GCC keeps a register for each lane's distance from tile->ids */
+    return ids;
 }
 
 /* also NULL: there is one array of rows. */

@@ -98,15 +98,15 @@ SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct
     clear(sum, how.numbers ? sums_of_field(how) : 0);
     if (how.numbers)
         own_numbers(g, lists->places, own);
-    const ptrdiff_t rows_ahead = to_rows_ahead(tile);
-    const uint32_t *ids = tile->ids;
+    const uint32_t *ids = tile->ids, *to_come = ids_ahead(tile);
     real *factor = tile->arrays;
     const ptrdiff_t step = lists->kept ? SPHGI_GROUP : 0;
     if (lists->kept)
         factor = (real *)lists->kept + (ids - lists->ids);
     for (int32_t k = 0; k < tile->steps; ++k, ids += SPHGI_GROUP, factor += step) {
         __builtin_prefetch(ids + AHEAD * SPHGI_GROUP);
-        ask_for_rows(rows, how.numbers ? field : NULL, ids + rows_ahead);
+        ask_for_rows(rows, how.numbers ? field : NULL, to_come);
+        to_come += SPHGI_GROUP;
         const struct four row = gather_rows(rows, ids);
         const vec x[3] = {target.x - row.x, target.y - row.y, target.z - row.z};
         vec s;

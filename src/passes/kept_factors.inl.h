@@ -10,13 +10,14 @@ SPHGI_TEMPLATE void offsets_of_pairs(const struct sphgi_gather *g, const real *k
     const real *rows = g->rows;
     const uint32_t *ids = tile->ids;
     const ptrdiff_t stride = tile->id_stride;
-    const ptrdiff_t rows_ahead = to_rows_ahead(tile);
+    const uint32_t *to_come = ids_ahead(tile);
     const real *also = tile->also ? tile->also : rows;
     real *at = tile->arrays;
     for (int32_t k = 0; k < tile->steps; ++k, at += LANES, ids += stride, kept += SPHGI_GROUP) {
         __builtin_prefetch(ids + AHEAD * stride);
         __builtin_prefetch(kept + AHEAD * SPHGI_GROUP);
-        ask_for_rows(rows, also, ids + rows_ahead);
+        ask_for_rows(rows, also, to_come);
+        to_come += stride;
         const struct four row = gather_rows(rows, ids);
         store(at + SPHGI_X * SPHGI_TILE, own.x - row.x);
         store(at + SPHGI_Y * SPHGI_TILE, own.y - row.y);

@@ -91,6 +91,10 @@ void sphgi_ask_for_targets(const struct sphgi_worker *w, int32_t count, const in
     const struct sphgi_passes *p = w->passes;
     p->ask_for_lanes(count, &plan->target_correction, targets, false);
     p->ask_for_lanes(count, &plan->correction, targets, true);
+    if (plan->adjoint || plan->transposes[1]) {
+        p->ask_for_lanes(count, &plan->target_volume, targets, false);
+        p->ask_for_lanes(count, &plan->target_density, targets, false);
+    }
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (k >= 32 || !(w->own.in_rows >> k & 1))
