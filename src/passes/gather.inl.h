@@ -82,6 +82,18 @@ SPHGI_TEMPLATE void ask_for_rows(const real *rows, const real *also, const uint3
     }
 }
 
+/* Rows of the arrays behind the first: fewer lanes of each, lest asking takes the time it saves. */
+SPHGI_TEMPLATE void ask_for_more_rows(const struct sphgi_tile *tile, const uint32_t *ids)
+{
+    enum { LANES_ASKED = 4 };
+    const real *rows = tile->also;
+    for (int32_t k = 1; k < tile->also_arrays; ++k) {
+        rows += tile->also_numbers;
+        for (int l = LANES_ASKED - 1; l < LANES; l += LANES_ASKED)
+            __builtin_prefetch(rows + SPHGI_ROW / SPHGI_ID_STEP * (size_t)ids[l]);
+    }
+}
+
 /* LANES ids: those of what is no pair become the dummy's, for a field that is not finite must not
  * enter through 0 * NaN. */
 SPHGI_TEMPLATE void keep_ids(mask inside, uint32_t dummy, const uint32_t *ids, uint32_t *to)

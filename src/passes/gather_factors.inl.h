@@ -23,8 +23,10 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
     real *at = tile->arrays;
     for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride, kept += LANES) {
         __builtin_prefetch(ids + ahead);
-        if (!masked)
+        if (!masked) {
             ask_for_rows(rows, also, to_come);
+            ask_for_more_rows(tile, to_come);
+        }
         to_come += stride;
         struct four row = gather_rows(rows, ids);
         vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;

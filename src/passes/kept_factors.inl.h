@@ -17,6 +17,7 @@ SPHGI_TEMPLATE void offsets_of_pairs(const struct sphgi_gather *g, const real *k
         __builtin_prefetch(ids + AHEAD * stride);
         __builtin_prefetch(kept + AHEAD * SPHGI_GROUP);
         ask_for_rows(rows, also, to_come);
+        ask_for_more_rows(tile, to_come);
         to_come += stride;
         const struct four row = gather_rows(rows, ids);
         store(at + SPHGI_X * SPHGI_TILE, own.x - row.x);

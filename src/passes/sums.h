@@ -71,6 +71,8 @@ struct sphgi_tile {
     ptrdiff_t id_stride;     /* from step to step */
     const uint32_t *ids_end; /* of the memory they stand in; NULL: they are the tile's own */
     const void *also;        /* rows that are read by the same ids afterwards; NULL: none */
+    int32_t also_arrays;     /* of them, one behind the other ... */
+    ptrdiff_t also_numbers;  /* ... of so many numbers each */
     uint32_t *own_ids;       /* SPHGI_TILE: room for ids that do not stand like this in memory */
     int32_t steps;           /* SPHGI_CHUNK at most */
     int32_t chunk;           /* of the lists, that the tile holds: 0 starts the sums */

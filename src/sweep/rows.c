@@ -4,7 +4,10 @@
 #include "core/parallel.h"
 #include <string.h>
 
-enum { PACK_GRAIN = 4096 /* particles */ };
+enum {
+    PACK_GRAIN = 4096, /* particles */
+    ASKED_MOST = 4     /* arrays of rows that are asked for before they are read */
+};
 
 static size_t row_size(sphg_type type)
 {
@@ -58,8 +61,11 @@ void sphgi_use_rows(struct sphgi_worker *w)
         use_local_rows(w);
     else
         use_packed_rows(w);
-    if (!w->rows.local && (w->sweep->steps & SPHGI_SUM_FIELDS) && w->sweep->plan->row_count)
-        w->tile.also = w->rows.at[0];
+    if (w->rows.local || !(w->sweep->steps & SPHGI_SUM_FIELDS) || !w->sweep->plan->row_count)
+        return;
+    w->tile.also = w->rows.at[0];
+    w->tile.also_arrays = sphgi_min32(w->sweep->plan->row_count, ASKED_MOST);
+    w->tile.also_numbers = ((ptrdiff_t)w->sweep->set->neighbors->source_count + 1) * SPHGI_ROW;
 }
 
 /* ---- What the host has becomes rows --------------------------------------------------------- */
