@@ -103,31 +103,13 @@ static void weave(const uint32_t *const *lists, const int32_t *count, int32_t st
     int32_t shortest = count[0];
     for (int32_t l = 1; l < SPHGI_GROUP; ++l)
         shortest = sphgi_min32(shortest, count[l]);
-    if (steps + 3 <= shortest + padded) {
+    if (((steps + 15) & -16) <= shortest + padded) { /* nothing else is read, either */
         weave_padded(lists, steps, to);
         return;
     }
     for (int32_t k = 0; k < steps; k += 4, to += 4 * SPHGI_GROUP)
         for (int32_t l = 0; l < SPHGI_GROUP; l += TURNED)
             turn_lanes(lists + l, count + l, k, &none, SPHGI_GROUP, to + l);
-}
-
-/* Memory that will not be read soon is written past the caches, which need not read it first then.
- * Whole lines, in full. */
-static void stream(const uint32_t *from, size_t count, uint32_t *to)
-{
-#if VECTOR_BYTES == 64
-    for (size_t k = 0; k < count; k += 16)
-        _mm512_stream_si512((void *)(to + k), _mm512_loadu_si512(from + k));
-    _mm_sfence();
-#elif defined(__SSE2__)
-    for (size_t k = 0; k < count; k += 4)
-        _mm_stream_si128((__m128i *)(void *)(to + k),
-                         _mm_loadu_si128((const __m128i *)(const void *)(from + k)));
-    _mm_sfence();
-#else
-    memcpy(to, from, count * sizeof *to);
-#endif
 }
 
 SPHGI_TEMPLATE bool follow_one_another(const struct sphgi_lane_lists *lists)

@@ -100,8 +100,6 @@ struct sphgi_passes {
      * that is not 0, has `padded` dummies behind it; then up to sixteen steps more are written. */
     void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, int32_t padded,
                   uint32_t dummy, uint32_t *to);
-    /* Copies ids to whole lines of memory, past the caches where the machine can. */
-    void (*stream)(const uint32_t *from, size_t count, uint32_t *to);
     /* Steps [begin, begin + tile->steps) of the lists become the ids of the tile. Lists with a
      * stride of 1 are padded to a multiple of four with the dummy. */
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,

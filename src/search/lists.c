@@ -11,8 +11,7 @@ enum {
     WAITING_IDS = 1 << 14, /* of groups that are stored together: a copy at once does not read first
                               what it overwrites */
     WAITING_ROOM = WAITING_IDS + 16 * SPHGI_GROUP, /* more steps are woven than count */
-    WAITING_GROUPS = 256,
-    CACHED_IDS = 1 << 23 /* lists that are larger have left the caches when they are read */
+    WAITING_GROUPS = 256
 };
 
 struct build {
@@ -24,7 +23,6 @@ struct build {
     size_t memory_each;
     int32_t step; /* groups: every one, or a sample */
     const struct sphgi_passes *passes;
-    void (*store)(const uint32_t *from, size_t count, uint32_t *to);
     atomic_int_least64_t ids, pairs;
     atomic_bool crowded;
     atomic_int bad_target; /* the lowest whose list is wrong, or INT32_MAX */
@@ -68,11 +66,6 @@ static struct waiting *open_worker(struct build *build, int32_t number)
     return w;
 }
 
-static void copy_ids(const uint32_t *from, size_t count, uint32_t *to)
-{
-    memcpy(to, from, count * sizeof *to);
-}
-
 /* A place for so many ids, -1 if they do not fit; counts them in any case. */
 static int64_t claim(struct build *build, int64_t ids)
 {
@@ -91,7 +84,7 @@ static void store_waiting(struct waiting *w)
 {
     const int64_t place = claim(w->build, w->used);
     if (place >= 0)
-        w->build->store(w->ids, (size_t)w->used, w->build->neighbors->found.ids + place);
+        memcpy(w->build->neighbors->found.ids + place, w->ids, (size_t)w->used * sizeof *w->ids);
     for (int32_t k = 0; k < w->groups; ++k)
         note_place(w->build, w->group[k], place < 0 ? -1 : place + w->place[k], w->steps[k]);
     w->used = w->groups = 0;
@@ -278,7 +271,6 @@ static void find_groups(struct build *build, int32_t step)
     const int32_t groups = sphgi_group_count(build->neighbors->target_count);
     build->step = step;
     build->passes = sphgi_passes_of(build->context, SPHG_F32);
-    build->store = found->room > CACHED_IDS ? build->passes->stream : copy_ids;
     atomic_store(&build->ids, 0);
     atomic_store(&build->pairs, 0);
     atomic_store(&build->crowded, false);
