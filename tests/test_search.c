@@ -89,6 +89,21 @@ static void large_cloud_has_the_pairs_of_brute_force(const test_case *test)
                                           "4000 particles") > 20000);
 }
 
+/* One thread's share of the particles fills its blocks, the other's does at first. */
+static void dense_and_thin_shares_have_the_pairs_of_brute_force(const test_case *test)
+{
+    enum { SHARE = 4200, DENSE = SHARE + 400 };
+    sphg_context *context = setup_context_of(2);
+    random_state random = random_seeded(6);
+    scene particles = scene_empty(test, 2 * SHARE);
+    double *x = particles.sources;
+    const double H = test->dimension == 2 ? 0.0625 : 0.25;
+    scatter(&particles, DENSE, x, -1, 2, &random);
+    scatter(&particles, 2 * SHARE - DENSE, x + DENSE * test->dimension, -200, 400, &random);
+    assert_true(rows_require_search_exact(context, brute_force_neighbors(context), &particles, H,
+                                          "shares") > 20000);
+}
+
 static scene lattice_scene(const test_case *test, int per_axis, double spacing, double origin)
 {
     cloud points = cloud_lattice(test->dimension, per_axis, 1);
@@ -462,6 +477,7 @@ static void another_precision_rebuilds(const test_case *test)
 static const test_entry entries[] = {
     EACH(random_clouds_have_the_pairs_of_brute_force),
     EACH(large_cloud_has_the_pairs_of_brute_force),
+    EACH(dense_and_thin_shares_have_the_pairs_of_brute_force),
     EACH(lattices_at_the_support_radius_have_the_pairs_of_brute_force),
     EACH(near_ties_are_rounded_as_the_predicate_says),
     EACH(positions_at_cell_borders_have_the_pairs_of_brute_force),
