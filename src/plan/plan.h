@@ -97,6 +97,8 @@ struct sphgi_plan {
     bool both_sides;         /* both ends of a pair have radii of their own, and either counts */
     bool both_at_once;  /* any field is folded then: its pairs are weighed with both at once ... */
     bool both_alone;    /* ... and nothing else is summed */
+    bool narrows;       /* beside these, something is summed over pairs with r < H_i alone */
+    bool both_first;    /* pairs are not weighed before the fields of both sides are summed */
     int32_t radius_row; /* of each source's radius, for the fields that are not folded then; -1 */
     int32_t carrier[2]; /* the folded field that sums folded_sum on its way, -1: none */
     int32_t sums;

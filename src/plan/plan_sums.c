@@ -154,6 +154,16 @@ static bool are_both_alone(const struct sphgi_plan *plan, enum sphgi_purpose pur
     return alone;
 }
 
+/* Lists that hold r < max(H_i, H_j) are narrowed for what sees r < H_i, lest a value that is not
+ * finite enters as 0 * NaN. Matrices read no values: they go along where that costs nothing. */
+static bool sums_within(const struct sphgi_plan *plan)
+{
+    bool within = plan->wants_value || (plan->computes && plan->radius_row < 0);
+    for (int32_t k = 0; k < plan->field_count; ++k)
+        within |= plan->fields[k].differentiates && plan->fields[k].one_sided;
+    return within;
+}
+
 void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
 {
     const sphg_method method = plan->scheme.method;
@@ -178,5 +188,7 @@ void sphgi_plan_decide(struct sphgi_plan *plan, enum sphgi_purpose purpose)
     plan->mean_volume = plan->computes && method == SPHG_MLS && !plan->target_volume.count;
     decide_rows(plan);
     plan->both_alone = are_both_alone(plan, purpose);
+    plan->narrows = plan->both_sides && sums_within(plan);
+    plan->both_first = plan->both_alone || (plan->narrows && plan->radius_row < 0);
     decide_sums(plan);
 }

@@ -143,7 +143,7 @@ static void sum_held(struct sphgi_worker *w)
 {
     for (int32_t k = 0; k < w->batch.tiles; ++k) {
         sphgi_take_tile(w, k);
-        sphgi_evaluate_tile(w);
+        sphgi_sum_tile(w);
         join(w);
     }
     sphgi_batch_settle(w);

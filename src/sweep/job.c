@@ -48,6 +48,13 @@ bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
            n->position_type == plan->type;
 }
 
+bool sphgi_weighs_near_at_once(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_plan *plan = sweep->plan;
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return plan->narrows && !n->periodic && !plan->wants_value && n->position_type == plan->type;
+}
+
 bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;

@@ -84,6 +84,9 @@ bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep);
 /* Of fields of two radii: their pairs are weighed as they are gathered. */
 bool sphgi_weighs_both_at_once(const struct sphgi_sweep *sweep);
 
+/* Those within the target's own radius, which are sorted out afterwards, are. */
+bool sphgi_weighs_near_at_once(const struct sphgi_sweep *sweep);
+
 /* Pairs that are wanted one by one, of lists that hold those of a skin beside those that the radius
  * of either end reaches. */
 bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep);

@@ -52,6 +52,9 @@ static void use_packed_rows(struct sphgi_worker *w)
     w->both.rows = n->sources.rows.data;
     w->both.either = sphgi_sorts_out_pairs(sweep);
     w->both.volumes = !w->both.either;
+    w->near = w->gather;
+    w->near.all = false;
+    w->near.masked = true;
 }
 
 void sphgi_use_rows(struct sphgi_worker *w)

@@ -125,6 +125,23 @@ static void turn_to_other_side(struct sphgi_worker *w)
     sphgi_weigh_other_side(w);
 }
 
+void sphgi_sum_over_both_ends(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    sphgi_load_targets(w);
+    if (plan->diffuses)
+        sphgi_begin_diffusion(w);
+    if (plan->radius_row >= 0)
+        turn_to_other_side(w);
+    if (plan->diffuses)
+        sphgi_sum_diffusion(w);
+    for (int symmetric = 0; symmetric < 2; ++symmetric)
+        if (plan->transposes[symmetric])
+            sum_transposed(w, symmetric);
+    if (plan->both_at_once)
+        sphgi_sum_both_sides(w);
+}
+
 /* One gradient of few components, and nothing else: G_ij need not be put into the tile. */
 static bool is_one_gradient(const struct sphgi_worker *w)
 {
@@ -159,17 +176,8 @@ static void sum_fields(struct sphgi_worker *w)
     for (int32_t k = 0; plan->values_by_own && k < plan->field_count; ++k)
         if (plan->fields[k].value_sum >= 0 && plan->fields[k].volume_row >= 0)
             sphgi_sum_value(w, &plan->fields[k], subtracted(w, &plan->fields[k]));
-    if (plan->diffuses)
-        sphgi_begin_diffusion(w);
-    if (plan->radius_row >= 0)
-        turn_to_other_side(w);
-    if (plan->diffuses)
-        sphgi_sum_diffusion(w);
-    for (int symmetric = 0; symmetric < 2; ++symmetric)
-        if (plan->transposes[symmetric])
-            sum_transposed(w, symmetric);
-    if (plan->both_at_once)
-        sphgi_sum_both_sides(w);
+    if (!plan->narrows)
+        sphgi_sum_over_both_ends(w);
 }
 
 /* Hands on the pairs inside the cutoff; counts them in any case. */
@@ -197,8 +205,6 @@ void sphgi_weigh_tile(struct sphgi_worker *w)
     const int32_t count = w->tile.steps * w->passes->lanes;
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
-    if (plan->both_alone)
-        return;
     if (plan->classic || plan->wants_value || plan->mean_volume)
         p->shape_weights(&w->shape, w->tile.arrays, count);
     if (plan->classic)

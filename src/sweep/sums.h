@@ -7,6 +7,9 @@
 /* The weights of gathered pairs that came without. */
 void sphgi_weigh_tile(struct sphgi_worker *worker);
 
+/* Adds the pairs to the sums of fields of both sides; of a plan that narrows this comes first. */
+void sphgi_sum_over_both_ends(struct sphgi_worker *worker);
+
 /* Adds the pairs to the sums of this round, or hands them on one by one. */
 void sphgi_evaluate_tile(struct sphgi_worker *worker);
 

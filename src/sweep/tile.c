@@ -67,11 +67,33 @@ static void gather_factors(struct sphgi_worker *w, int32_t begin)
         p->keep_factors(&w->tile, kept);
 }
 
+/* From r < max(H_i, H_j) to r < H_i. */
+static void narrow(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (w->near_as_gathered) {
+        w->passes->gather_factors(&w->near, &w->shape, sphgi_places(w), &w->tile);
+        return;
+    }
+    w->sweep->position_passes->gather[plan->type == SPHG_F64](&w->near, sphgi_places(w),
+                                                              w->passes->lanes, &w->tile);
+    sphgi_weigh_tile(w);
+}
+
+void sphgi_sum_tile(struct sphgi_worker *w)
+{
+    if (w->sweep->plan->narrows && (w->batch.summing & SPHGI_SUM_FIELDS)) {
+        sphgi_sum_over_both_ends(w);
+        narrow(w);
+    }
+    sphgi_evaluate_tile(w);
+}
+
 void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists, int32_t begin)
 {
     if (sphgi_is_held(w)) {
         sphgi_take_tile(w, w->batch.tiles++);
-        sphgi_evaluate_tile(w);
+        sphgi_sum_tile(w);
         return;
     }
     if (w->rows.local || w->sweep->pairs)
@@ -90,13 +112,13 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
             &w->both, sphgi_places(w), w->passes->lanes, &w->tile);
     if (w->factors_at_once)
         gather_factors(w, begin);
-    else if (!w->sweep->plan->both_alone)
+    else if (!w->sweep->plan->both_first)
         w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
             &w->gather, sphgi_places(w), w->passes->lanes, &w->tile);
     sphgi_scale_volumes(w);
-    if (!w->factors_at_once)
+    if (!w->factors_at_once && !w->sweep->plan->both_first)
         sphgi_weigh_tile(w);
     if (w->held.room)
         sphgi_hold_tile(w);
-    sphgi_evaluate_tile(w);
+    sphgi_sum_tile(w);
 }

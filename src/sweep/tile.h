@@ -8,4 +8,7 @@
 void sphgi_run_tile(struct sphgi_worker *worker, const struct sphgi_lane_lists *lists,
                     int32_t begin);
 
+/* The pairs of the tile that is there to the sums of this round. */
+void sphgi_sum_tile(struct sphgi_worker *worker);
+
 #endif

@@ -169,4 +169,5 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));
     w->factors_at_once = sphgi_forms_factors_alone(sweep);
     w->both_as_gathered = sphgi_weighs_both_at_once(sweep);
+    w->near_as_gathered = sphgi_weighs_near_at_once(sweep);
 }

@@ -102,6 +102,7 @@ struct sphgi_worker {
     /* The scheme, in the units of the sums. */
     struct sphgi_gather gather;
     struct sphgi_gather both; /* the same for pairs that are weighed with both radii */
+    struct sphgi_gather near; /* ... and for those of them that are within the target's own */
     struct sphgi_shape shape;
     struct sphgi_threshold threshold;
     struct sphgi_second second;
@@ -113,6 +114,7 @@ struct sphgi_worker {
     bool is_short;           /* whole groups are summed by one pass, which is told ... */
     struct sphgi_group_sums short_way;
     bool both_as_gathered;   /* pairs that count with two radii are weighed then, too */
+    bool near_as_gathered;   /* ... and those within the target's own among them */
     bool coefficients_first; /* they must be known before all that this sweep sums can be: it comes
                                 in rounds, or they are there */
 
