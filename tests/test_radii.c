@@ -76,6 +76,30 @@ static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
 
 /* Where cells are small beside the period their numbers are too large for the tree, and large
  * particles near its ends look at both of them. */
+/* Long along one axis, which bars of cells then follow; every other one goes round. */
+static void clouds_that_are_long_along_any_axis_have_the_pairs_of_brute_force(const test_case *test)
+{
+    sphg_context *context = setup_context_of(2);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
+    random_state random = random_seeded(43);
+    const int d = test->dimension;
+    int64_t pairs = 0;
+    for (int k = 0; k < 8 * d; ++k) {
+        const int axis = k % d;
+        scene particles = scene_empty(test, 400);
+        scatter(&particles, 400, particles.sources, -1.25, 2.5, &random);
+        for (int i = 0; i < 400; ++i)
+            particles.sources[i * d + axis] *= 4; /* exact */
+        particles.support = radii_for(&particles, 400, particles.sources, 2.5, 6, 0, &random);
+        particles.period[axis] = k / d & 1 ? 10 : 0;
+        particles.period[(axis + 1) % d] = k / d & 2 ? 2.5 : 0;
+        particles.mutual = k / d >> 2;
+        pairs += rows_require_search_exact(context, neighbors, &particles, 1,
+                                           test_text("axis %d, cloud %d", axis, k));
+    }
+    assert_true(pairs > 2000);
+}
+
 static void tiny_particles_near_the_ends_of_a_period_are_found_once(const test_case *test)
 {
     enum { COUNT = 24, PERIOD = 8 };
@@ -838,6 +862,8 @@ static void half_given_radii_are_refused(const test_case *test)
 static const test_entry entries[] = {
     TEST_ENTRY(random_clouds_have_the_pairs_of_brute_force, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(clouds_that_are_long_along_any_axis_have_the_pairs_of_brute_force,
+               TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(tiny_particles_near_the_ends_of_a_period_are_found_once, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(operators_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

@@ -171,8 +171,8 @@ static sphg_result order_of_lists(sphg_context *context, const sphg_neighbors *n
 {
     static const struct sphgi_periods open;
     struct sphgi_grid grid = {.count = 0};
-    const struct sphgi_raster raster =
-        sphgi_raster_of(n->dimension, n->radius, &open, NULL, n->position_type);
+    const struct sphgi_raster raster = sphgi_raster_of(
+        n->dimension, n->radius, (struct sphgi_bars){0, 1}, &open, NULL, n->position_type);
     struct sphgi_buffer *own[] = {&grid.cell_start, &grid.rows, &grid.order};
     for (int k = 0; k < 3; ++k)
         *own[k] = context->order_grid[k];

@@ -19,13 +19,18 @@ SPHGI_TEMPLATE double two_to_the(int32_t exponent)
     return power;
 }
 
-/* Block and octave, and local cell times 8 and its eighth of each row; as `cut` does it, in cells
- * that are as many times smaller. */
+/* Of a coordinate in a cell; sort.c has the same. */
+SPHGI_TEMPLATE int32_t quarter_of(double inside)
+{
+    return inside <= 0 ? 0 : inside < 1 ? (int32_t)(inside * SPHGI_QUARTERS) : SPHGI_QUARTERS - 1;
+}
+
+/* Block and octave, and quarter of one of its cells of each row; as `cut` does it, in cells that
+ * are as many times smaller. */
 static bool cut_octaves(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                         int32_t (*block)[4], uint8_t *local)
 {
     const struct cutter c = cutter_of(cutting);
-    const four_longs eighths = {1, 2, 4, 0};
     int64_t top;
     __builtin_memcpy(&top, &cutting->top, sizeof top);
     four_bits far = {0};
@@ -39,12 +44,14 @@ static bool cut_octaves(const struct sphgi_cutting *cutting, const void *rows, i
         far |= bits - c.nearest;
         const four_ints cell = __builtin_convertvector((four_longs)bits, four_ints);
         const four_ints parts = (cell & c.inside) << c.local_shift;
-        const four_longs behind = (four_longs)(t - whole >= 0.5) & eighths;
         four_ints at = cell >> c.shift;
+        const int32_t first = at[0];
         at[3] = octave;
+        at[0] = at[cutting->along];
+        at[cutting->along] = first;
         *(four_ints *)block[k] = at;
-        local[k] = (uint8_t)((parts[0] | parts[1] | parts[2]) * 8 +
-                             (int32_t)(behind[0] | behind[1] | behind[2]));
+        local[k] = (uint8_t)((parts[0] | parts[1] | parts[2]) * SPHGI_QUARTERS +
+                             quarter_of(t[cutting->along] - whole[cutting->along]));
     }
     return are_near(&far);
 }

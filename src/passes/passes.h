@@ -25,7 +25,7 @@ struct sphgi_passes {
     /* Block, and cell in it, of each row; false: one is too far away, and all are undefined. */
     bool (*cut)(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                 int32_t (*block)[4], uint8_t *local);
-    /* The same for rows with radii: block and octave, and cell and eighth of it. */
+    /* The same for rows with radii: block and octave, and quarter of one of its cells. */
     bool (*cut_octaves)(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
                         int32_t (*block)[4], uint8_t *local);
     /* x y z from load_rows' columns; the first item that is not finite, or -1. */

@@ -7,7 +7,9 @@
 /* How the cells of an open raster are numbered. Passes cut those from - SPHGI_CUT_MOST up to, and
  * without, SPHGI_CUT_MOST. */
 #define SPHGI_CUT_MOST (1 << 29)
+enum { SPHGI_QUARTERS = 4 }; /* of a cell of an octave, along its bar */
 struct sphgi_cutting {
+    int32_t along;          /* the axis of the bars, whose block comes first */
     double inverse[3];      /* 1 / cell width; 0: an axis that is not used */
     int32_t shift[3];       /* a block is 2^shift cells long */
     int32_t local_shift[3]; /* where the axis stands in the number of a cell in its block */
@@ -37,7 +39,8 @@ struct sphgi_runs {
 struct sphgi_packed {
     int32_t most; /* of the runs they come from */
     int32_t count;
-    int32_t self; /* of these, the first target, if it is a source; others follow. Else -1 */
+    int32_t self; /* of these, the first target, if all are sources that follow one another; -1:
+                     they are none, or a period parts them */
 };
 
 /* A search among sources. */

@@ -104,7 +104,7 @@ SPHGI_TEMPLATE void pack_as(const struct sphgi_find *find, const struct sphgi_ru
     for (int32_t run = 0; run < runs->count; ++run) {
         int32_t begin = runs->begin[run];
         const int32_t end = begin + runs->length[run];
-        if (self >= begin && self < end) { /* in two parts, to see where the targets stand */
+        if (self >= begin && self + count <= end) { /* in two parts, to see where they stand */
             n = pack_run(find, &c, &s, begin, self, n, &w, periodic, mutual);
             packed->self = n;
             begin = self;

@@ -120,13 +120,22 @@ static void take_radii(sphg_context *context, const sphg_geometry *given, struct
 }
 
 static struct sphgi_raster raster_for(const struct sphgi_geometry *g,
-                                      const struct sphgi_scheme *scheme, double skin)
+                                      const struct sphgi_scheme *scheme, double skin, int32_t along)
 {
-    struct sphgi_raster raster = sphgi_raster_of(g->dimension, scheme->radius + skin, &g->periods,
-                                                 g->largest, g->position_type);
+    const struct sphgi_bars bars = {along, g->graded ? SPHGI_OCTAVE_ACROSS : 1};
+    struct sphgi_raster raster = sphgi_raster_of(g->dimension, scheme->radius + skin, bars,
+                                                 &g->periods, g->largest, g->position_type);
     raster.top = scheme->radius;
     raster.octaves = g->graded ? sphgi_octaves_for(&raster, g->least, g->largest) : 0;
     return raster;
+}
+
+/* Of bars: as the targets have it, whose grid may serve several objects. */
+static int32_t axis_of_bars(const struct sphgi_geometry *g, const struct sphgi_scheme *scheme)
+{
+    const struct sphgi_strewn targets = {g->target_rows, g->position_type, g->target_count,
+                                         g->dimension, scheme->radius};
+    return g->graded ? sphgi_longest_axis(&targets) : 0;
 }
 
 static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geometry *given,
@@ -153,10 +162,14 @@ static sphg_result read_geometry(struct sphgi_checker checker, const sphg_geomet
     if (result)
         return result;
     take_radii(context, given, g);
-    g->raster = raster_for(g, scheme, given->skin);
+    g->raster =
+        raster_for(g, scheme, given->skin,
+                   known ? sphgi_target_grid(other)->raster.along : axis_of_bars(g, scheme));
     g->shares = known && sphgi_may_share_targets(other, &g->raster);
-    if (known && !g->shares)
+    if (known && !g->shares) {
         sphgi_copy_targets(context, other, g);
+        g->raster = raster_for(g, scheme, given->skin, axis_of_bars(g, scheme));
+    }
     return SPHG_OK;
 }
 

@@ -5,9 +5,12 @@
 
 enum {
     CROWDED = -1,
-    TOGETHER = 8, /* targets of an octave: more of them stand too far apart to share candidates */
-    SLOT = 512,   /* candidates of a list in a slot that is not wide. Slots stand close together:
-                     the few lines that lists take of each must stay in the L1 cache */
+    TOGETHER = 8,  /* targets of an octave: more of them stand too far apart to test the same */
+    LEG = 40,      /* targets that share candidates, unless the first cell holds more of them ... */
+    LEG_CELLS = 8, /* ... and the cells that these are in, at most */
+    LOOKED_FOR = 128, /* targets for which blocks are looked up at once, about */
+    SLOT = 512, /* candidates of a list in a slot that is not wide. Slots stand close together: the
+                   few lines that lists take of each must stay in the L1 cache */
     STAGED = 3072 /* candidates of several cells: their coordinates must stay there, too */
 };
 
@@ -106,7 +109,7 @@ static void enter_block(struct sphgi_finder *f, int32_t block)
 {
     const struct sphgi_grid *targets = sphgi_target_grid(f->neighbors);
     f->block = block;
-    f->cell = 0;
+    f->cell = f->leg[0] = f->leg[1] = 0;
     f->staged_cells[0] = f->staged_cells[1] = 0;
     sphgi_cell_starts(targets, block, f->start);
     if (!f->neighbors->graded)
@@ -127,7 +130,7 @@ static void go_to(struct sphgi_finder *f, int32_t target)
 {
     if (f->block < 0 || target < f->start[0] || target >= f->start[SPHGI_BLOCK_CELLS])
         enter_block(f, sphgi_block_of_place(sphgi_target_grid(f->neighbors), target));
-    f->cell = 0;
+    f->cell = f->leg[0] = f->leg[1] = 0;
     f->first = f->next = target;
 }
 
@@ -195,14 +198,44 @@ static bool look_around(struct sphgi_finder *f, int32_t first, int32_t last)
     return sphgi_look_nearby(&walk, f->nearby);
 }
 
-/* The blocks near that of the next target, unless they are known; if they are too many, those near
- * its cell. False: these are too many, too. */
+/* To the leg of the next target: cells that follow one another, until they hold as many targets as
+ * share candidates. Counted from the block's first, so that lists do not depend on where a walk
+ * began. */
+static void enter_leg(struct sphgi_finder *f)
+{
+    while (f->next >= f->start[f->leg[1]]) {
+        const int32_t first = f->leg[1], most = f->start[first] + LEG;
+        const int32_t limit = first - first % LEG_CELLS + LEG_CELLS;
+        int32_t end = first + 1;
+        while (end < limit && f->start[end + 1] <= most)
+            ++end;
+        f->leg[0] = first;
+        f->leg[1] = end;
+    }
+}
+
+/* The cells of the block that are looked around at once, those of the next target being among them:
+ * all, or where they hold many targets some. */
+static void part_of_block(const struct sphgi_finder *f, int32_t *first, int32_t *last)
+{
+    int32_t cells = SPHGI_BLOCK_CELLS;
+    int32_t count = f->start[SPHGI_BLOCK_CELLS] - f->start[0];
+    for (; cells > LEG_CELLS && count > LOOKED_FOR; count /= 2)
+        cells /= 2;
+    *first = f->leg[0] - f->leg[0] % cells;
+    *last = *first + cells;
+}
+
+/* The blocks near the part of the block where the next target is, unless they are known; if they
+ * are too many, those near its leg. False: these are too many, too. */
 static bool look_nearby(struct sphgi_finder *f)
 {
+    int32_t first, last;
+    part_of_block(f, &first, &last);
     const bool known = f->next >= f->looked[0] && f->next < f->looked[1];
     return known ? f->nearby->count >= 0
-                 : look_around(f, f->start[0], f->start[SPHGI_BLOCK_CELLS]) ||
-                       look_around(f, f->start[f->cell], f->start[f->cell + 1]);
+                 : look_around(f, f->start[first], f->start[last]) ||
+                       look_around(f, f->start[f->leg[0]], f->start[f->leg[1]]);
 }
 
 /* Packs the candidates of the targets [first, last); false: they are too many. */
@@ -224,21 +257,21 @@ static bool pack(struct sphgi_finder *f, int32_t first, int32_t last)
     return true;
 }
 
-/* Where the targets that are searched for together with the next one begin and end. Counted from
- * the cell's first, so that lists do not depend on where a walk began. */
+/* Where the targets of the leg that are searched for together with the next one begin and end.
+ */
 static void few_around(const struct sphgi_finder *f, int32_t *first, int32_t *last)
 {
-    const int32_t begin = f->start[f->cell], end = f->start[f->cell + 1];
+    const int32_t begin = f->start[f->leg[0]], end = f->start[f->leg[1]];
     const int32_t parts = sphgi_max32(1, (end - begin + TOGETHER / 2 - 1) / TOGETHER);
     const int32_t part = sphgi_min32((f->next - begin) / TOGETHER, parts - 1);
     *first = begin + part * TOGETHER;
     *last = part + 1 < parts ? *first + TOGETHER : end;
 }
 
-/* Those of the cell share candidates, or if these are too many, a few of them. */
+/* Those of the leg share candidates, or if these are too many, a few of them. */
 static bool have_packed(struct sphgi_finder *f, int32_t first, int32_t last)
 {
-    const int32_t begin = f->start[f->cell], end = f->start[f->cell + 1];
+    const int32_t begin = f->start[f->leg[0]], end = f->start[f->leg[1]];
     if (f->next >= f->packed_for[0] && f->next < f->packed_for[1])
         return true;
     if (f->apart_up_to != end) {
@@ -254,15 +287,17 @@ static void find_in_octaves(struct sphgi_finder *f)
     const sphg_neighbors *n = f->neighbors;
     uint32_t *lists[SPHGI_FIND_MOST];
     int32_t selves[SPHGI_FIND_MOST], lengths[SPHGI_FIND_MOST], first, last;
+    enter_leg(f);
     few_around(f, &first, &last);
     const int32_t count = last - f->next;
     const bool packed = have_packed(f, first, last);
     for (int32_t k = 0; k < count; ++k)
         selves[k] = n->part_of ? row_of_source(n, f->next + k) : -1;
-    f->find.selves = n->part_of && !n->same ? selves : NULL;
+    const bool follow = packed && f->packed.self >= 0;
+    f->find.selves = n->part_of && !follow ? selves : NULL;
     open_slots(f, count, packed ? f->packed.count : 0, lists);
     if (packed) {
-        const int32_t self = f->packed.self < 0 ? -1 : f->packed.self + f->next - f->packed_for[0];
+        const int32_t self = follow ? f->packed.self + f->next - f->packed_for[0] : -1;
         f->passes->find_by_radii(&f->find, &f->packed, sphgi_target_row(n, f->next), count, self,
                                  lists, lengths);
         close_slots(f, count, lengths);

@@ -25,6 +25,7 @@ struct sphgi_finder {
     struct sphgi_halo around;
     struct sphgi_runs staged; /* of the cells staged_cells[0] .. [1] - 1 of the block */
     int32_t staged_cells[2];
+    int32_t leg[2]; /* of octaves: the cells [0] .. [1] - 1, whose targets share candidates */
     struct sphgi_nearby
         *nearby; /* of octaves: blocks near the targets looked[0] .. looked[1] - 1 */
     int32_t looked[2];

@@ -108,23 +108,26 @@ void sphgi_cell_of(const struct sphgi_raster *raster, const double *x, int64_t *
             cell[a] = 0;
 }
 
-struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach,
+struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach, struct sphgi_bars bars,
                                     const struct sphgi_periods *periods, const double *largest,
                                     sphg_type type)
 {
     struct sphgi_raster raster = {.dimension = dimension,
+                                  .along = bars.along,
                                   .slack = sphgi_slack_of(periods, largest, type)};
-    const double wide = reach * (1 + 0x1p-9);
     for (int32_t a = 0; a < 3; ++a) {
+        const double wide = reach * (1 + 0x1p-9) * (a ? bars.across : 1);
+        const int32_t number = sphgi_number_of_axis(&raster, a);
         struct sphgi_axis *axis = &raster.axis[a];
         *axis = (struct sphgi_axis){.inverse = 1 / wide, .low = -1, .high = 1};
         axis->shift = a ? 0 : SPHGI_BLOCK_SHIFT;
         if (a >= dimension)
             *axis = (struct sphgi_axis){.shift = 0};
-        else if (periods->length[a] > 0) {
-            const double cells = periods->length[a] / (wide + axis_slack(largest[a], type));
+        else if (periods->length[number] > 0) {
+            const double cells =
+                periods->length[number] / (wide + axis_slack(largest[number], type));
             raster.periodic = true;
-            axis->length = periods->length[a];
+            axis->length = periods->length[number];
             axis->cells = cells < 1 ? 1 : cells < 0x1p40 ? (int64_t)cells : (int64_t)1 << 40;
             axis->low = axis->cells >= 3 ? -1 : 0;
             axis->high = axis->cells >= 2 ? 1 : 0;
@@ -142,7 +145,7 @@ static bool same_axis(const struct sphgi_axis *a, const struct sphgi_axis *b)
 bool sphgi_same_raster(const struct sphgi_raster *a, const struct sphgi_raster *b)
 {
     bool same = a->dimension == b->dimension && a->periodic == b->periodic &&
-                a->octaves == b->octaves && a->top == b->top;
+                a->octaves == b->octaves && a->top == b->top && a->along == b->along;
     for (int32_t k = 0; k < 3; ++k)
         same = same && same_axis(&a->axis[k], &b->axis[k]);
     return same;
@@ -150,12 +153,14 @@ bool sphgi_same_raster(const struct sphgi_raster *a, const struct sphgi_raster *
 
 struct sphgi_cutting sphgi_cutting_of(const struct sphgi_raster *raster)
 {
-    struct sphgi_cutting cutting = {.octaves = raster->octaves, .top = raster->top};
+    struct sphgi_cutting cutting = {
+        .octaves = raster->octaves, .top = raster->top, .along = raster->along};
     int32_t local = 0;
     for (int32_t a = 0; a < 3; ++a) {
-        cutting.inverse[a] = raster->axis[a].inverse;
-        cutting.shift[a] = raster->axis[a].shift;
-        cutting.local_shift[a] = local;
+        const int32_t number = sphgi_number_of_axis(raster, a);
+        cutting.inverse[number] = raster->axis[a].inverse;
+        cutting.shift[number] = raster->axis[a].shift;
+        cutting.local_shift[number] = local;
         local += raster->axis[a].shift;
     }
     return cutting;

@@ -2,6 +2,7 @@
 /* Sorting particles into the blocks and cells of a grid. */
 #include "grid.h"
 #include "core/parallel.h"
+#include <float.h>
 #include <string.h>
 
 enum {
@@ -10,8 +11,7 @@ enum {
     BATCH = 256,
     RECENT = 4, /* blocks that are not looked up again: one for each of four beside each other */
     BLOCK_GRAIN = 16,
-    GRAIN = 4096, /* particles */
-    PARTS = 8     /* of a cell of octaves, in which its particles follow one another */
+    GRAIN = 4096 /* particles */
 };
 
 /* Each chunk of particles collects the blocks it meets on its own; the results are merged in order,
@@ -156,8 +156,13 @@ static void collect_any(const struct sort *sort, struct chunk *chunk, int32_t be
     }
 }
 
-/* The same for particles of octaves. Those of a cell are sorted by its eighths, so that those that
- * are searched for together are close together. */
+/* Far out cells are no wholes of the place. */
+static int32_t quarter_of(double inside)
+{
+    return inside <= 0 ? 0 : inside < 1 ? (int32_t)(inside * SPHGI_QUARTERS) : SPHGI_QUARTERS - 1;
+}
+
+/* The same for particles of octaves. Those of a cell are sorted by its quarters. */
 static void collect_octaves(const struct sort *sort, struct chunk *chunk, int32_t begin,
                             int32_t count)
 {
@@ -165,13 +170,13 @@ static void collect_octaves(const struct sort *sort, struct chunk *chunk, int32_
     for (int32_t i = begin; i < begin + count; ++i) {
         const int32_t octave = sphgi_octave_of(raster, number_of(sort, i, 3));
         int64_t cell[3] = {0};
-        int32_t part = 0;
-        for (int32_t a = 0; a < raster->dimension; ++a) {
-            const double place =
-                sphgi_place_on_axis(&raster->axis[a], octave, number_of(sort, i, a), &cell[a]);
-            part |= (place - (double)cell[a] >= 0.5) << a;
-        }
-        sort->cell[i] = (uint8_t)(sphgi_local_cell(raster, cell) * PARTS + part);
+        double place[3] = {0};
+        for (int32_t a = 0; a < raster->dimension; ++a)
+            place[a] =
+                sphgi_place_on_axis(&raster->axis[a], octave,
+                                    number_of(sort, i, sphgi_number_of_axis(raster, a)), &cell[a]);
+        const int32_t quarter = quarter_of(place[0] - (double)cell[0]);
+        sort->cell[i] = (uint8_t)(sphgi_local_cell(raster, cell) * SPHGI_QUARTERS + quarter);
         for (int32_t a = 0; a < 3; ++a)
             cell[a] >>= raster->axis[a].shift;
         sphgi_raise_octave(octave, cell);
@@ -471,12 +476,12 @@ static void scatter_task(void *data, int32_t begin, int32_t end, int32_t worker)
     }
 }
 
-/* A counting sort by cell, or by the parts of cells, and the rows follow. */
+/* A counting sort by cell, or by quarters of cells, and the rows follow. */
 SPHGI_TEMPLATE int32_t sort_block(const struct sort *sort, int32_t b, size_t row_size,
                                   int32_t parts)
 {
     struct sphgi_grid *grid = sort->grid;
-    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS * PARTS];
+    int32_t *order = grid->order.data, place[SPHGI_BLOCK_CELLS * SPHGI_QUARTERS];
     memset(place, 0, (size_t)(SPHGI_BLOCK_CELLS * parts) * sizeof *place);
     char *rows = grid->rows.data;
     const int32_t first = grid->blocks[b].first, last = grid->blocks[b + 1].first;
@@ -492,6 +497,19 @@ SPHGI_TEMPLATE int32_t sort_block(const struct sort *sort, int32_t b, size_t row
     return fullest;
 }
 
+/* The largest radius of a block, for the leaves of the tree. */
+static float radius_of_block(const struct sort *sort, int32_t b)
+{
+    const struct sphgi_grid *grid = sort->grid;
+    const int32_t first = grid->blocks[b].first, last = grid->blocks[b + 1].first;
+    double largest = 0;
+    for (int32_t k = first; k < last; ++k) {
+        const double radius = number_of(sort, ((const int32_t *)grid->order.data)[k], 3);
+        largest = radius > largest ? radius : largest;
+    }
+    return largest < (double)FLT_MAX ? (float)largest : FLT_MAX;
+}
+
 static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     struct sort *sort = data;
@@ -499,9 +517,11 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
     (void)worker;
     for (int32_t b = begin; b < end; ++b) {
         int32_t most;
-        if (sort->raster->octaves)
-            most = sort_block(sort, b, SPHGI_ROW * sphgi_size_of_type(sort->type), PARTS);
-        else
+        if (sort->raster->octaves) {
+            most = sort_block(sort, b, SPHGI_ROW * sphgi_size_of_type(sort->type), SPHGI_QUARTERS);
+            sort->grid->tree.leaves[b / SPHGI_TREE_WIDTH].radius[b % SPHGI_TREE_WIDTH] =
+                radius_of_block(sort, b);
+        } else
             most = sort->type == SPHG_F64 ? sort_block(sort, b, SPHGI_ROW * sizeof(double), 1)
                                           : sort_block(sort, b, SPHGI_ROW * sizeof(float), 1);
         fullest = sphgi_max32(fullest, most);

@@ -39,12 +39,22 @@ static void open_octave(struct sphgi_tree *tree, int32_t octave, int32_t first)
         tree->octave[octave].low[a] = INT32_MAX;
         tree->octave[octave].high[a] = INT32_MIN;
     }
+    tree->cells[octave][0] = INT64_MAX;
+    tree->cells[octave][1] = INT64_MIN;
 }
 
 static void widen(struct sphgi_blocks *blocks, int32_t axis, int32_t at)
 {
     blocks->low[axis] = sphgi_min32(blocks->low[axis], at);
     blocks->high[axis] = sphgi_max32(blocks->high[axis], at);
+}
+
+static void widen_cells(int64_t *cells, int64_t at, uint32_t occupied)
+{
+    const int64_t low = at * SPHGI_BLOCK_CELLS + __builtin_ctz(occupied);
+    const int64_t high = at * SPHGI_BLOCK_CELLS + SPHGI_BLOCK_CELLS - 1 - __builtin_clz(occupied);
+    cells[0] = low < cells[0] ? low : cells[0];
+    cells[1] = high > cells[1] ? high : cells[1];
 }
 
 static void fill_leaves(struct sphgi_tree *tree, const struct sphgi_block *blocks, int32_t count,
@@ -65,6 +75,8 @@ static void fill_leaves(struct sphgi_tree *tree, const struct sphgi_block *block
             if (b < count)
                 widen(&tree->octave[octave], a, sphgi_narrowed(at[a]));
         }
+        if (b < count)
+            widen_cells(tree->cells[octave], at[0], blocks[b].occupied);
     }
     while (octave + 1 < octaves)
         open_octave(tree, ++octave, count);

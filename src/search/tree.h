@@ -15,6 +15,7 @@ enum {
 /* Coordinates of SPHGI_TREE_WIDTH blocks, and what as many items of the height below span. */
 struct sphgi_leaf {
     int32_t at[3][SPHGI_TREE_WIDTH];
+    float radius[SPHGI_TREE_WIDTH]; /* the largest in each, up to rounding */
 };
 struct sphgi_node {
     int32_t low[3][SPHGI_TREE_WIDTH], high[3][SPHGI_TREE_WIDTH];
@@ -34,6 +35,7 @@ struct sphgi_tree {
     struct sphgi_node *nodes[SPHGI_TREE_HEIGHT]; /* [0]: unused */
     int32_t first[SPHGI_OCTAVES_MOST + 1];       /* block of each octave */
     struct sphgi_blocks octave[SPHGI_OCTAVES_MOST];
+    int64_t cells[SPHGI_OCTAVES_MOST][2]; /* along bars: the lowest and highest with somebody */
 };
 
 size_t sphgi_tree_size(int32_t blocks);

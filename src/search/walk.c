@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "walk.h"
 #include "grid.h"
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* ---- Blocks in a box ------------------------------------------------------------------------ */
@@ -75,6 +77,8 @@ static bool meet(const struct sphgi_blocks *a, const struct sphgi_blocks *b)
     return !apart;
 }
 
+enum { PARTS = 8 }; /* spans of three axes, two of each */
+
 /* ---- The walk ------------------------------------------------------------------------------- */
 
 /* Distances are off by a few units of the type, between images by the slack. */
@@ -134,8 +138,10 @@ void sphgi_walk_open(struct sphgi_walk *walk, const struct sphgi_grid *sources, 
                      const double *high, double stretch, bool mutual)
 {
     walk->sources = sources;
-    memcpy(walk->low, low, sizeof walk->low);
-    memcpy(walk->high, high, sizeof walk->high);
+    for (int32_t a = 0; a < 3; ++a) {
+        walk->low[a] = low[sphgi_number_of_axis(&sources->raster, a)];
+        walk->high[a] = high[sphgi_number_of_axis(&sources->raster, a)];
+    }
     walk->reach = high[3] * stretch;
     walk->stretch = mutual ? stretch : 0;
     walk->octave = walk->part = -1;
@@ -186,18 +192,32 @@ static void add_block(const struct sphgi_walk *walk, int32_t block, int64_t x, i
         add_run(runs, begin, end);
 }
 
-/* To the first part of the next octave that has blocks; false: there is none. */
+/* The cells along x that are looked at in the octave. False: nobody is there. */
+static bool look_along_bars(struct sphgi_walk *walk, double reach)
+{
+    const int64_t *cells = walk->sources->tree.cells[walk->octave];
+    bool some = false;
+    look_along(walk, 0, reach);
+    for (int32_t k = 0; k < walk->span[0].count; ++k)
+        some |= walk->span[0].low[k] <= cells[1] && walk->span[0].high[k] >= cells[0];
+    return some;
+}
+
+/* To the first part of the next octave that may have blocks; false: there is none. */
 static bool enter_next_octave(struct sphgi_walk *walk)
 {
     const struct sphgi_tree *tree = &walk->sources->tree;
     const int32_t octaves = walk->sources->raster.octaves;
-    do
-        ++walk->octave;
-    while (walk->octave < octaves && tree->first[walk->octave] == tree->first[walk->octave + 1]);
-    if (walk->octave >= octaves)
-        return false;
-    const double reach = reach_in(walk, walk->octave);
-    for (int32_t a = 0; a < 3; ++a)
+    double reach = 0;
+    for (bool some = false; !some;) {
+        if (++walk->octave >= octaves)
+            return false;
+        if (tree->first[walk->octave] == tree->first[walk->octave + 1])
+            continue;
+        reach = reach_in(walk, walk->octave);
+        some = look_along_bars(walk, reach);
+    }
+    for (int32_t a = 1; a < 3; ++a)
         look_along(walk, a, reach);
     walk->part = 0;
     walk->from = tree->first[walk->octave];
@@ -221,7 +241,6 @@ static bool next_of_part(struct sphgi_walk *walk)
 /* The next block within reach, -1: there is none. */
 static int32_t next_of_walk(struct sphgi_walk *walk)
 {
-    enum { PARTS = 8 };
     while (!walk->inside) {
         if (walk->part < 0 || walk->part == PARTS) {
             if (!enter_next_octave(walk))
@@ -289,38 +308,177 @@ static bool is_found_again(const struct sphgi_walk *walk, int64_t x)
            x <= span->high[0] >> SPHGI_BLOCK_SHIFT;
 }
 
+/* Beyond the range of f32 nothing is known. */
+static double radius_of(const struct sphgi_walk *walk, int32_t block)
+{
+    const struct sphgi_leaf *leaf = &walk->sources->tree.leaves[block / SPHGI_TREE_WIDTH];
+    const double radius = (double)leaf->radius[block % SPHGI_TREE_WIDTH];
+    return radius > (double)FLT_MIN && radius < (double)FLT_MAX ? radius : (double)INFINITY;
+}
+
+/* False: there is no room for more. */
+static bool note_block(const struct sphgi_walk *walk, int32_t block, const int64_t *at,
+                       struct sphgi_nearby *nearby)
+{
+    if (is_found_again(walk, at[0]))
+        return true;
+    if (nearby->count == SPHGI_NEAR_MOST)
+        return false;
+    nearby->near[nearby->count++] =
+        (struct sphgi_near){block, walk->octave, {at[0], at[1], at[2]}, radius_of(walk, block)};
+    return true;
+}
+
+/* The block with that key, -1: there is none. known: one that stands before it, or -1. */
+static int32_t block_behind(const struct sphgi_grid *grid, int32_t known, const int64_t *at)
+{
+    const struct sphgi_key key = sphgi_key_of(at);
+    const int32_t next = known + 1;
+    if (known >= 0 && next == grid->block_count)
+        return -1;
+    if (known >= 0 && !sphgi_is_before(grid->blocks[next].key, key))
+        return sphgi_same_key(grid->blocks[next].key, key) ? next : -1;
+    return sphgi_find_block(grid, at);
+}
+
+/* Place by place: most blocks stand behind the one that was found before. */
+static bool look_at_places(const struct sphgi_walk *walk, const struct sphgi_blocks *box,
+                           struct sphgi_nearby *nearby)
+{
+    int32_t known = -1;
+    bool room = true;
+    for (int64_t z = box->low[2]; z <= box->high[2]; ++z)
+        for (int64_t y = box->low[1]; y <= box->high[1]; ++y)
+            for (int64_t x = box->low[0]; x <= box->high[0]; ++x) {
+                const int64_t at[3] = {x, y, z};
+                int64_t raised[3] = {x, y, z};
+                sphgi_raise_octave(walk->octave, raised);
+                const int32_t block = block_behind(walk->sources, known, raised);
+                known = block >= 0 ? block : known;
+                room = room && (block < 0 || note_block(walk, block, at, nearby));
+            }
+    return room;
+}
+
+static bool look_through_tree(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
+{
+    for (walk->from = walk->sources->tree.first[walk->octave]; next_of_part(walk);)
+        for (; walk->inside; walk->inside &= walk->inside - 1) {
+            const int32_t block = walk->leaf * SPHGI_TREE_WIDTH + __builtin_ctz(walk->inside);
+            int64_t at[3];
+            place_of(walk, block, at);
+            if (is_in_part(walk, at) && !note_block(walk, block, at, nearby))
+                return false;
+        }
+    return true;
+}
+
+/* Are these so few places that to ask for each costs less than the way through the tree? */
+static bool are_few(const struct sphgi_blocks *box)
+{
+    enum { FEW = 128, FAR = 1 << 29 }; /* places far out may be several to the tree */
+    double places = 1;
+    bool near = true;
+    for (int32_t a = 0; a < 3; ++a) {
+        places *= (double)box->high[a] - box->low[a] + 1;
+        near &= box->low[a] > -FAR && box->high[a] < FAR;
+    }
+    return near && places <= FEW;
+}
+
+static bool look_into_part(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
+{
+    const struct sphgi_blocks *all = &walk->sources->tree.octave[walk->octave];
+    struct sphgi_blocks box;
+    if (!box_of_part(walk, &box) || !meet(&box, all))
+        return true;
+    struct sphgi_blocks inside = box;
+    for (int32_t a = 0; a < 3; ++a) {
+        inside.low[a] = sphgi_max32(box.low[a], all->low[a]);
+        inside.high[a] = sphgi_min32(box.high[a], all->high[a]);
+    }
+    return are_few(&inside) ? look_at_places(walk, &inside, nearby)
+                            : look_through_tree(walk, nearby);
+}
+
 bool sphgi_look_nearby(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
 {
     nearby->count = 0;
-    for (int32_t block; (block = next_of_walk(walk)) >= 0;) {
-        int64_t at[3];
-        place_of(walk, block, at);
-        if (!is_in_part(walk, at) || is_found_again(walk, at[0]))
-            continue;
-        if (nearby->count == SPHGI_NEAR_MOST) {
-            nearby->count = -1;
-            return false;
-        }
-        nearby->near[nearby->count++] = (struct sphgi_near){block, walk->octave, at[0]};
-    }
+    while (enter_next_octave(walk))
+        for (; walk->part < PARTS; ++walk->part)
+            if (!look_into_part(walk, nearby)) {
+                nearby->count = -1;
+                return false;
+            }
     return true;
+}
+
+/* Across the bars of an octave: how wide they are, 0 where a period goes round. */
+struct across {
+    double wide[3], reach;
+};
+
+static struct across across_bars(const struct sphgi_walk *walk, double reach)
+{
+    const struct sphgi_raster *raster = &walk->sources->raster;
+    struct across across = {.reach = reach};
+    for (int32_t a = 1; a < raster->dimension; ++a)
+        if (!raster->axis[a].cells)
+            across.wide[a] = 1 / (raster->axis[a].inverse * (double)((int64_t)1 << walk->octave));
+    return across;
+}
+
+/* How far targets and those of a block reach: less than an octave could. */
+static double reach_of_block(const struct sphgi_walk *walk, const struct across *across,
+                             const struct sphgi_near *near)
+{
+    const double theirs = walk->stretch > 0 ? walk->stretch * near->radius : 0;
+    const double reach =
+        with_margin(theirs > walk->reach ? theirs : walk->reach, walk->sources->raster.slack);
+    return reach < across->reach ? reach : across->reach;
+}
+
+/* Is a bar farther from the targets than they reach? Far out, cells are no longer where they seem
+ * to be. */
+static bool is_beyond(const struct sphgi_walk *walk, const struct across *across,
+                      const struct sphgi_near *near)
+{
+    const int64_t *at = near->at;
+    const double reach = reach_of_block(walk, across, near);
+    const double far = 0x1p39, margin = 0x1p-10;
+    double square = 0;
+    for (int32_t a = 1; a < 3; ++a) {
+        const double low = (double)at[a], wide = across->wide[a];
+        const double below = (low + margin) * wide - walk->high[a];
+        const double above = walk->low[a] - (low + 1 - margin) * wide;
+        const double gap = below > above ? below : above;
+        if (wide > 0 && gap > 0 && low < far && low > -far)
+            square += gap * gap;
+    }
+    return square > reach * reach;
 }
 
 bool sphgi_walk_nearby(struct sphgi_walk *walk, const struct sphgi_nearby *nearby,
                        struct sphgi_runs *runs)
 {
+    struct across bars = {.reach = 0};
+    bool some = false;
     runs->count = runs->candidates = 0;
     walk->octave = -1;
     for (int32_t n = 0; n < nearby->count; ++n) {
         const struct sphgi_near *near = &nearby->near[n];
         if (near->octave != walk->octave) {
             walk->octave = near->octave;
-            look_along(walk, 0, reach_in(walk, near->octave));
+            const double reach = reach_in(walk, near->octave);
+            some = look_along_bars(walk, reach);
+            bars = across_bars(walk, reach);
         }
+        if (!some || is_beyond(walk, &bars, near))
+            continue;
         if (runs->count + 2 > SPHGI_RUNS_MOST)
             return true;
         for (int32_t k = 0; k < walk->span[0].count; ++k)
-            add_block(walk, near->block, near->x, k, runs);
+            add_block(walk, near->block, near->at[0], k, runs);
     }
     return false;
 }

@@ -14,7 +14,7 @@ struct sphgi_span { /* of cells along an axis: two where a period parts them */
 };
 struct sphgi_walk {
     const struct sphgi_grid *sources;
-    double low[3], high[3]; /* of the targets */
+    double low[3], high[3]; /* of the targets, by the axes of the raster */
     double reach, stretch;  /* of the targets; of the radii of others where these count, else 0 */
     int32_t octave, part;
     int32_t from, leaf; /* block, from which on; leaf of the tree where the walk is ... */
@@ -33,7 +33,8 @@ bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs);
 enum { SPHGI_NEAR_MOST = 256 };
 struct sphgi_near {
     int32_t block, octave;
-    int64_t x;
+    int64_t at[3];
+    double radius; /* the largest there is */
 };
 struct sphgi_nearby {
     int32_t count; /* -1: there are more */
