@@ -35,13 +35,13 @@ static scene scene_on(const test_case *test, sphg_context *context, double radiu
 {
     scene of = {.test = test, .context = context, .scheme = setup_scheme(test, radius)};
     random_state random = random_seeded(83);
-    of.points = cloud_jittered(3, 9, 1, .3, &random);
+    of.points = cloud_jittered(test->dimension, test->dimension == 3 ? 9 : 30, 1, .3, &random);
     of.positions = setup_positions(test, &of.points);
     of.volume = setup_numbers(test_field_type(test), of.points.count, 1,
                               cloud_volumes(&of.points, .3, &random));
     of.one_volume = setup_numbers(test_field_type(test), 1, 1, (const double[]){.875});
     of.scalar = numbers_of(&of, 1, &random);
-    of.vector = numbers_of(&of, 3, &random);
+    of.vector = numbers_of(&of, test->dimension, &random);
     of.kept = neighbors_of(&of, 0, keep_weights);
     of.found = neighbors_of(&of, 1, 0);
     return of;
@@ -83,8 +83,9 @@ static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neigh
     const sphg_type type = test_field_type(of->test);
     const int scalar = w->shape == SPHG_SCALAR;
     const sphg_view field = setup_view(scalar ? &of->scalar : &of->vector);
-    *table = setup_output(type, of->points.count, 6);
-    *result = setup_output(type, of->points.count, w->divergence ? 1 : scalar ? 3 : 9);
+    const int d = of->test->dimension;
+    *table = setup_output(type, of->points.count, d * (d + 1) / 2);
+    *result = setup_output(type, of->points.count, w->divergence ? 1 : scalar ? d : d * d);
     const sphg_sources sources = {.neighbors = neighbors, .volume = volume, .same_volumes = 1};
     sphg_field wanted = {.shape = w->shape, .form = w->form, .at_sources = &field};
     if (w->divergence)
@@ -157,21 +158,21 @@ static void every_kernel_goes_it(const test_case *test)
 static void the_direct_form_does_not_look_at_the_target(const test_case *test)
 {
     const scene of = scene_on(test, setup_context(), 2, 0);
-    const int odd = of.points.count / 2;
-    setup_put(&of.vector, 3 * odd, NAN);
+    const int odd = of.points.count / 2, d = test->dimension;
+    setup_put(&of.vector, d * odd, NAN);
     setup_array table, result;
     const wish direct = {"direct Jacobian", 0, SPHG_VECTOR, SPHG_DIRECT, 0};
     evaluate(&of, &direct, of.kept, setup_view(&of.volume), NULL, &table, &result);
-    for (int c = 0; c < 9; ++c)
+    for (int c = 0; c < d * d; ++c)
         TEST_REQUIRE(isfinite(setup_get(&result, odd, c)), "number %d is not", c);
 }
 
 static const test_entry entries[] = {
-    TEST_ENTRY(the_bits_are_those_of_the_long_way, TEST_ALL_PRECISIONS, 0,
+    TEST_ENTRY(the_bits_are_those_of_the_long_way, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
-    TEST_ENTRY(every_kernel_goes_it, TEST_SINGLE_AND_DOUBLE, 0,
+    TEST_ENTRY(every_kernel_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
-    TEST_ENTRY(the_direct_form_does_not_look_at_the_target, TEST_SINGLE_AND_DOUBLE, 0,
-               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(the_direct_form_does_not_look_at_the_target, TEST_SINGLE_AND_DOUBLE,
+               TEST_BOTH_DIMENSIONS, TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
 };
 TEST_MAIN(entries)

@@ -12,37 +12,42 @@ enum { SUMS_IN_REGISTERS = 6 };
 
 /* What is known when a loop is compiled. */
 struct group_how {
+    bool three; /* dimensions */
     bool moments, divergence;
     int32_t numbers; /* of a field; 0: there is none */
 };
 
-SPHGI_TEMPLATE int32_t sums_of_field(struct group_how how)
+SPHGI_TEMPLATE int32_t sums_of_moments(struct group_how how)
 {
-    return how.divergence ? 1 : 3 * how.numbers;
+    return !how.moments ? 0 : how.three ? 6 : 3;
 }
 
-SPHGI_TEMPLATE void add_moments(const vec *g, const vec *x, vec *m)
+SPHGI_TEMPLATE int32_t sums_of_field(struct group_how how)
 {
-    m[0] = minus(m[0], g[0], x[0]);
-    m[1] = minus(m[1], g[0], x[1]);
-    m[2] = minus(m[2], g[0], x[2]);
-    m[3] = minus(m[3], g[1], x[1]);
-    m[4] = minus(m[4], g[1], x[2]);
-    m[5] = minus(m[5], g[2], x[2]);
+    return how.divergence ? 1 : (how.three ? 3 : 2) * how.numbers;
+}
+
+SPHGI_TEMPLATE void add_moments(const vec *g, const vec *x, vec *m, bool three)
+{
+    const int32_t d = three ? 3 : 2;
+    for (int32_t a = 0; a < d; ++a)
+        for (int32_t b = a; b < d; ++b, ++m)
+            *m = minus(*m, g[a], x[b]);
 }
 
 SPHGI_TEMPLATE void add_field(const struct four *row, const vec *own, const vec *g, vec *sum,
                               struct group_how how)
 {
     vec difference[SPHGI_ROW] = {row->x, row->y, row->z, row->w};
+    const int32_t d = how.three ? 3 : 2;
     for (int32_t c = 0; c < how.numbers; ++c)
         difference[c] -= own[c];
     if (how.divergence)
-        add_contracted(SPHG_VECTOR, 3, difference, g, sum);
+        add_contracted(SPHG_VECTOR, d, difference, g, sum);
     else
         for (int32_t c = 0; c < how.numbers; ++c)
-            for (int32_t b = 0; b < 3; ++b)
-                sum[c * 3 + b] = plus(sum[c * 3 + b], difference[c], g[b]);
+            for (int32_t b = 0; b < d; ++b)
+                sum[c * d + b] = plus(sum[c * d + b], difference[c], g[b]);
 }
 
 /* What the sums subtract from A_j: A_i, -A_i or 0. */
@@ -86,15 +91,16 @@ SPHGI_TEMPLATE void end_chunk(const struct sphgi_tile *tile, const vec *v, int32
 /* A chunk of the lists, in one loop. */
 SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                                   const struct sphgi_group_lists *lists,
-                                  const struct sphgi_tile *tile, sphg_kernel kernel, bool volumes,
-                                  bool kept, struct group_how how)
+                                  const struct sphgi_tile *tile, sphg_kernel kernel, bool kept,
+                                  struct group_how how)
 {
     const struct four target = target_rows(g->gather, lists->places);
     const vec scale = factor_scale(shape, SPHG_KGC), inverse_h = inverse_radius(shape);
     const vec volume = splat(R(g->gather->volume));
+    const mask volumes = first_lanes(g->gather->volumes ? LANES : 0);
     const real *rows = g->gather->rows, *field = g->field;
     vec moment[6], sum[3 * SPHGI_ROW], own[SPHGI_ROW];
-    clear(moment, how.moments ? 6 : 0);
+    clear(moment, sums_of_moments(how));
     clear(sum, how.numbers ? sums_of_field(how) : 0);
     if (how.numbers)
         own_numbers(g, lists->places, own);
@@ -114,21 +120,22 @@ SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct
             __builtin_prefetch(factor + AHEAD * SPHGI_GROUP);
             s = load(factor);
         } else {
-            const vec square = plus(plus(x[0] * x[0], x[1], x[1]), x[2], x[2]);
-            s = factor_of(scale, inverse_h, vsqrt(square), volumes ? row.w : volume, kernel,
+            const vec plane = plus(x[0] * x[0], x[1], x[1]);
+            const vec square = how.three ? plus(plane, x[2], x[2]) : plane;
+            s = factor_of(scale, inverse_h, vsqrt(square), select(volumes, row.w, volume), kernel,
                           SPHG_KGC);
             store(factor, s);
         }
         const vec gradient[3] = {s * x[0], s * x[1], s * x[2]};
         if (how.moments)
-            add_moments(gradient, x, moment);
+            add_moments(gradient, x, moment, how.three);
         if (how.numbers) {
             const struct four numbers = gather_rows(field, ids);
             add_field(&numbers, own, gradient, sum, how);
         }
     }
     if (how.moments)
-        end_chunk(tile, moment, 6, lists->moments);
+        end_chunk(tile, moment, sums_of_moments(how), lists->moments);
     if (how.numbers)
         end_chunk(tile, sum, sums_of_field(how), lists->sums);
 }
@@ -149,7 +156,7 @@ SPHGI_TEMPLATE void chunk_by_tile(const struct sphgi_group_sums *g, const struct
             keep_factors(tile, factors);
     }
     if (how.moments)
-        moments_as(tile, lists->moments, true);
+        moments_as(tile, lists->moments, how.three);
     if (!how.numbers)
         return;
     vec own[SPHGI_ROW];
@@ -157,21 +164,21 @@ SPHGI_TEMPLATE void chunk_by_tile(const struct sphgi_group_sums *g, const struct
     for (int32_t c = 0; c < SPHGI_ROW; ++c)
         store(at_target + c * SPHGI_WIDTH, own[c]);
     if (how.divergence)
-        divergence_as(tile, SPHG_VECTOR, SPHGI_FACTORS, &g->field, at_target, lists->sums, true);
+        divergence_as(tile, SPHG_VECTOR, SPHGI_FACTORS, &g->field, at_target, lists->sums,
+                      how.three);
     else
-        field_as(tile, SPHGI_FACTORS, g->field, at_target, lists->sums, how.numbers, true);
+        field_as(tile, SPHGI_FACTORS, g->field, at_target, lists->sums, how.numbers, how.three);
 }
 
 /* Goes through the chunks; at once: unless the sums are too many. */
 SPHGI_TEMPLATE void group_in(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                              const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
-                             sphg_kernel kernel, bool volumes, bool kept, bool at_once,
-                             struct group_how how)
+                             sphg_kernel kernel, bool kept, bool at_once, struct group_how how)
 {
     for (int32_t left = lists->steps;; left -= SPHGI_CHUNK) {
         tile->steps = sphgi_min32(left, SPHGI_CHUNK);
         if (at_once)
-            chunk_at_once(g, shape, lists, tile, kernel, volumes, kept, how);
+            chunk_at_once(g, shape, lists, tile, kernel, kept, how);
         else
             chunk_by_tile(g, shape, lists, tile, how);
         if (left <= SPHGI_CHUNK)
@@ -184,30 +191,29 @@ SPHGI_TEMPLATE void group_in(const struct sphgi_group_sums *g, const struct sphg
 /* True: it is done. Of those at once, sums that fit the registers; of the others, all. */
 SPHGI_TEMPLATE bool group_if(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                              const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
-                             sphg_kernel kernel, bool volumes, bool kept, bool at_once,
-                             struct group_how how)
+                             sphg_kernel kernel, bool kept, bool at_once, struct group_how how)
 {
-    const int32_t sums = (how.moments ? 6 : 0) + (how.numbers ? sums_of_field(how) : 0);
+    const int32_t sums = sums_of_moments(how) + (how.numbers ? sums_of_field(how) : 0);
     if (at_once && sums > SUMS_IN_REGISTERS)
         return false;
-    group_in(g, shape, lists, tile, kernel, volumes, kept, at_once, how);
+    group_in(g, shape, lists, tile, kernel, kept, at_once, how);
     return true;
 }
 
 SPHGI_TEMPLATE bool group_as(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                              const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
-                             sphg_kernel kernel, bool volumes, bool kept, bool at_once)
+                             sphg_kernel kernel, bool kept, bool at_once, bool three)
 {
 #define GROUP(...)                                                                                 \
-    return group_if(g, shape, lists, tile, kernel, volumes, kept, at_once,                         \
-                    (struct group_how){__VA_ARGS__})
+    return group_if(g, shape, lists, tile, kernel, kept, at_once,                                  \
+                    (struct group_how){three, __VA_ARGS__})
     if (!g->numbers)
         GROUP(true, false, 0);
     if (g->divergence)
-        GROUP(false, true, 3);
+        GROUP(false, true, three ? 3 : 2);
     if (g->numbers == 1)
         WITH(moments, g->moments, GROUP(moments, false, 1));
-    WITH(moments, g->moments, GROUP(moments, false, 3));
+    WITH(moments, g->moments, GROUP(moments, false, three ? 3 : 2));
 #undef GROUP
 }
 
@@ -217,8 +223,7 @@ SPHGI_TEMPLATE bool group_as(const struct sphgi_group_sums *g, const struct sphg
      const struct sphgi_group_lists *lists, struct sphgi_tile *tile, bool *done)
 #define ARGUMENTS (g, shape, lists, tile, done)
 #define CALL(kernel)                                                                               \
-    WITH(volumes, g->gather->volumes,                                                              \
-         *done = group_as(g, shape, lists, tile, kernel, volumes, false, true))
+    WITH(three, g->three, *done = group_as(g, shape, lists, tile, kernel, false, true, three))
 #include "by_kernel.inl.h"
 
 static void sum_group(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
@@ -230,9 +235,11 @@ static void sum_group(const struct sphgi_group_sums *g, const struct sphgi_shape
     tile->spread = false;
     tile->chunk = 0;
     if (lists->kept_stand)
-        done = group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, false, true, true);
+        WITH(three, g->three,
+             done = group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, true, true, three));
     else if (shape->method == SPHG_KGC)
         group_at_once(g, shape, lists, tile, &done);
     if (!done)
-        group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, false, false, false);
+        WITH(three, g->three,
+             (void)group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, false, false, three));
 }

@@ -111,10 +111,12 @@ struct sphgi_gather {
 /* All sums of targets whose lists stand side by side, in 3D: moments, and those of one field. */
 struct sphgi_group_sums {
     const struct sphgi_gather *gather;
+    bool three;               /* dimensions */
     bool moments, divergence; /* of a vector */
-    int32_t numbers;          /* of the field whose gradient is summed, 1 or 3; 0: there is none */
-    int32_t own;              /* A_j - A_i: 1, A_j + A_i: -1, A_j: 0 */
-    const void *field;        /* rows of A_j, those of the targets among them, at the same places */
+    int32_t numbers;   /* of the field whose gradient is summed, 1 or as many as axes; 0: there is
+                          none */
+    int32_t own;       /* A_j - A_i: 1, A_j + A_i: -1, A_j: 0 */
+    const void *field; /* rows of A_j, those of the targets among them, at the same places */
 };
 struct sphgi_group_lists {
     const uint32_t *ids;

@@ -9,14 +9,15 @@ static bool is_short(const struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_plan *plan = sweep->plan;
     return w->factors_at_once && !w->gather.masked && !w->held.room && !sweep->pairs &&
-           !plan->graded && !plan->quadratic && !plan->diffuses && plan->dimension == 3;
+           !plan->graded && !plan->quadratic && !plan->diffuses;
 }
 
 /* One field whose gradient or, if nothing stands between, divergence is summed over G_ij. */
 static bool is_short_field(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
-    const bool gradient = field->sums_gradient && !field->sums_divergence &&
-                          (field->components == 1 || field->components == 3);
+    const bool gradient =
+        field->sums_gradient && !field->sums_divergence &&
+        (field->components == 1 || field->components == w->sweep->plan->dimension);
     const bool divergence =
         field->sums_divergence && !field->sums_gradient && field->shape == SPHG_VECTOR;
     return field->one_sided && field->rows == 1 && !field->mirrors && !field->square.count &&
@@ -29,7 +30,8 @@ void sphgi_short_way_open(struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_plan *plan = sweep->plan;
     const bool moments = (sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes;
-    w->short_way = (struct sphgi_group_sums){.gather = &w->gather, .moments = moments};
+    w->short_way = (struct sphgi_group_sums){
+        .gather = &w->gather, .three = plan->dimension == 3, .moments = moments};
     w->is_short = is_short(w) && (moments || (sweep->steps & SPHGI_SUM_FIELDS));
     if (!w->is_short || !(sweep->steps & SPHGI_SUM_FIELDS) || !plan->field_count)
         return;
