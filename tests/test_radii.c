@@ -74,8 +74,6 @@ static void random_clouds_have_the_pairs_of_brute_force(const test_case *test)
     assert_true(pairs > 50000);
 }
 
-/* Where cells are small beside the period their numbers are too large for the tree, and large
- * particles near its ends look at both of them. */
 /* Long along one axis, which bars of cells then follow; every other one goes round. */
 static void clouds_that_are_long_along_any_axis_have_the_pairs_of_brute_force(const test_case *test)
 {
@@ -100,6 +98,33 @@ static void clouds_that_are_long_along_any_axis_have_the_pairs_of_brute_force(co
     assert_true(pairs > 2000);
 }
 
+/* Beyond 2^31 the small ones' cells are much wider than they reach. */
+static void a_giant_hides_nobody(const test_case *test)
+{
+    enum { COUNT = 60 };
+    /* In 3D f32 takes no larger ones. */
+    const int most = test_field_type(test) == SPHG_F32 && test->dimension == 3 ? 42 : 60;
+    sphg_context *context = setup_context_of(2);
+    sphg_neighbors *neighbors = brute_force_neighbors(context);
+    random_state random = random_seeded(317 + (uint64_t)test->precision);
+    int64_t pairs = 0;
+    for (int k = 0; k <= most; ++k) {
+        scene particles = scene_empty(test, COUNT);
+        scatter(&particles, COUNT, particles.sources, -4, 8, &random);
+        particles.support = test_memory(COUNT * sizeof *particles.support);
+        for (int i = 0; i < COUNT; ++i)
+            particles.support[i] = i % 3 ? 1 : 2;
+        particles.support[random_index(&random, COUNT)] = ldexp(1, k);
+        particles.list_free = k % 2;
+        particles.mutual = k / 2 % 2;
+        pairs += rows_require_search_exact(context, neighbors, &particles, fmax(2, ldexp(1, k)),
+                                           test_text("radii of up to 2^%d", k));
+    }
+    assert_true(pairs > most * COUNT);
+}
+
+/* Where cells are small beside the period their numbers are too large for the tree, and large
+ * particles near its ends look at both of them. */
 static void tiny_particles_near_the_ends_of_a_period_are_found_once(const test_case *test)
 {
     enum { COUNT = 24, PERIOD = 8 };
@@ -864,6 +889,7 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(clouds_that_are_long_along_any_axis_have_the_pairs_of_brute_force,
                TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
+    TEST_ENTRY(a_giant_hides_nobody, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(tiny_particles_near_the_ends_of_a_period_are_found_once, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(operators_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

@@ -449,8 +449,8 @@ static bool is_beyond(const struct sphgi_walk *walk, const struct across *across
     double square = 0;
     for (int32_t a = 1; a < 3; ++a) {
         const double low = (double)at[a], wide = across->wide[a];
-        const double below = (low + margin) * wide - walk->high[a];
-        const double above = walk->low[a] - (low + 1 - margin) * wide;
+        const double below = (low - margin) * wide - walk->high[a];
+        const double above = walk->low[a] - (low + 1 + margin) * wide;
         const double gap = below > above ? below : above;
         if (wide > 0 && gap > 0 && low < far && low > -far)
             square += gap * gap;
