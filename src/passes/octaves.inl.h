@@ -19,12 +19,6 @@ SPHGI_TEMPLATE double two_to_the(int32_t exponent)
     return power;
 }
 
-/* Of a coordinate in a cell; sort.c has the same. */
-SPHGI_TEMPLATE int32_t quarter_of(double inside)
-{
-    return inside <= 0 ? 0 : inside < 1 ? (int32_t)(inside * SPHGI_QUARTERS) : SPHGI_QUARTERS - 1;
-}
-
 /* Block and octave, and quarter of one of its cells of each row; as `cut` does it, in cells that
  * are as many times smaller. */
 static bool cut_octaves(const struct sphgi_cutting *cutting, const void *rows, int32_t count,
@@ -51,7 +45,7 @@ static bool cut_octaves(const struct sphgi_cutting *cutting, const void *rows, i
         at[cutting->along] = first;
         *(four_ints *)block[k] = at;
         local[k] = (uint8_t)((parts[0] | parts[1] | parts[2]) * SPHGI_QUARTERS +
-                             quarter_of(t[cutting->along] - whole[cutting->along]));
+                             sphgi_quarter_of(t[cutting->along] - whole[cutting->along]));
     }
     return are_near(&far);
 }

@@ -8,6 +8,11 @@
  * without, SPHGI_CUT_MOST. */
 #define SPHGI_CUT_MOST (1 << 29)
 enum { SPHGI_QUARTERS = 4 }; /* of a cell of an octave, along its bar */
+/* Of a place in a cell, in widths of it. Far out cells are no wholes of the place. */
+static inline int32_t sphgi_quarter_of(double inside)
+{
+    return inside <= 0 ? 0 : inside < 1 ? (int32_t)(inside * SPHGI_QUARTERS) : SPHGI_QUARTERS - 1;
+}
 struct sphgi_cutting {
     int32_t along;          /* the axis of the bars, whose block comes first */
     double inverse[3];      /* 1 / cell width; 0: an axis that is not used */
