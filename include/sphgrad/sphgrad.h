@@ -290,7 +290,7 @@ typedef struct sphg_geometry {
     int32_t target_count;
     sphg_type precision; /* of all fields and results; 0: as the positions. F32 beside F64
                             positions: differences are taken before narrowing. Never wider */
-    int32_t list_free;   /* search only; 1: keep no pairs: less memory, more time. Without a skin */
+    int32_t list_free;   /* search without a skin; 1: keep no pairs: less memory, less time if used once */
     int32_t keep_weights; /* search only; 1: room for the weight that a scheme gives each pair: the first
                              sweep fills it, later ones of the same kernel, method and volumes read it and
                              save the kernel; same bits. 4 bytes a pair (f64: 8). Of use without skin and

@@ -19,9 +19,12 @@ static void ask_for_numbers(const sphg_neighbors *n, int32_t place)
     }
 }
 
-/* They stand where the ids do. */
-static char *kept_factors(const struct sphgi_worker *w, const uint32_t *ids)
+/* They stand where the ids do. NULL: none are kept. */
+static char *kept_factors(const struct sphgi_worker *w, const struct sphgi_group *group,
+                          const uint32_t *ids)
 {
+    if (!group->kept || !w->sweep->kept.number)
+        return NULL;
     const ptrdiff_t at = ids - w->sweep->set->neighbors->found.ids;
     return w->sweep->kept.factors + (size_t)at * sphgi_size_of_type(w->sweep->plan->type);
 }
@@ -72,34 +75,70 @@ static void run_side_by_side(struct sphgi_worker *w, const uint32_t *ids, const 
     lists->side_by_side = false;
 }
 
-void sphgi_group_run(struct sphgi_worker *w, int32_t place, const uint32_t *ids, uint32_t active)
+void sphgi_group_run(struct sphgi_worker *w, const struct sphgi_group *group)
 {
-    const sphg_neighbors *n = w->sweep->set->neighbors;
     const struct sphgi_kept_weights *kept = &w->sweep->kept;
-    const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + place;
-    const int32_t group = place / SPHGI_GROUP, lanes = w->passes->lanes;
+    const int32_t number = group->place / SPHGI_GROUP, lanes = w->passes->lanes;
     const uint32_t all = (1u << lanes) - 1;
     if (w->bundle.count > SPHGI_WIDTH - SPHGI_GROUP)
         sphgi_finish_lanes(w);
     int32_t targets[SPHGI_GROUP];
-    targets_of_group(w, place, active, targets);
-    w->batch.kept_stand = kept->number && kept->marks[group] == kept->number;
+    targets_of_group(w, group->place, group->active, targets);
+    w->batch.kept_stand = group->kept && kept->number && kept->marks[number] == kept->number;
     for (int32_t first = 0; first < SPHGI_GROUP; first += lanes) {
-        w->batch.kept = kept->number ? kept_factors(w, ids + first) : NULL;
-        put_into_lanes(w, targets + first, place + first);
-        const bool some = (active >> first & all) != all;
-        w->batch.drops = some && w->held.room;
+        const uint32_t active = group->active >> first & all, *ids = group->ids + first;
+        const uint16_t *lengths = group->lengths + first;
+        w->batch.kept = kept_factors(w, group, ids);
+        put_into_lanes(w, targets + first, group->place + first);
+        w->batch.drops = active != all && w->held.room;
         if (w->is_short)
-            sphgi_short_way_run(w, ids + first, longest_of(lengths + first, lanes));
+            sphgi_short_way_run(w, ids, longest_of(lengths, lanes));
         else
-            run_side_by_side(w, ids + first, lengths + first);
-        if (some)
-            sphgi_batch_keep(w, active >> first & all);
+            run_side_by_side(w, ids, lengths);
+        if (active != all)
+            sphgi_batch_keep(w, active);
     }
     w->batch.drops = false;
     w->batch.kept = NULL;
-    if (kept->number)
-        kept->marks[group] = kept->number;
+    if (group->kept && kept->number)
+        kept->marks[number] = kept->number;
     if (w->bundle.summed == SPHGI_WIDTH)
         sphgi_finish_lanes(w);
+}
+
+/* ---- Found on the spot ----------------------------------------------------------------------- */
+
+void sphgi_woven_run(struct sphgi_worker *w)
+{
+    struct sphgi_woven *woven = &w->woven;
+    const uint32_t *end = w->ids_end;
+    w->ids_end = w->waiting.ids + woven->used;
+    for (int32_t k = 0; k < woven->count; ++k)
+        sphgi_group_run(w, &woven->group[k]);
+    w->ids_end = end;
+    woven->count = woven->used = 0;
+}
+
+bool sphgi_woven_add(struct sphgi_worker *w, int32_t place, uint32_t active,
+                     const uint32_t *const *lists, const int32_t *lengths)
+{
+    enum { STEPS = 16 /* that are woven at once */ };
+    struct sphgi_woven *woven = &w->woven;
+    int32_t longest = 0;
+    for (int32_t l = 0; l < SPHGI_GROUP; ++l)
+        longest = sphgi_max32(longest, lengths[l]);
+    const int32_t ids = (int32_t)sphgi_round_up((size_t)longest, STEPS) * SPHGI_GROUP;
+    if (woven->count == SPHGI_WOVEN_MOST || woven->used + ids > SPHGI_WAITING_IDS)
+        sphgi_woven_run(w);
+    if (ids > SPHGI_WAITING_IDS)
+        return false;
+    uint32_t *to = w->waiting.ids + woven->used;
+    uint16_t *kept = woven->lengths[woven->count];
+    for (int32_t l = 0; l < SPHGI_GROUP; ++l)
+        kept[l] = (uint16_t)lengths[l];
+    woven->group[woven->count++] = (struct sphgi_group){place, active, to, kept, false};
+    woven->used += (int32_t)sphgi_round_up((size_t)longest, 4) * SPHGI_GROUP;
+    const struct sphgi_passes *of_ids = sphgi_passes_of(w->sweep->context, SPHG_F32);
+    of_ids->weave(lists, lengths, longest, SPHGI_FIND_PAD, w->gather.dummy, to);
+    return true;
 }

@@ -80,6 +80,17 @@ static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, i
     }
 }
 
+/* Is all of a group summed at once? Its lists stand side by side, and no others wait. */
+static bool is_summed_whole(const struct sphgi_task *task, const struct sphgi_worker *w,
+                            int32_t group, uint32_t active)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const bool whole =
+        active == (1u << SPHGI_GROUP) - 1 ||
+        (active && sphgi_targets_in(n, group) == SPHGI_GROUP && are_summed_whole(task, w));
+    return whole && !w->rows.local && w->bundle.count == w->bundle.summed;
+}
+
 static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, int32_t group)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
@@ -91,18 +102,15 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
     if (!sphgi_kept_steps(n, group) && !sphgi_must_finish(w->sweep))
         return;
     const uint32_t *ids = sphgi_kept_ids(n, group);
-    const uint16_t *lengths = n->found.lengths.data;
+    const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + first;
     const uint32_t active = active_of(task, group);
-    const bool whole =
-        active == (1u << SPHGI_GROUP) - 1 ||
-        (active && sphgi_targets_in(n, group) == SPHGI_GROUP && are_summed_whole(task, w));
-    if (whole && !w->rows.local && w->bundle.count == w->bundle.summed) { /* no lists wait */
-        sphgi_group_run(w, first, ids, active);
+    if (is_summed_whole(task, w, group, active)) {
+        sphgi_group_run(w, &(struct sphgi_group){first, active, ids, lengths, true});
         return;
     }
     for (uint32_t left = active; left; left &= left - 1) {
         const int32_t k = __builtin_ctz(left);
-        add_kept(w, first + k, ids + k, lengths[first + k], SPHGI_GROUP);
+        add_kept(w, first + k, ids + k, lengths[k], SPHGI_GROUP);
     }
 }
 
@@ -148,6 +156,10 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
     if (collected && !sphgi_must_finish(w->sweep) && are_empty(lengths))
         return;
+    if (collected && is_summed_whole(task, w, group, active) &&
+        sphgi_woven_add(w, first, active, lists, lengths))
+        return;
+    sphgi_woven_run(w);
     const bool all = active == (1u << SPHGI_GROUP) - 1 && w->bundle.count == w->bundle.summed;
     for (uint32_t left = active; left; left &= left - 1) {
         const int32_t k = __builtin_ctz(left), place = first + k, target = target_at(n, place);
@@ -191,5 +203,6 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
         else
             sweep_found(task, &w, &finder, group);
     }
+    sphgi_woven_run(&w);
     sphgi_run_rest(&w);
 }

@@ -57,6 +57,23 @@ struct sphgi_waiting {
     int32_t summed;
 };
 
+/* Sixteen targets whose lists stand side by side. */
+struct sphgi_group {
+    int32_t place;   /* of the first, in storage order */
+    uint32_t active; /* a bit for each whose results are wanted */
+    const uint32_t *ids;
+    const uint16_t *lengths;
+    bool kept; /* they stand in the neighbours' memory */
+};
+
+/* Groups that were found on the spot and wait in the memory of lists that do. */
+enum { SPHGI_WOVEN_MOST = 16 };
+struct sphgi_woven {
+    int32_t count, used; /* groups, and their ids */
+    struct sphgi_group group[SPHGI_WOVEN_MOST];
+    uint16_t lengths[SPHGI_WOVEN_MOST][SPHGI_GROUP];
+};
+
 /* Where the rows of the sources are read. */
 struct sphgi_source_rows {
     const void **at;           /* the arrays of rows, packed or copied */
@@ -130,6 +147,7 @@ struct sphgi_worker {
     struct sphgi_lending lending;
     struct sphgi_tally *tally;
     char *finder_memory;
+    struct sphgi_woven woven;
 
     /* Numbers of the bundle, [number][SPHGI_WIDTH]: from sums to results. */
     char *reduced, *raw, *coefficients, *lambda_min, *jacobian, *contracted;

@@ -64,7 +64,7 @@ class Neighbors:
     target_support   the same of `targets`
     mutual    neighbours are those with r < max(H_i, H_j), not r < H_i
     precision of fields and results; None: that of the positions. float32 beside float64 positions
-    list_free keep no pairs: less memory, more time
+    list_free keep no pairs: less memory; less time where one call uses them, more where several do
     keep_weights   keep what a kernel gives each pair for the next sweeps (see Sources.same_volumes)
     lists     Lists of yours, or a SciPy CSR matrix, instead of a search. Borrowed: what is used
               where it lies must stay unchanged until the next build
