@@ -10,7 +10,8 @@ typedef struct scene {
     sphg_context *context;
     sphg_scheme scheme;
     cloud points;
-    setup_array positions, volume, one_volume, scalar, vector;
+    setup_array positions, radii, volume, one_volume, scalar, vector;
+    int graded; /* each particle has a radius of its own */
     const sphg_neighbors *kept, *found;
 } scene;
 
@@ -28,12 +29,24 @@ static const sphg_neighbors *neighbors_of(const scene *of, int list_free, int ke
     sphg_geometry geometry = setup_geometry(of->test, &points, &of->positions);
     geometry.list_free = list_free;
     geometry.keep_weights = keep_weights;
+    if (of->graded)
+        geometry.source_support = setup_view(&of->radii);
     return setup_search(of->context, &of->scheme, &geometry);
 }
 
-static scene scene_on(const test_case *test, sphg_context *context, double radius, int keep_weights)
+static setup_array radii_of(const scene *of, double radius, random_state *random)
 {
-    scene of = {.test = test, .context = context, .scheme = setup_scheme(test, radius)};
+    const setup_array radii = setup_output(test_position_type(of->test), of->points.count, 1);
+    for (int k = 0; k < of->points.count; ++k)
+        setup_put(&radii, k, radius * random_between(random, .8, 1));
+    return radii;
+}
+
+static scene scene_on(const test_case *test, sphg_context *context, double radius, int keep_weights,
+                      int graded)
+{
+    scene of = {
+        .test = test, .context = context, .scheme = setup_scheme(test, radius), .graded = graded};
     random_state random = random_seeded(83);
     of.points = cloud_jittered(test->dimension, test->dimension == 3 ? 9 : 30, 1, .3, &random);
     of.positions = setup_positions(test, &of.points);
@@ -42,6 +55,7 @@ static scene scene_on(const test_case *test, sphg_context *context, double radiu
     of.one_volume = setup_numbers(test_field_type(test), 1, 1, (const double[]){.875});
     of.scalar = numbers_of(&of, 1, &random);
     of.vector = numbers_of(&of, test->dimension, &random);
+    of.radii = radii_of(&of, radius, &random);
     of.kept = neighbors_of(&of, 0, keep_weights);
     of.found = neighbors_of(&of, 1, 0);
     return of;
@@ -73,7 +87,8 @@ enum { WISHES = sizeof wishes / sizeof wishes[0] };
 static int is_offered(const scene *of, const wish *w)
 {
     const int plain = of->test->method == SPHG_PLAIN;
-    return plain ? !w->corrections : w->form != SPHG_ADJOINT;
+    return plain ? !w->corrections && !(of->graded && w->form == SPHG_ADJOINT)
+                 : w->form != SPHG_ADJOINT;
 }
 
 typedef struct outcome {
@@ -162,16 +177,30 @@ static void the_bits_are_those_of_the_long_way(const test_case *test)
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_context_on(isa);
         for (int k = 0; context && k < 6; ++k) {
-            const scene of = scene_on(test, context, radius[k / 2], k % 2);
+            const scene of = scene_on(test, context, radius[k / 2], k % 2, 0);
             require_all(&of, test_text("path %d, H = %g, weights %s", (int)isa, radius[k / 2],
                                        k % 2 ? "kept" : "formed"));
         }
     }
 }
 
+/* Forces, with radii of both ends, do not go it. */
+static void radii_of_their_own_go_it(const test_case *test)
+{
+    const double radius[] = {2.2, 4.5};
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        sphg_context *context = setup_context_on(isa);
+        for (int k = 0; context && k < 4; ++k) {
+            const scene of = scene_on(test, context, radius[k / 2], k % 2, 1);
+            require_all(&of, test_text("path %d, radii up to %g, weights %s", (int)isa,
+                                       radius[k / 2], k % 2 ? "kept" : "formed"));
+        }
+    }
+}
+
 static void every_kernel_goes_it(const test_case *test)
 {
-    scene of = scene_on(test, setup_context(), 2, 0);
+    scene of = scene_on(test, setup_context(), 2, 0, 0);
     for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
         of.scheme.kernel = (sphg_kernel)kernel;
         require_all(&of, test_text("kernel %d", kernel));
@@ -181,7 +210,7 @@ static void every_kernel_goes_it(const test_case *test)
 /* A_i that is not finite reaches no sum of the direct form at i. */
 static void the_direct_form_does_not_look_at_the_target(const test_case *test)
 {
-    const scene of = scene_on(test, setup_context(), 2, 0);
+    const scene of = scene_on(test, setup_context(), 2, 0, 0);
     const int odd = of.points.count / 2, d = test->dimension;
     setup_put(&of.vector, d * odd, NAN);
     const wish direct = {"direct Jacobian", 0, SPHG_VECTOR, SPHG_DIRECT, 0};
@@ -193,6 +222,8 @@ static void the_direct_form_does_not_look_at_the_target(const test_case *test)
 
 static const test_entry entries[] = {
     TEST_ENTRY(the_bits_are_those_of_the_long_way, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(radii_of_their_own_go_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(every_kernel_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),

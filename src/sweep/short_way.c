@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "short_way.h"
 #include "batch.h"
+#include "lane_radii.h"
 #include "own.h"
 
 /* Nothing is summed but what its pass knows. */
@@ -9,7 +10,7 @@ static bool is_short(const struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_plan *plan = sweep->plan;
     return w->factors_at_once && !w->gather.masked && !w->held.room && !sweep->pairs &&
-           !plan->graded && !plan->quadratic && !plan->diffuses;
+           !plan->quadratic && !plan->diffuses;
 }
 
 /* One field whose gradient or, if nothing stands between, divergence is summed over G_ij. */
@@ -55,6 +56,7 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     sphgi_put_to_work(w, w->bundle.summed);
+    sphgi_read_lane_radii(w);
     const bool fields = w->short_way.numbers;
     const struct sphgi_group_lists lists = {
         .ids = ids,
