@@ -51,20 +51,27 @@ SPHGI_TEMPLATE void add_field(const struct four *row, const vec *own, const vec 
 }
 
 /* What the sums subtract from A_j: A_i, -A_i or 0. */
-SPHGI_TEMPLATE void own_numbers(const struct sphgi_group_sums *g, const int32_t *places, vec *own)
+SPHGI_TEMPLATE void own_numbers(const struct sphgi_group_sums *g,
+                                const struct sphgi_group_lists *lists, int32_t numbers, vec *own)
 {
     clear(own, SPHGI_ROW);
+    if (g->at_target) {
+        const real *from = (const real *)g->at_target + lists->first;
+        for (int32_t c = 0; c < numbers; ++c)
+            own[c] = load(from + c * SPHGI_WIDTH);
+        return;
+    }
     if (!g->own)
         return;
     const real *row[LANES];
     for (int l = 0; l < LANES; ++l)
-        row[l] = (const real *)g->field + SPHGI_ROW * (ptrdiff_t)places[l];
-    const struct four numbers = transpose(row);
+        row[l] = (const real *)g->field + SPHGI_ROW * (ptrdiff_t)lists->places[l];
+    const struct four values = transpose(row);
     const vec sign = splat(R(g->own));
-    own[0] = sign * numbers.x;
-    own[1] = sign * numbers.y;
-    own[2] = sign * numbers.z;
-    own[3] = sign * numbers.w;
+    own[0] = sign * values.x;
+    own[1] = sign * values.y;
+    own[2] = sign * values.z;
+    own[3] = sign * values.w;
 }
 
 /* What a chunk comes to. Lists of several chunks are few: their code stands apart. */
@@ -103,7 +110,7 @@ SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct
     clear(moment, sums_of_moments(how));
     clear(sum, how.numbers ? sums_of_field(how) : 0);
     if (how.numbers)
-        own_numbers(g, lists->places, own);
+        own_numbers(g, lists, how.numbers, own);
     const uint32_t *ids = tile->ids, *to_come = ids_ahead(tile);
     real *factor = tile->arrays;
     const ptrdiff_t step = lists->kept ? SPHGI_GROUP : 0;
@@ -160,7 +167,7 @@ SPHGI_TEMPLATE void chunk_by_tile(const struct sphgi_group_sums *g, const struct
     if (!how.numbers)
         return;
     vec own[SPHGI_ROW];
-    own_numbers(g, lists->places, own);
+    own_numbers(g, lists, how.numbers, own);
     for (int32_t c = 0; c < SPHGI_ROW; ++c)
         store(at_target + c * SPHGI_WIDTH, own[c]);
     if (how.divergence)

@@ -108,22 +108,25 @@ struct sphgi_gather {
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
 };
 
-/* All sums of targets whose lists stand side by side, in 3D: moments, and those of one field. */
+/* All sums of targets whose lists stand side by side: moments, and those of one field. */
 struct sphgi_group_sums {
     const struct sphgi_gather *gather;
     bool three;               /* dimensions */
     bool moments, divergence; /* of a vector */
-    int32_t numbers;   /* of the field whose gradient is summed, 1 or as many as axes; 0: there is
-                          none */
-    int32_t own;       /* A_j - A_i: 1, A_j + A_i: -1, A_j: 0 */
-    const void *field; /* rows of A_j, those of the targets among them, at the same places */
+    int32_t numbers;       /* of the field whose gradient is summed, 1 or as many as axes; 0: there
+                              is none */
+    const void *field;     /* rows of A_j */
+    const void *at_target; /* what is subtracted from A_j, [number][SPHGI_WIDTH]. NULL: A_i stands
+                              among the rows at the targets' places, and A_j - A_i is wanted ... */
+    int32_t own;           /* ... for 1, A_j + A_i for -1, A_j for 0 */
 };
 struct sphgi_group_lists {
     const uint32_t *ids;
     int32_t steps;
     bool kept_stand;       /* what is kept is read, not written */
     const int32_t *places; /* of the targets, a lane each */
-    void *kept;            /* s_ij of the first lane's list; NULL: none */
+    int32_t first;         /* the lane of the first, of SPHGI_WIDTH */
+    void *kept;            /* s_ij of the first target's list; NULL: none */
     void *moments, *sums;  /* [sum][SPHGI_WIDTH] */
 };
 

@@ -3,6 +3,7 @@
 #include "batch.h"
 #include "lane_radii.h"
 #include "own.h"
+#include "sums.h"
 
 /* Nothing is summed but what its pass knows. */
 static bool is_short(const struct sphgi_worker *w)
@@ -21,9 +22,8 @@ static bool is_short_field(const struct sphgi_worker *w, const struct sphgi_fiel
         (field->components == 1 || field->components == w->sweep->plan->dimension);
     const bool divergence =
         field->sums_divergence && !field->sums_gradient && field->shape == SPHG_VECTOR;
-    return field->one_sided && field->rows == 1 && !field->mirrors && !field->square.count &&
-           field->value_sum < 0 && (gradient || divergence) &&
-           (field->form == SPHG_DIRECT || (w->own.in_rows & 1));
+    return field->one_sided && field->rows == 1 && !field->square.count && field->value_sum < 0 &&
+           (gradient || divergence);
 }
 
 void sphgi_short_way_open(struct sphgi_worker *w)
@@ -43,7 +43,10 @@ void sphgi_short_way_open(struct sphgi_worker *w)
         return;
     w->short_way.divergence = field->sums_divergence;
     w->short_way.numbers = field->components;
-    w->short_way.own = field->antisymmetric ? -1 : field->form == SPHG_DIFFERENCE;
+    if (!field->mirrors && (field->form == SPHG_DIRECT || (w->own.in_rows & 1)))
+        w->short_way.own = field->antisymmetric ? -1 : field->form == SPHG_DIFFERENCE;
+    else
+        w->short_way.at_target = sphgi_subtracted(w, field);
     w->short_way.field = w->rows.at[field->row];
 }
 
@@ -58,12 +61,16 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
     sphgi_put_to_work(w, w->bundle.summed);
     sphgi_read_lane_radii(w);
     const bool fields = w->short_way.numbers;
+    w->own.loaded = false;
+    if (w->short_way.at_target)
+        sphgi_load_targets(w);
     const struct sphgi_group_lists lists = {
         .ids = ids,
         .steps = steps,
         .kept = w->batch.kept,
         .kept_stand = w->batch.kept_stand,
         .places = sphgi_places(w),
+        .first = w->batch.first,
         .moments = sphgi_lane(w, w->reduced, plan->moment_sum),
         .sums = fields ? sphgi_lane(w, w->reduced, first_sum(plan->fields)) : NULL};
     w->tile.ids_end = w->ids_end;
@@ -71,7 +78,7 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
     w->batch.longest = steps;
     w->batch.summing = w->sweep->steps & SPHGI_SUMS;
     sphgi_batch_settle(w);
-    if (fields)
+    if (fields && !w->own.loaded)
         sphgi_load_target_volumes(w);
     w->bundle.summed = w->bundle.count;
 }

@@ -36,9 +36,8 @@ static void sum_rows(struct sphgi_worker *w, const struct sphgi_field_plan *fiel
     }
 }
 
-/* What the sums subtract from A_j: A_i in the difference form, -A_i in an antisymmetric one, else
- * 0. Rows of what is mirrored are zeros: A_j = A_i comes in by subtracting A_i less. */
-static const char *subtracted(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+/* Rows of what is mirrored are zeros: A_j = A_i comes in by subtracting A_i less. */
+const char *sphgi_subtracted(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const bool difference = field->form == SPHG_DIFFERENCE;
     if (sphgi_is_mirrored(w, field))
@@ -50,15 +49,16 @@ static const char *subtracted(const struct sphgi_worker *w, const struct sphgi_f
 static void sum_one_sided(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     if (w->sweep->plan->quadratic) {
-        sphgi_sum_quadratic(w, field, subtracted(w, field));
+        sphgi_sum_quadratic(w, field, sphgi_subtracted(w, field));
         sphgi_sum_lent(w, field);
         return;
     }
-    sum_rows(w, field, vectors_of(w), subtracted(w, field));
+    sum_rows(w, field, vectors_of(w), sphgi_subtracted(w, field));
     if (field->square.count)
         w->passes->sum_squares(&w->tile, w->sweep->plan->dimension, vectors_of(w),
                                sphgi_square_sums(w->sweep->plan), w->rows.at[field->row],
-                               subtracted(w, field), sphgi_lane(w, w->reduced, field->square_sum));
+                               sphgi_subtracted(w, field),
+                               sphgi_lane(w, w->reduced, field->square_sum));
 }
 
 /* T, the other half of what a pair is multiplied with. */
@@ -110,7 +110,7 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         if (field->fold && !plan->both_sides)
             sphgi_sum_folded(w, k);
         if (field->rows)
-            sum_rows(w, field, SPHGI_TRANSPOSED, subtracted(w, field));
+            sum_rows(w, field, SPHGI_TRANSPOSED, sphgi_subtracted(w, field));
     }
     if (plan->carrier[symmetric] < 0 && !plan->both_sides)
         sum_own_vectors(w, symmetric);
@@ -159,7 +159,7 @@ static void sum_fields(struct sphgi_worker *w)
         const struct sphgi_field_plan *field = plan->fields;
         w->passes->sum_classic_field(&w->tile, plan->dimension, plan->weighted,
                                      sphgi_lane(w, w->coefficients, 0), w->rows.at[field->row],
-                                     field->components, subtracted(w, field),
+                                     field->components, sphgi_subtracted(w, field),
                                      sphgi_lane(w, w->reduced, field->sum));
         return;
     }
@@ -171,11 +171,11 @@ static void sum_fields(struct sphgi_worker *w)
         if (field->differentiates && field->one_sided)
             sum_one_sided(w, field);
         if (field->value_sum >= 0 && field->volume_row < 0)
-            sphgi_sum_value(w, field, subtracted(w, field));
+            sphgi_sum_value(w, field, sphgi_subtracted(w, field));
     }
     for (int32_t k = 0; plan->values_by_own && k < plan->field_count; ++k)
         if (plan->fields[k].value_sum >= 0 && plan->fields[k].volume_row >= 0)
-            sphgi_sum_value(w, &plan->fields[k], subtracted(w, &plan->fields[k]));
+            sphgi_sum_value(w, &plan->fields[k], sphgi_subtracted(w, &plan->fields[k]));
     if (!plan->narrows)
         sphgi_sum_over_both_ends(w);
 }

@@ -13,4 +13,9 @@ void sphgi_sum_over_both_ends(struct sphgi_worker *worker);
 /* Adds the pairs to the sums of this round, or hands them on one by one. */
 void sphgi_evaluate_tile(struct sphgi_worker *worker);
 
+/* What the sums over a field subtract from A_j: A_i in the difference form, -A_i in an
+ * antisymmetric one, else 0. Of the targets at work, [number][SPHGI_WIDTH]. */
+const char *sphgi_subtracted(const struct sphgi_worker *worker,
+                             const struct sphgi_field_plan *field);
+
 #endif
