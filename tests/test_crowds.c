@@ -12,6 +12,8 @@ typedef struct crowd {
     sphg_context *context;
     sphg_scheme scheme;
     setup_array sources, targets, volume, linear, at_targets;
+    setup_array radii, target_radii;
+    int graded; /* neighbours are searched with these, not with the scheme's */
     double slope[3];
 } crowd;
 
@@ -34,9 +36,19 @@ static setup_array linear_field(const crowd *on, const setup_array *at)
     return setup_numbers(test_field_type(on->test), at->count, 1, values);
 }
 
-static crowd crowd_of(const test_case *test)
+/* All of them reach across the crowd, and none of them the target beside it. */
+static setup_array radii_of(const test_case *test, int count, random_state *random)
 {
-    crowd made = {.test = test, .context = setup_context(), .slope = {.5, -1.25, 2}};
+    double *radii = test_memory((size_t)count * sizeof *radii);
+    for (int k = 0; k < count; ++k)
+        radii[k] = random_between(random, .5, 1);
+    return setup_numbers(test_position_type(test), count, 1, radii);
+}
+
+static crowd crowd_of(const test_case *test, int graded)
+{
+    crowd made = {
+        .test = test, .context = setup_context(), .graded = graded, .slope = {.5, -1.25, 2}};
     random_state random = random_seeded(977);
     double *volume = test_memory(SOURCES * sizeof *volume);
     for (int k = 0; k < SOURCES; ++k)
@@ -49,6 +61,8 @@ static crowd crowd_of(const test_case *test)
     made.volume = setup_numbers(test_field_type(test), SOURCES, 1, volume);
     made.linear = linear_field(&made, &made.sources);
     made.at_targets = linear_field(&made, &made.targets);
+    made.radii = radii_of(test, SOURCES, &random);
+    made.target_radii = radii_of(test, TARGETS, &random);
     return made;
 }
 
@@ -61,6 +75,10 @@ static const sphg_neighbors *neighbors_of(const crowd *on, int own_targets, int 
                               .list_free = list_free};
     if (own_targets)
         geometry.targets = setup_view(&on->targets);
+    if (on->graded)
+        geometry.source_support = setup_view(&on->radii);
+    if (on->graded && own_targets)
+        geometry.target_support = setup_view(&on->target_radii);
     return setup_search(on->context, &on->scheme, &geometry);
 }
 
@@ -131,20 +149,32 @@ static sums require_exact(const crowd *on, const sphg_neighbors *neighbors, int 
     return fused;
 }
 
-static void gradient_at_targets_in_a_crowd_is_exact(const test_case *test)
+static void require_exact_at_targets(const test_case *test, int graded)
 {
-    const crowd on = crowd_of(test);
+    const crowd on = crowd_of(test, graded);
     const sums kept = require_exact(&on, neighbors_of(&on, 1, 0), 1, "targets, kept lists");
     const sums found = require_exact(&on, neighbors_of(&on, 1, 1), 1, "targets, list-free");
     assert_true(setup_same_bits(&kept.gradient, &found.gradient));
     assert_true(setup_same_bits(&kept.correction, &found.correction));
 }
 
+static void gradient_at_targets_in_a_crowd_is_exact(const test_case *test)
+{
+    require_exact_at_targets(test, 0);
+}
+
+static void gradient_at_targets_in_a_crowd_of_many_radii_is_exact(const test_case *test)
+{
+    require_exact_at_targets(test, 1);
+}
+
 /* Lists of all would not fit. */
 static void gradient_at_members_of_a_crowd_is_exact(const test_case *test)
 {
-    const crowd on = crowd_of(test);
-    require_exact(&on, neighbors_of(&on, 0, 1), 0, "members, list-free");
+    for (int graded = 0; graded < 2; ++graded) {
+        const crowd on = crowd_of(test, graded);
+        require_exact(&on, neighbors_of(&on, 0, 1), 0, graded ? "members, radii" : "members");
+    }
 }
 
 /* ---- From a few pairs to some dozen times those that are summed at once ---------------------- */
@@ -243,6 +273,8 @@ static void lists_of_any_length_give_the_bits_of_a_table(const test_case *test)
 static const test_entry entries[] = {
     TEST_ENTRY(gradient_at_targets_in_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
+    TEST_ENTRY(gradient_at_targets_in_a_crowd_of_many_radii_is_exact, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(gradient_at_members_of_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
     TEST_ENTRY(lists_of_any_length_give_the_bits_of_a_table, TEST_ALL_PRECISIONS,

@@ -20,6 +20,23 @@ static void prepare_skin(valid_call *own)
     own->geometry.skin = .25;
 }
 
+static void prepare_skin_of_targets(valid_call *own)
+{
+    own->geometry.targets = own->vectors;
+    own->geometry.skin = .25;
+}
+
+static void prepare_weights(valid_call *own)
+{
+    own->geometry.keep_weights = 1;
+}
+
+static void prepare_targets_of(valid_call *own)
+{
+    own->geometry.target_count = 0;
+    own->geometry.targets_of = own->built;
+}
+
 static void prepare_periodic(valid_call *own)
 {
     own->geometry.period[0] = own->geometry.period[1] = 3;
@@ -28,6 +45,17 @@ static void prepare_periodic(valid_call *own)
 static void prepare_lists(valid_call *own)
 {
     own->sources[0].neighbors = own->listed;
+}
+
+static void prepare_copies(valid_call *own)
+{
+    own->lists.copy = 1;
+}
+
+static void prepare_copies_for_targets(valid_call *own)
+{
+    own->geometry.targets = own->vectors;
+    own->lists.copy = 1;
 }
 
 static void prepare_two_sets(valid_call *own)
@@ -41,6 +69,12 @@ static void prepare_classic(valid_call *own)
 {
     own->scheme.method = SPHG_CRKPM;
     own->request.correction = sphg_absent();
+}
+
+static void prepare_classic_sets(valid_call *own)
+{
+    prepare_two_sets(own);
+    prepare_classic(own);
 }
 
 static void prepare_pairs_with_indices(valid_call *own)
@@ -61,10 +95,16 @@ static const probe extra[] = {
     {prepare_list_free, call_search, NULL, 0},
     {prepare_skin, call_search, NULL, 0},
     {prepare_skin, call_would_rebuild, NULL, 0},
+    {prepare_skin_of_targets, call_search, NULL, 0},
+    {prepare_weights, call_search, NULL, 0},
+    {prepare_targets_of, call_search, NULL, 0},
+    {prepare_copies, call_use_lists, NULL, 0},
+    {prepare_copies_for_targets, call_use_lists, NULL, 0},
     {prepare_periodic, call_search, NULL, 0},
     {prepare_lists, call_evaluate, NULL, 0},
     {prepare_two_sets, call_evaluate, NULL, 0},
     {prepare_classic, call_evaluate, NULL, 0},
+    {prepare_classic_sets, call_evaluate, NULL, 0},
     {prepare_pairs_with_indices, call_pair_gradients, NULL, 0},
     {prepare_gradients_of_pairs_alone, call_pair_gradients, NULL, 0},
 };
@@ -154,7 +194,7 @@ static void fail_everywhere(valid_call *own, const probe *tested, const char *na
 {
     unsigned char *expected = test_memory(BYTES);
     const cold made = cold_call(own, tested);
-    require_ok(tested->call(own));
+    TEST_REQUIRE(tested->call(own) == SPHG_OK, "%s: %s", name, sphg_last_message(made.context));
     look(&made, tested);
     memcpy(expected, own->outputs, BYTES);
     forget(&made);

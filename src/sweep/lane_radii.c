@@ -74,18 +74,6 @@ void sphgi_keep_lane_radii(struct sphgi_worker *w, uint32_t kept)
         w->passes->pack_lanes(kept, 3 * SPHGI_SHARES, sphgi_lane(w, w->radii.shares, 0));
 }
 
-void sphgi_find_lane_radii(struct sphgi_worker *w)
-{
-    const sphg_neighbors *n = w->sweep->set->neighbors;
-    const int32_t *place = n->target_place.data;
-    int32_t places[SPHGI_WIDTH];
-    if (!w->sweep->plan->graded)
-        return;
-    for (int32_t l = 0; l < w->batch.width; ++l)
-        places[l] = n->kind == SPHGI_HOST_LISTS ? sphgi_targets(w)[l] : place[sphgi_targets(w)[l]];
-    read_radii(w, places);
-}
-
 /* ---- Numbers -------------------------------------------------------------------------------- */
 
 void sphgi_scale_volumes(struct sphgi_worker *w)

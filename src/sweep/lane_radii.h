@@ -4,9 +4,8 @@
 #define SPHGI_LANE_RADII_H
 #include "worker.h"
 
-/* Of the lanes at work, whose places are known; or whose targets are. */
+/* Of the lanes at work. */
 void sphgi_read_lane_radii(struct sphgi_worker *worker);
-void sphgi_find_lane_radii(struct sphgi_worker *worker);
 /* Those of lanes with a bit in `kept` stay, one after the other. */
 void sphgi_keep_lane_radii(struct sphgi_worker *worker, uint32_t kept);
 
