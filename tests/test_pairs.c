@@ -316,10 +316,13 @@ static void masked_targets_have_the_pairs_they_have_among_all(const test_case *t
         for (int i = 0; i < own.count; ++i)
             mask[i] = i % 4 == 2;
         const sphg_subset subset = {0, own.count, NULL, mask};
-        const pair_rows all = pairs_of(&own, NULL, 1), some = pairs_of(&own, &subset, 1);
-        for (int i = 0, row = 0; i < own.count; ++i)
-            if (mask[i])
-                require_row(&all, i, &some, row++);
+        for (int way = 0; way < 4; ++way) { /* without gradients or with; sorted or not */
+            const pair_rows all = pairs_in_order(&own, NULL, way & 1, way >> 1),
+                            some = pairs_in_order(&own, &subset, way & 1, way >> 1);
+            for (int i = 0, row = 0; i < own.count; ++i)
+                if (mask[i])
+                    require_row(&all, i, &some, row++);
+        }
     }
 }
 

@@ -526,6 +526,47 @@ static void laplacians_are_traces_of_hessians(const test_case *test)
         }
 }
 
+/* Where the Hessian of each component goes, and how: they come out the same. */
+static void hessians_of_vectors_stand_where_the_host_wants_them(const test_case *test)
+{
+    const comparison on = exact_stage(test, .3, 2.5);
+    const int d = test->dimension, n = on.points.count, packed = second_order_pairs(d);
+    const sphg_type type = test_field_type(test);
+    const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 9);
+    const second_order together =
+        second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
+    const setup_array values = setup_numbers(type, n, d, numbers);
+    const sphg_view at_sources = setup_view(&values);
+    const sphg_sources sources = comparison_sources(&on);
+    for (int full = 0; full < 2; ++full) {
+        const int width = full ? d * d : packed;
+        const setup_array one = setup_output(type, n, width), two = setup_output(type, n, width),
+                          three = setup_output(type, n, width), beside[] = {one, two, three};
+        sphg_field field = {.shape = SPHG_VECTOR, .at_sources = &at_sources};
+        field.hessian = setup_view(&one);
+        field.hessian.y = two.data;
+        field.hessian.z = d == 3 ? three.data : NULL;
+        field.hessian.layout = full ? SPHG_FULL : SPHG_AS_SHAPE;
+        const sphg_request request = {
+            .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+        SETUP_OK(on.context, sphg_evaluate(on.context, &on.scheme, &request));
+        for (int i = 0; i < n; ++i)
+            for (int c = 0; c < d; ++c)
+                for (int k = 0; k < width; ++k) {
+                    const int a = k / d < k % d ? k / d : k % d, b = k / d + k % d - a;
+                    const int at = full ? a * d - a * (a - 1) / 2 + b - a : k;
+                    TEST_REQUIRE(setup_get(&beside[c], i, k) ==
+                                     setup_get(&together.hessian, i, c * packed + at),
+                                 "particle %d, component %d, number %d", i, c, k);
+                }
+        field.hessian.y = NULL;
+        if (d == 2)
+            continue;
+        TEST_REQUIRE(sphg_evaluate(on.context, &on.scheme, &request) == SPHG_ERROR_ARGUMENT,
+                     "one array of three is missing");
+    }
+}
+
 static void pairs_found_anew_give_the_same_bits(const test_case *test)
 {
     const comparison on = exact_stage(test, .3, 2.5);
@@ -889,6 +930,8 @@ static const test_entry entries[] = {
                TEST_LINEARISED, 0),
     TEST_ENTRY(laplacians_are_traces_of_hessians, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
+    TEST_ENTRY(hessians_of_vectors_stand_where_the_host_wants_them, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(pairs_found_anew_give_the_same_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
     TEST_ENTRY(two_sided_forms_have_the_same_bits_in_any_company, TEST_ALL_PRECISIONS,

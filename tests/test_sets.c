@@ -146,6 +146,21 @@ static void two_source_sets_equal_their_union(const test_case *test)
     }
 }
 
+/* One set goes round along an axis that is longer than both. */
+static void sets_may_differ_in_their_periods(const test_case *test)
+{
+    two_sets sets = split_block(test);
+    const comparison *on = &sets.whole;
+    const comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE,
+                                    comparison_random_field(on, SPHG_SCALAR, 22)};
+    const comparison_result open = evaluate_fluid(&sets, &field, NULL, 0);
+    sphg_geometry wall = geometry_between(&sets, 0, 1);
+    wall.period[0] = 64;
+    sets.from[0][1] = setup_search(on->context, &on->scheme, &wall);
+    const comparison_result found = evaluate_fluid(&sets, &field, NULL, 0);
+    setup_require_close(&open.gradient, &found.gradient, "one set is periodic");
+}
+
 /* What target i sees of a field that some sets mirror: its own value there. */
 static double *seen_by(const two_sets *sets, const comparison_field *field, unsigned lacks, int i)
 {
@@ -568,6 +583,35 @@ static void a_refused_list_leaves_no_sums_behind(const test_case *test)
     sphg_neighbors_destroy(wrong);
 }
 
+/* The lists name other particles' neighbours: the fluid's last one stands elsewhere. */
+static void lists_for_other_targets_are_refused(const test_case *test)
+{
+    const two_sets sets = split_block(test);
+    const comparison *on = &sets.whole;
+    setup_array moved = setup_numbers(sets.positions[0].type, sets.fluid, test->dimension,
+                                      setup_doubles(&sets.positions[0]));
+    setup_put(&moved, sets.fluid * test->dimension - 1, 3);
+    int64_t *offsets = test_memory(((size_t)sets.fluid + 1) * sizeof *offsets);
+    const sphg_lists none = {.offsets = offsets};
+    sphg_geometry wall = geometry_between(&sets, 0, 1);
+    wall.targets = setup_view(&moved);
+    sphg_neighbors *listed = NULL;
+    SETUP_OK(on->context, sphg_neighbors_create(on->context, &listed));
+    SETUP_OK(on->context, sphg_neighbors_use_lists(on->context, listed, &on->scheme, &wall, &none));
+    const setup_array table =
+        setup_output(test_field_type(test), sets.fluid, sphg_correction_width(&on->scheme));
+    sphg_sources sources[2];
+    sources_of(&sets, 0, sources);
+    sources[1].neighbors = listed;
+    const sphg_request request = {
+        .sources = sources, .set_count = 2, .correction = setup_view(&table)};
+    assert_int_equal(sphg_evaluate(on->context, &on->scheme, &request), SPHG_ERROR_SIZE);
+    const char *const named = test_text("target %d", sets.fluid - 1);
+    TEST_REQUIRE(strstr(sphg_last_message(on->context), named), "'%s' does not name %s",
+                 sphg_last_message(on->context), named);
+    sphg_neighbors_destroy(listed);
+}
+
 static void targets_unlike_sources_match_the_oracle(const test_case *test)
 {
     for (int with_volume = 0; with_volume < 2; ++with_volume) {
@@ -798,6 +842,10 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(corrections_of_most_targets_have_the_bits_of_all, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
+    TEST_ENTRY(sets_may_differ_in_their_periods, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(lists_for_other_targets_are_refused, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC), 0),
     TEST_ENTRY(a_refused_list_leaves_no_sums_behind, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
     TEST_ENTRY(targets_unlike_sources_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

@@ -173,6 +173,28 @@ static void radii_are_those_of_the_targets(const test_case *test)
     }
 }
 
+/* Nobody to be near: also where the other object has radii, which such a set cannot have. */
+static void empty_sets_have_no_pairs(const test_case *test)
+{
+    random_state random = random_seeded(99);
+    pair_of pair = pair_for(test, 2, &random);
+    const sphg_scheme scheme = {.dimension = test->dimension, .support_radius = .5};
+    for (int k = 0; k < FLUID; ++k)
+        pair.support[k] = .25 + .25 * (k & 1);
+    for (int way = 0; way < 4; ++way) {
+        pair.fluid.support = way & 1 ? pair.support : NULL;
+        search(pair.context, pair.own, &pair.fluid, .5);
+        sphg_geometry empty = geometry_of(&pair, pair.own);
+        empty.source_count = 0;
+        empty.target_count = way & 2 ? FLUID : 0;
+        if (way & 2)
+            empty.sources = sphg_absent();
+        SETUP_OK(pair.context, sphg_neighbors_search(pair.context, pair.beside, &scheme, &empty));
+        const rows found = rows_listed(pair.context, pair.beside, &scheme, NULL);
+        TEST_REQUIRE(found.offsets[FLUID] == 0, "%lld pairs", (long long)found.offsets[FLUID]);
+    }
+}
+
 /* ---- Results --------------------------------------------------------------------------------- */
 
 static setup_array gradient_of(const test_case *test, const pair_of *pair)
@@ -321,6 +343,10 @@ static void what_does_not_fit_is_refused(const test_case *test)
     wrong.targets = wrong.sources;
     refuse(&pair, &wrong, d, SPHG_ERROR_ARGUMENT, "geometry.targets and targets_of are both set");
     wrong = geometry_of(&pair, pair.own);
+    wrong.target_support = wrong.sources;
+    refuse(&pair, &wrong, d, SPHG_ERROR_ARGUMENT,
+           "geometry.target_support and targets_of are both set");
+    wrong = geometry_of(&pair, pair.own);
     wrong.target_count = FLUID - 1;
     refuse(&pair, &wrong, d, SPHG_ERROR_SIZE, "target_count is 299, but targets_of has 300");
     wrong = geometry_of(&pair, pair.own);
@@ -352,6 +378,6 @@ static const test_entry entries[] = {
     EACH(pairs_are_those_of_brute_force), EACH(far_images_are_those_of_brute_force),
     EACH(radii_are_those_of_the_targets), EACH(results_have_the_bits_of_targets_handed_over),
     EACH(memory_is_shared_and_warm),      EACH(targets_that_were_built_anew_are_refused),
-    EACH(what_does_not_fit_is_refused),
+    EACH(empty_sets_have_no_pairs),       EACH(what_does_not_fit_is_refused),
 };
 TEST_MAIN(entries)

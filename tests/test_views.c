@@ -386,16 +386,18 @@ static void stride_zero_is_one_item_for_all(const test_case *test)
 /* ---- Accumulation ------------------------------------------------------------------------- */
 
 static void jacobian_into(const comparison *own, const sphg_neighbors *neighbors,
-                          const sphg_subset *subset, int accumulate, const setup_array *result)
+                          const sphg_subset *subset, int accumulate, sphg_layout laid_out,
+                          const setup_array *result)
 {
     const sphg_view vector = setup_view(&own->vector);
     sphg_sources sources = {0};
     sources.neighbors = neighbors;
     sources.volume = setup_view(&own->volume);
-    const sphg_field field = {.shape = SPHG_VECTOR,
-                              .accumulate = accumulate,
-                              .at_sources = &vector,
-                              .gradient = setup_view(result)};
+    sphg_field field = {.shape = SPHG_VECTOR,
+                        .accumulate = accumulate,
+                        .at_sources = &vector,
+                        .gradient = setup_view(result)};
+    field.gradient.layout = laid_out;
     const sphg_request request = {
         .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1, .subset = subset};
     SETUP_OK(own->context, sphg_evaluate(own->context, &own->scheme, &request));
@@ -412,8 +414,8 @@ static void accumulation_adds_to_what_is_there(const test_case *test)
     setup_array plain = setup_output(own.scalar.type, COUNT, width);
     const setup_array sum =
         setup_numbers(own.scalar.type, COUNT, width, setup_doubles(&own.tensor));
-    jacobian_into(&own, neighbors, NULL, 0, &plain);
-    jacobian_into(&own, neighbors, NULL, 1, &sum);
+    jacobian_into(&own, neighbors, NULL, 0, SPHG_AS_SHAPE, &plain);
+    jacobian_into(&own, neighbors, NULL, 1, SPHG_AS_SHAPE, &sum);
     for (int i = 0; i < COUNT; ++i)
         for (int k = 0; k < width; ++k) {
             const double before = setup_get(&own.tensor, i, k), added = setup_get(&plain, i, k);
@@ -421,6 +423,27 @@ static void accumulation_adds_to_what_is_there(const test_case *test)
             TEST_WITHIN(one_addition, error / (unit * (fabs(before) + fabs(added))),
                         "one addition");
         }
+}
+
+/* Column by column what is added to is the transpose. */
+static void accumulation_knows_the_layout(const test_case *test)
+{
+    const comparison own = comparison_of(test);
+    const int d = test->dimension;
+    const sphg_geometry geometry = scene_geometry(&own.particles);
+    const sphg_neighbors *neighbors = setup_search(own.context, &own.scheme, &geometry);
+    const setup_array by_rows =
+        setup_numbers(own.scalar.type, COUNT, d * d, setup_doubles(&own.tensor));
+    const setup_array by_columns = setup_output(own.scalar.type, COUNT, d * d);
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < d * d; ++k)
+            setup_put(&by_columns, i * d * d + k % d * d + k / d, setup_get(&own.tensor, i, k));
+    jacobian_into(&own, neighbors, NULL, 1, SPHG_AS_SHAPE, &by_rows);
+    jacobian_into(&own, neighbors, NULL, 1, SPHG_COLUMN_MAJOR, &by_columns);
+    for (int i = 0; i < COUNT; ++i)
+        for (int k = 0; k < d * d; ++k)
+            TEST_REQUIRE(setup_get(&by_columns, i, k % d * d + k / d) == setup_get(&by_rows, i, k),
+                         "particle %d, number %d", i, k);
 }
 
 static void accumulation_leaves_unselected_targets_alone(const test_case *test)
@@ -434,13 +457,13 @@ static void accumulation_leaves_unselected_targets_alone(const test_case *test)
     whole.data = setup_output(own.scalar.type, COUNT, width).data;
     memset(whole.data, 0, (size_t)setup_view(&whole).stride * COUNT);
     memset(parts.data, 0, (size_t)setup_view(&parts).stride * 61);
-    jacobian_into(&own, neighbors, &first, 1, &parts);
+    jacobian_into(&own, neighbors, &first, 1, SPHG_AS_SHAPE, &parts);
     for (int i = 61; i < COUNT; ++i)
         assert_true(setup_is_canary(&parts, i));
     memset(parts.data, 0, (size_t)setup_view(&parts).stride * COUNT);
-    jacobian_into(&own, neighbors, &first, 1, &parts);
-    jacobian_into(&own, neighbors, &rest, 1, &parts);
-    jacobian_into(&own, neighbors, NULL, 1, &whole);
+    jacobian_into(&own, neighbors, &first, 1, SPHG_AS_SHAPE, &parts);
+    jacobian_into(&own, neighbors, &rest, 1, SPHG_AS_SHAPE, &parts);
+    jacobian_into(&own, neighbors, NULL, 1, SPHG_AS_SHAPE, &whole);
     assert_true(setup_same_bits(&parts, &whole));
 }
 
@@ -512,6 +535,7 @@ static const test_entry entries[] = {
     EACH(layouts_without_a_meaning_are_refused, TEST_CORRECTED),
     EACH(stride_zero_is_one_item_for_all, TEST_LINEARISED),
     EACH(accumulation_adds_to_what_is_there, TEST_ALL_METHODS),
+    EACH(accumulation_knows_the_layout, TEST_ALL_METHODS),
     EACH(accumulation_leaves_unselected_targets_alone, TEST_ALL_METHODS),
     EACH(many_fields_have_the_bits_of_each_alone, TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_CMLS)),
     TEST_ENTRY(wide_positions_keep_their_differences, TEST_BIT(TEST_MIXED), TEST_BOTH_DIMENSIONS,
