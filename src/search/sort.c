@@ -272,12 +272,23 @@ static size_t chunk_slots(int32_t particles)
     return slots;
 }
 
+/* A dozen times as many as a dense cloud has blocks, so that two of these seldom share a place. */
+static int32_t bits_seen(int32_t particles)
+{
+    int32_t bits = 4;
+    while (particles >> (bits + 4))
+        ++bits;
+    return bits;
+}
+
 static void carve_chunk(struct sphgi_chunk *chunk, struct carver *carver, int32_t particles)
 {
     chunk->keys = carve(carver, (size_t)particles, sizeof *chunk->keys);
     chunk->hash = carve(carver, chunk_slots(particles), sizeof *chunk->hash);
     chunk->counts = carve(carver, (size_t)particles, sizeof *chunk->counts);
     chunk->global = carve(carver, (size_t)particles, sizeof *chunk->global);
+    chunk->seen_bits = bits_seen(particles);
+    chunk->seen = carve(carver, (size_t)1 << chunk->seen_bits, sizeof *chunk->seen);
 }
 
 /* Returns the bytes. */

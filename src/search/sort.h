@@ -4,18 +4,25 @@
 #define SPHGI_SORT_H
 #include "grid.h"
 
+/* A block of a chunk, as the pass names it, and its number plus 1; 0: none. */
+struct sphgi_seen {
+    int32_t at[4], number;
+};
+
 /* Each chunk of particles collects the blocks it meets on its own; the results are merged in order,
  * so that nothing depends on the number of chunks. */
 struct sphgi_chunk {
     int32_t begin, end;
     int32_t block_count;
     uint32_t slots;
-    struct sphgi_key *keys; /* of the blocks, in order of appearance */
-    int32_t *hash;          /* block + 1; grows inside its share */
-    int32_t *counts;        /* particles per block; later: where the next one goes */
-    int32_t *cells;         /* the same per cell, as long as blocks hold enough on average */
-    int32_t cells_most;     /* blocks that there is room for then; 0: none */
-    int32_t *global;        /* number in the grid */
+    struct sphgi_key *keys;  /* of the blocks, in order of appearance */
+    int32_t *hash;           /* block + 1; grows inside its share */
+    int32_t *counts;         /* particles per block; later: where the next one goes */
+    int32_t *cells;          /* the same per cell, as long as blocks hold enough on average */
+    int32_t cells_most;      /* blocks that there is room for then; 0: none */
+    int32_t *global;         /* number in the grid */
+    struct sphgi_seen *seen; /* 2^seen_bits places for blocks that were met */
+    int32_t seen_bits;
 };
 
 struct sphgi_sort {

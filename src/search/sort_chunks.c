@@ -5,7 +5,8 @@
 
 enum {
     BATCH = 256,
-    RECENT = 4 /* blocks that are not looked up again: one for each of four beside each other */
+    RECENT = 4,   /* blocks that are compared first: one for each of four beside each other */
+    MET_AGAIN = 8 /* particles a block, or more: its number is noted */
 };
 
 static void rehash(struct sphgi_chunk *chunk, uint32_t slots)
@@ -61,19 +62,40 @@ static int32_t block_in_chunk(struct sphgi_chunk *chunk, struct sphgi_key key)
     return b;
 }
 
+/* Number of a block that the pass has found. */
+static int32_t look_up(struct sphgi_chunk *chunk, const int32_t *block)
+{
+    int64_t at[3] = {block[0], block[1], block[2]};
+    sphgi_raise_octave(block[3], at);
+    return block_in_chunk(chunk, sphgi_key_of(at));
+}
+
+/* The same where blocks are met again and again. Each is noted in its one place, until another one
+ * of that place is. */
+static int32_t look_up_again(struct sphgi_chunk *chunk, const int32_t *block)
+{
+    const uint32_t mixed = (uint32_t)block[0] * 0x9E3779B1u + (uint32_t)block[1] * 0x85EBCA77u +
+                           (uint32_t)block[2] * 0xC2B2AE3Du + (uint32_t)block[3] * 0x27D4EB2Fu;
+    struct sphgi_seen *seen = &chunk->seen[mixed >> (32 - chunk->seen_bits)];
+    if (!seen->number || memcmp(block, seen->at, sizeof seen->at) != 0) {
+        seen->number = look_up(chunk, block) + 1;
+        memcpy(seen->at, block, sizeof seen->at);
+    }
+    return seen->number - 1;
+}
+
 /* Particles [begin, begin + count) of the chunk, whose blocks and cells the pass has found. Those
  * that follow one another along x often change between the blocks on either side of a face. */
 static void collect_cut(const struct sphgi_sort *sort, struct sphgi_chunk *chunk, int32_t begin,
                         int32_t count, int32_t (*block)[4])
 {
+    const bool again = chunk->block_count < (begin - chunk->begin) / MET_AGAIN;
     int32_t seen[RECENT][4], number[RECENT];
     memset(number, -1, sizeof number);
     for (int32_t k = 0; k < count; ++k) {
         const uint32_t r = ((uint32_t)block[k][1] & 1) | ((uint32_t)block[k][2] & 1) << 1;
         if (number[r] < 0 || memcmp(block[k], seen[r], sizeof *seen) != 0) {
-            int64_t at[3] = {block[k][0], block[k][1], block[k][2]};
-            sphgi_raise_octave(block[k][3], at);
-            number[r] = block_in_chunk(chunk, sphgi_key_of(at));
+            number[r] = again ? look_up_again(chunk, block[k]) : look_up(chunk, block[k]);
             memcpy(seen[r], block[k], sizeof *seen);
         }
         sort->block[begin + k] = number[r];
@@ -135,6 +157,7 @@ void sphgi_collect_chunks(void *data, int32_t begin, int32_t end, int32_t worker
     for (int32_t c = begin; c < end; ++c) {
         struct sphgi_chunk *chunk = &sort->chunks[c];
         rehash(chunk, SPHGI_SLOTS_LEAST);
+        memset(chunk->seen, 0, sizeof *chunk->seen << chunk->seen_bits);
         for (int32_t i = chunk->begin; i < chunk->end; i += BATCH) {
             const int32_t count = sphgi_min32(BATCH, chunk->end - i);
             const char *rows = (const char *)sort->rows + (size_t)i * row_size;
