@@ -316,6 +316,32 @@ static double radius_of(const struct sphgi_walk *walk, int32_t block)
     return radius > (double)FLT_MIN && radius < (double)FLT_MAX ? radius : (double)INFINITY;
 }
 
+/* How far the particles of a block reach, where that counts: less than their octave could. */
+static double reach_of_block(const struct sphgi_walk *walk, int32_t block)
+{
+    const double octave = walk->sources->raster.top / (double)((int64_t)1 << walk->octave);
+    const double radius = radius_of(walk, block);
+    return with_margin(walk->stretch * (radius < octave ? radius : octave),
+                       walk->sources->raster.slack);
+}
+
+/* Where bars at that place of an axis begin and end. Far out, cells are no longer where they seem
+ * to be, and a period goes round. */
+static void look_across(const struct sphgi_walk *walk, int32_t axis, int64_t at, double *low,
+                        double *high)
+{
+    const struct sphgi_axis *across = &walk->sources->raster.axis[axis];
+    const int64_t far = (int64_t)1 << 39;
+    const double margin = 0x1p-10;
+    *low = -(double)INFINITY;
+    *high = (double)INFINITY;
+    if (axis >= walk->sources->raster.dimension || across->cells || at <= -far || at >= far)
+        return;
+    const double wide = 1 / (across->inverse * (double)((int64_t)1 << walk->octave));
+    *low = ((double)at - margin) * wide;
+    *high = ((double)at + 1 + margin) * wide;
+}
+
 /* False: there is no room for more. */
 static bool note_block(const struct sphgi_walk *walk, int32_t block, const int64_t *at,
                        struct sphgi_nearby *nearby)
@@ -324,8 +350,12 @@ static bool note_block(const struct sphgi_walk *walk, int32_t block, const int64
         return true;
     if (nearby->count == SPHGI_NEAR_MOST)
         return false;
-    nearby->near[nearby->count++] =
-        (struct sphgi_near){block, walk->octave, {at[0], at[1], at[2]}, radius_of(walk, block)};
+    struct sphgi_near *near = &nearby->near[nearby->count++];
+    const int32_t *starts = walk->sources->cell_start.data;
+    __builtin_prefetch(starts + walk->sources->blocks[block].first); /* add_block reads them */
+    *near = (struct sphgi_near){block, walk->octave, at[0], {0}, {0}, reach_of_block(walk, block)};
+    for (int32_t a = 1; a < 3; ++a)
+        look_across(walk, a, at[a], &near->low[a - 1], &near->high[a - 1]);
     return true;
 }
 
@@ -413,55 +443,24 @@ bool sphgi_look_nearby(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
     return true;
 }
 
-/* Across the bars of an octave: how wide they are, 0 where a period goes round. */
-struct across {
-    double wide[3], reach;
-};
-
-static struct across across_bars(const struct sphgi_walk *walk, double reach)
+/* Is a bar farther from the targets than they, whose reach this is, and those in it reach? */
+static bool is_beyond(const struct sphgi_walk *walk, double reach, const struct sphgi_near *near)
 {
-    const struct sphgi_raster *raster = &walk->sources->raster;
-    struct across across = {.reach = reach};
-    for (int32_t a = 1; a < raster->dimension; ++a)
-        if (!raster->axis[a].cells)
-            across.wide[a] = 1 / (raster->axis[a].inverse * (double)((int64_t)1 << walk->octave));
-    return across;
-}
-
-/* How far targets and those of a block reach: less than an octave could. */
-static double reach_of_block(const struct sphgi_walk *walk, const struct across *across,
-                             const struct sphgi_near *near)
-{
-    const double theirs = walk->stretch > 0 ? walk->stretch * near->radius : 0;
-    const double reach =
-        with_margin(theirs > walk->reach ? theirs : walk->reach, walk->sources->raster.slack);
-    return reach < across->reach ? reach : across->reach;
-}
-
-/* Is a bar farther from the targets than they reach? Far out, cells are no longer where they seem
- * to be. */
-static bool is_beyond(const struct sphgi_walk *walk, const struct across *across,
-                      const struct sphgi_near *near)
-{
-    const int64_t *at = near->at;
-    const double reach = reach_of_block(walk, across, near);
-    const double far = 0x1p39, margin = 0x1p-10;
     double square = 0;
-    for (int32_t a = 1; a < 3; ++a) {
-        const double low = (double)at[a], wide = across->wide[a];
-        const double below = (low - margin) * wide - walk->high[a];
-        const double above = walk->low[a] - (low + 1 + margin) * wide;
+    for (int32_t a = 0; a < 2; ++a) {
+        const double below = near->low[a] - walk->high[a + 1];
+        const double above = walk->low[a + 1] - near->high[a];
         const double gap = below > above ? below : above;
-        if (wide > 0 && gap > 0 && low < far && low > -far)
-            square += gap * gap;
+        square += gap > 0 ? gap * gap : 0;
     }
-    return square > reach * reach;
+    const double most = near->reach > reach ? near->reach : reach;
+    return square > most * most;
 }
 
 bool sphgi_walk_nearby(struct sphgi_walk *walk, const struct sphgi_nearby *nearby,
                        struct sphgi_runs *runs)
 {
-    struct across bars = {.reach = 0};
+    const double own = with_margin(walk->reach, walk->sources->raster.slack);
     bool some = false;
     runs->count = runs->candidates = 0;
     walk->octave = -1;
@@ -469,16 +468,14 @@ bool sphgi_walk_nearby(struct sphgi_walk *walk, const struct sphgi_nearby *nearb
         const struct sphgi_near *near = &nearby->near[n];
         if (near->octave != walk->octave) {
             walk->octave = near->octave;
-            const double reach = reach_in(walk, near->octave);
-            some = look_along_bars(walk, reach);
-            bars = across_bars(walk, reach);
+            some = look_along_bars(walk, reach_in(walk, near->octave));
         }
-        if (!some || is_beyond(walk, &bars, near))
+        if (!some || is_beyond(walk, own, near))
             continue;
         if (runs->count + 2 > SPHGI_RUNS_MOST)
             return true;
         for (int32_t k = 0; k < walk->span[0].count; ++k)
-            add_block(walk, near->block, near->at[0], k, runs);
+            add_block(walk, near->block, near->x, k, runs);
     }
     return false;
 }

@@ -33,8 +33,9 @@ bool sphgi_walk_on(struct sphgi_walk *walk, struct sphgi_runs *runs);
 enum { SPHGI_NEAR_MOST = 256 };
 struct sphgi_near {
     int32_t block, octave;
-    int64_t at[3];
-    double radius; /* the largest there is */
+    int64_t x;              /* its place along the bars */
+    double low[2], high[2]; /* where it begins and ends across them; infinite: nobody can tell */
+    double reach;           /* of the radii in it, where these count */
 };
 struct sphgi_nearby {
     int32_t count; /* -1: there are more */
