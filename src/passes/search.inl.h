@@ -18,7 +18,12 @@ struct candidates {
     int32_t self;
 };
 
-enum { FEW = 4 /* targets that are tested together */ };
+enum {
+    FEW = 4, /* targets that are tested together */
+    /* Candidates of a cell, in 2D or of thin clouds, of which nobody asks whether they lie near the
+     * box: long vectors test them all in as little time. */
+    FEW_CANDIDATES = LANES >= 8 ? 40 : 0
+};
 
 SPHGI_TEMPLATE struct candidates carve(void *scratch, int32_t most, bool squares)
 {
@@ -157,7 +162,8 @@ SPHGI_TEMPLATE struct candidates collect(const struct sphgi_find *find,
     const struct candidates c = carve(find->scratch, runs->candidates, false);
     const struct scan scan = scan_of(find, runs);
     int32_t n = 0;
-    scan_box(find, &scan, box, w, periodic);
+    if (runs->candidates > FEW_CANDIDATES)
+        scan_box(find, &scan, box, w, periodic);
     for (int32_t v = 0; v < scan.count; ++v) {
         const struct three at = staged_at(find, scan.at[v]);
         const packing moved = packing_of_bits(find, scan.lanes[v]);
