@@ -45,6 +45,12 @@ void sphgi_tree_use(struct sphgi_tree *tree, int32_t blocks, void *memory);
 void sphgi_tree_build(struct sphgi_tree *tree, const struct sphgi_block *blocks, int32_t count,
                       int32_t octaves);
 
+/* The first leaf that has blocks of [from, end) in the box; a bit for each of them. 0: none is
+ * left, and leaf is not written. */
+unsigned sphgi_next_blocks(const struct sphgi_tree *tree, const struct sphgi_blocks *box,
+                           int32_t from, int32_t end, int32_t *leaf);
+bool sphgi_blocks_meet(const struct sphgi_blocks *a, const struct sphgi_blocks *b);
+
 /* A place as the tree has it. Far out, places that are neighbours may become one: the order stays.
  */
 static inline int32_t sphgi_narrowed(int64_t at)

@@ -3,79 +3,6 @@
 #include "grid.h"
 #include <float.h>
 #include <math.h>
-#include <string.h>
-
-/* ---- Blocks in a box ------------------------------------------------------------------------ */
-
-typedef int32_t four __attribute__((vector_size(16), aligned(4), may_alias));
-typedef int16_t four_short __attribute__((vector_size(8)));
-
-/* A bit for each of four items that are not outside. */
-static unsigned bits_left(four outside)
-{
-    const four_short narrow = __builtin_convertvector(outside, four_short);
-    uint64_t all;
-    memcpy(&all, &narrow, sizeof all);
-    return (unsigned)(((~all & UINT64_C(0x0008000400020001)) * UINT64_C(0x0001000100010001)) >> 48);
-}
-
-/* The items at low[axis] and high[axis], of which each axis has SPHGI_TREE_WIDTH. */
-static unsigned items_inside(const int32_t *low, const int32_t *high,
-                             const struct sphgi_blocks *box)
-{
-    unsigned inside = 0;
-    for (int32_t first = 0; first < SPHGI_TREE_WIDTH; first += 4) {
-        four outside = {0};
-        for (int32_t a = 0; a < 3; ++a) {
-            const int32_t at = a * SPHGI_TREE_WIDTH + first;
-            outside |= (*(const four *)(high + at) < box->low[a]) |
-                       (*(const four *)(low + at) > box->high[a]);
-        }
-        inside |= bits_left(outside) << first;
-    }
-    return inside;
-}
-
-static unsigned group_inside(const struct sphgi_tree *tree, int32_t height, int32_t group,
-                             const struct sphgi_blocks *box)
-{
-    if (!height)
-        return items_inside(tree->leaves[group].at[0], tree->leaves[group].at[0], box);
-    const struct sphgi_node *node = &tree->nodes[height][group];
-    return items_inside(node->low[0], node->high[0], box);
-}
-
-/* The first leaf that has blocks of [from, end) in the box; a bit for each of them. 0: none is
- * left, and leaf is not written. */
-static unsigned next_blocks(const struct sphgi_tree *tree, const struct sphgi_blocks *box,
-                            int32_t from, int32_t end, int32_t *leaf)
-{
-    int32_t height = 0, at = from;
-    while (height <= tree->height && (int64_t)at << 3 * height < end) {
-        const int32_t group = at / SPHGI_TREE_WIDTH, ahead = at % SPHGI_TREE_WIDTH;
-        const unsigned inside = group_inside(tree, height, group, box) >> ahead << ahead;
-        if (!inside) {
-            at = group + 1;
-            ++height;
-        } else if (height) {
-            at = (group * SPHGI_TREE_WIDTH + __builtin_ctz(inside)) * SPHGI_TREE_WIDTH;
-            --height;
-        } else {
-            const int32_t left = end - group * SPHGI_TREE_WIDTH;
-            *leaf = group;
-            return left < SPHGI_TREE_WIDTH ? inside & ((1u << left) - 1) : inside;
-        }
-    }
-    return 0;
-}
-
-static bool meet(const struct sphgi_blocks *a, const struct sphgi_blocks *b)
-{
-    bool apart = false;
-    for (int32_t k = 0; k < 3; ++k)
-        apart |= a->low[k] > b->high[k] || b->low[k] > a->high[k];
-    return !apart;
-}
 
 enum { PARTS = 8 }; /* spans of three axes, two of each */
 
@@ -229,9 +156,10 @@ static bool next_of_part(struct sphgi_walk *walk)
 {
     const struct sphgi_tree *tree = &walk->sources->tree;
     struct sphgi_blocks box;
-    if (!box_of_part(walk, &box) || !meet(&box, &tree->octave[walk->octave]))
+    if (!box_of_part(walk, &box) || !sphgi_blocks_meet(&box, &tree->octave[walk->octave]))
         return false;
-    walk->inside = next_blocks(tree, &box, walk->from, tree->first[walk->octave + 1], &walk->leaf);
+    walk->inside =
+        sphgi_next_blocks(tree, &box, walk->from, tree->first[walk->octave + 1], &walk->leaf);
     if (!walk->inside)
         return false;
     walk->from = (walk->leaf + 1) * SPHGI_TREE_WIDTH;
@@ -420,7 +348,7 @@ static bool look_into_part(struct sphgi_walk *walk, struct sphgi_nearby *nearby)
 {
     const struct sphgi_blocks *all = &walk->sources->tree.octave[walk->octave];
     struct sphgi_blocks box;
-    if (!box_of_part(walk, &box) || !meet(&box, all))
+    if (!box_of_part(walk, &box) || !sphgi_blocks_meet(&box, all))
         return true;
     struct sphgi_blocks inside = box;
     for (int32_t a = 0; a < 3; ++a) {
