@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Groups whose lists stand side by side, kept or found on the spot, go from ids to sums in one
- * pass, where one field or the corrections alone are wanted: the bits are those of targets that are
- * asked for a few at a time, which go step by step. */
+ * pass, where one field or the corrections alone are wanted; forces and other divergences of all
+ * targets read records. The bits are those of targets that are asked for a few at a time, which go
+ * step by step. */
 #include "support/setup.h"
 #include <math.h>
 
@@ -10,7 +11,7 @@ typedef struct scene {
     sphg_context *context;
     sphg_scheme scheme;
     cloud points;
-    setup_array positions, radii, volume, one_volume, scalar, vector;
+    setup_array positions, radii, volume, one_volume, scalar, vector, matrix, density, table;
     int graded;  /* each particle has a radius of its own */
     int targets; /* the first of the particles */
     const sphg_neighbors *kept, *found;
@@ -57,6 +58,10 @@ static scene scene_on(const test_case *test, sphg_context *context, double radiu
     of.one_volume = setup_numbers(test_field_type(test), 1, 1, (const double[]){.875});
     of.scalar = numbers_of(&of, 1, &random);
     of.vector = numbers_of(&of, test->dimension, &random);
+    of.matrix = numbers_of(&of, test->dimension * test->dimension, &random);
+    of.table = numbers_of(&of, test->dimension * (test->dimension + 1) / 2, &random);
+    of.density = setup_numbers(test_field_type(test), of.points.count, 1,
+                               cloud_numbers(&of.points, .5, 2, &random));
     of.radii = radii_of(&of, radius, &random);
     of.targets = of.points.count;
     of.kept = neighbors_of(&of, 0, keep_weights);
@@ -86,15 +91,36 @@ static const wish wishes[] = {
     {"mirrored divergence", 0, SPHG_VECTOR, SPHG_DIRECT, 1, 1},
     {"force of a pressure", 0, SPHG_SCALAR, SPHG_ADJOINT, 0, 0},
     {"adjoint divergence", 0, SPHG_VECTOR, SPHG_ADJOINT, 1, 0},
+    {"adjoint Jacobian", 0, SPHG_VECTOR, SPHG_ADJOINT, 0, 0},
+    {"force of a stress", 0, SPHG_SYM_TENSOR, SPHG_ADJOINT, 1, 0},
+    {"adjoint divergence of a tensor", 0, SPHG_TENSOR, SPHG_ADJOINT, 1, 0},
+    {"divergence of a symmetric tensor", 0, SPHG_SYM_TENSOR, SPHG_DIFFERENCE, 1, 0},
+    {"divergence of a tensor", 0, SPHG_TENSOR, SPHG_DIFFERENCE, 1, 0},
+    {"symmetric force of a pressure", 0, SPHG_SCALAR, SPHG_SYMMETRIC, 0, 0},
+    {"symmetric divergence", 0, SPHG_VECTOR, SPHG_SYMMETRIC, 1, 0},
+    {"symmetric force of a stress", 0, SPHG_SYM_TENSOR, SPHG_SYMMETRIC, 1, 0},
+    {"symmetric divergence of a tensor", 0, SPHG_TENSOR, SPHG_SYMMETRIC, 1, 0},
 };
 enum { WISHES = sizeof wishes / sizeof wishes[0] };
 
-/* Of the others' forms and of PLAIN, which has no corrections. */
+/* PLAIN has no corrections; lists that are not mutual lack pairs of two-sided forms. */
 static int is_offered(const scene *of, const wish *w)
 {
-    const int plain = of->test->method == SPHG_PLAIN;
-    return plain ? !w->corrections && !(of->graded && w->form == SPHG_ADJOINT)
-                 : w->form != SPHG_ADJOINT;
+    return !(of->test->method == SPHG_PLAIN && w->corrections) &&
+           !(of->graded && w->form >= SPHG_SYMMETRIC);
+}
+
+/* Both ends of a pair are corrected: there must be a table, whatever it holds. */
+static int takes_a_table(const scene *of, const wish *w)
+{
+    return of->test->method != SPHG_PLAIN && w->form >= SPHG_SYMMETRIC;
+}
+
+static int numbers_of_result(const wish *w, int d)
+{
+    const int rows = w->shape == SPHG_SCALAR || w->shape == SPHG_VECTOR ? 1 : d;
+    const int components = w->shape == SPHG_SCALAR ? 1 : d;
+    return w->divergence ? rows : components * d;
 }
 
 typedef struct outcome {
@@ -104,17 +130,23 @@ typedef struct outcome {
 static outcome nothing_yet(const scene *of, const wish *w)
 {
     const sphg_type type = test_field_type(of->test);
-    const int d = of->test->dimension, components = w->shape == SPHG_SCALAR ? 1 : d;
+    const int d = of->test->dimension;
     return (outcome){setup_output(type, of->points.count, d * (d + 1) / 2),
-                     setup_output(type, of->points.count, w->divergence ? 1 : components * d)};
+                     setup_output(type, of->points.count, numbers_of_result(w, d))};
 }
 
 static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neighbors,
                      sphg_view volume, const sphg_subset *subset, const outcome *to)
 {
-    const sphg_view field = setup_view(w->shape == SPHG_SCALAR ? &of->scalar : &of->vector);
+    const sphg_view field = setup_view(w->shape == SPHG_SCALAR   ? &of->scalar
+                                       : w->shape == SPHG_VECTOR ? &of->vector
+                                                                 : &of->matrix);
     const sphg_view absent = sphg_absent();
-    const sphg_sources sources = {.neighbors = neighbors, .volume = volume, .same_volumes = 1};
+    sphg_sources sources = {.neighbors = neighbors, .volume = volume, .same_volumes = 1};
+    if (w->form == SPHG_SYMMETRIC)
+        sources.density = setup_view(&of->density);
+    if (takes_a_table(of, w))
+        sources.correction = setup_view(&of->table);
     sphg_field wanted = {.shape = w->shape,
                          .form = w->form,
                          .at_sources = w->mirror ? &absent : &field,

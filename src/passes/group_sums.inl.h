@@ -241,10 +241,7 @@ static void sum_group(const struct sphgi_group_sums *g, const struct sphgi_shape
     tile->id_stride = SPHGI_GROUP;
     tile->spread = false;
     tile->chunk = 0;
-    if (lists->kept_stand)
-        WITH(three, g->three,
-             done = group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, true, true, three));
-    else if (shape->method == SPHG_KGC)
+    if (!lists->kept_stand && shape->method == SPHG_KGC) /* else: record_sums.inl.h */
         group_at_once(g, shape, lists, tile, &done);
     if (!done)
         WITH(three, g->three,

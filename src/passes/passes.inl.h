@@ -57,6 +57,10 @@
 #include "contracted.inl.h"
 #include "folded.inl.h"
 #include "group_sums.inl.h"
+#if !defined(__x86_64__) || defined(__AVX2__) /* others wait for arithmetic: not worth the code */
+#define RECORDS_ARE_READ
+#include "record_sums.inl.h"
+#endif
 #include "classic.inl.h"
 #include "quadratic_sums.inl.h"
 #include "diffusion.inl.h"
@@ -96,6 +100,10 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .keep_factors = keep_factors,
     .stage = stage,
     .sum_group = sum_group,
+#if defined(RECORDS_ARE_READ)
+    .sum_records = sum_records,
+    .put_records = put_records,
+#endif
     .find = find,
     .bounds = bounds,
     .pack_by_radii = pack_by_radii,

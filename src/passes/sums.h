@@ -108,6 +108,17 @@ struct sphgi_gather {
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
 };
 
+/* Terms of the sources in adjoint and symmetric sums that are multiplied out before the sweep, once
+ * a particle instead of once a pair: b_j = weight_j C_j A_j (theory.md, section 5). What a pair
+ * adds is then ... */
+enum sphgi_fold {
+    SPHGI_NOT_FOLDED,
+    SPHGI_FOLDED_NUMBER,    /* b s_ij x_ij */
+    SPHGI_FOLDED_VECTOR,    /* b . s_ij x_ij */
+    SPHGI_FOLDED_SYMMETRIC, /* b s_ij x_ij, b a symmetric matrix */
+    SPHGI_FOLDED_MATRIX
+};
+
 /* All sums of targets whose lists stand side by side: moments, and those of one field. */
 struct sphgi_group_sums {
     const struct sphgi_gather *gather;
@@ -128,7 +139,27 @@ struct sphgi_group_lists {
     int32_t first;         /* the lane of the first, of SPHGI_WIDTH */
     void *kept;            /* s_ij of the first target's list; NULL: none */
     void *moments, *sums;  /* [sum][SPHGI_WIDTH] */
+    void *vectors;         /* of fields that are folded: what stands before A_i */
 };
+
+/* The same where all s_ij are there: of a source nothing is read but its record, its coordinates
+ * along the axes and, behind them, the numbers of the field. */
+struct sphgi_record_sums {
+    const struct sphgi_gather *gather; /* for the rows of the targets */
+    const void *records;               /* those of the targets, too, where own is not 0 */
+    int32_t dimension;
+    bool moments, divergence; /* divergence: of the field, instead of its gradient */
+    sphg_shape shape;         /* of the field; 0: there is none */
+    int32_t own;              /* as in sphgi_group_sums */
+    enum sphgi_fold fold;     /* the numbers are b_j ... */
+    bool dense;               /* ... and what stands behind them */
+};
+
+/* Numbers in a record, whole rows. */
+static inline int32_t sphgi_record_width(int32_t dimension, int32_t numbers)
+{
+    return (dimension + numbers + SPHGI_ROW - 1) / SPHGI_ROW * SPHGI_ROW;
+}
 
 /* What becomes of the host's numbers of sources; the dummy is the row behind these. */
 struct sphgi_cleaning {
@@ -212,17 +243,6 @@ enum sphgi_weight {
     SPHGI_WEIGHT_V,
     SPHGI_WEIGHT_PER_DENSITY,
     SPHGI_WEIGHT_V_PER_DENSITY
-};
-
-/* Terms of the sources in adjoint and symmetric sums that are multiplied out before the sweep, once
- * a particle instead of once a pair: b_j = weight_j C_j A_j (theory.md, section 5). What a pair
- * adds is then ... */
-enum sphgi_fold {
-    SPHGI_NOT_FOLDED,
-    SPHGI_FOLDED_NUMBER,    /* b s_ij x_ij */
-    SPHGI_FOLDED_VECTOR,    /* b . s_ij x_ij */
-    SPHGI_FOLDED_SYMMETRIC, /* b s_ij x_ij, b a symmetric matrix */
-    SPHGI_FOLDED_MATRIX
 };
 
 /* Numbers of b_j. */

@@ -148,7 +148,21 @@ static void ask_for_next(const struct folding *f, const int32_t *order, int64_t 
     p->ask_for_lanes(count, &f->sweep->set->volume, order, false);
 }
 
-static void fold_some(struct folding *f, int64_t first, struct sphgi_columns *rows)
+int32_t sphgi_numbers_folded(const struct sphgi_plan *plan, const struct sphgi_field_plan *field)
+{
+    const bool symmetric = field->form == SPHG_SYMMETRIC;
+    const bool carries = field == plan->fields + plan->carrier[symmetric];
+    return sphgi_folded_numbers(field->fold, plan->dimension) +
+           (carries && (symmetric || plan->both_sides) ? 1 : 0);
+}
+
+/* Where b_j of all sources go. */
+struct folded_columns {
+    struct sphgi_columns columns[3];
+    int32_t count, numbers; /* of them, and of each */
+};
+
+static void fold_some(struct folding *f, int64_t first, const struct folded_columns *to)
 {
     const struct sphgi_passes *p = f->sweep->passes;
     const struct sphgi_plan *plan = f->sweep->plan;
@@ -159,12 +173,14 @@ static void fold_some(struct folding *f, int64_t first, struct sphgi_columns *ro
         weigh_by_radii(f, first);
     p->scale(f->width, numbers, product(f), 1, f->weight, f->b);
     put_carried(f, numbers);
-    for (int32_t k = 0; k < f->field->folded_rows; ++k)
-        p->store_lanes(f->count, &rows[k], f->places, number(f, f->b, k * SPHGI_ROW), false);
+    for (int32_t k = 0; k < to->count; ++k)
+        p->store_lanes(f->count, &to->columns[k], f->places, number(f, f->b, k * to->numbers),
+                       false);
 }
 
-bool sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
-                     const int32_t *order, int64_t begin, int64_t end, char *to, size_t array)
+static bool fold_into(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
+                      const int32_t *order, int64_t begin, int64_t end,
+                      const struct folded_columns *to)
 {
     const size_t lanes = (size_t)sweep->passes->lanes;
     struct folding f;
@@ -172,10 +188,6 @@ bool sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_p
     f.field = field;
     f.bad_volume = false;
     memset(f.b, 0, sizeof f.b); /* what is behind the last number of a row */
-    struct sphgi_columns rows[3];
-    for (int32_t k = 0; k < field->folded_rows; ++k)
-        rows[k] =
-            sphgi_dense_columns(to + (size_t)k * array, SPHGI_ROW, SPHGI_ROW, sweep->plan->type);
     sphgi_shares_of(sweep->plan, f.share);
     for (int64_t at = begin; at < end; at += f.count) {
         f.count = end - at < SPHGI_WIDTH ? (int32_t)(end - at) : SPHGI_WIDTH;
@@ -187,7 +199,28 @@ bool sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_p
         }
         if (order)
             ask_for_next(&f, order + at + f.count, end - at - f.count);
-        fold_some(&f, at, rows);
+        fold_some(&f, at, to);
     }
     return !f.bad_volume;
+}
+
+bool sphgi_fold_rows(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
+                     const int32_t *order, int64_t begin, int64_t end, char *to, size_t array)
+{
+    struct folded_columns rows = {.count = field->folded_rows, .numbers = SPHGI_ROW};
+    for (int32_t k = 0; k < field->folded_rows; ++k)
+        rows.columns[k] =
+            sphgi_dense_columns(to + (size_t)k * array, SPHGI_ROW, SPHGI_ROW, sweep->plan->type);
+    return fold_into(sweep, field, order, begin, end, &rows);
+}
+
+bool sphgi_fold_records(const struct sphgi_sweep *sweep, const struct sphgi_field_plan *field,
+                        const int32_t *order, int64_t begin, int64_t end, char *to, int32_t width)
+{
+    const int32_t numbers = sphgi_numbers_folded(sweep->plan, field);
+    const struct folded_columns records = {
+        .columns = {sphgi_dense_columns(to, numbers, width, sweep->plan->type)},
+        .count = 1,
+        .numbers = numbers};
+    return fold_into(sweep, field, order, begin, end, &records);
 }

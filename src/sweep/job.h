@@ -43,6 +43,9 @@ struct sphgi_pair_sink {
     struct sphgi_pair_numbers gradient;
 };
 
+/* Which groups a sweep goes through. */
+enum sphgi_groups { SPHGI_ALL_GROUPS, SPHGI_GROUPS_WITH_WEIGHTS, SPHGI_GROUPS_WITHOUT };
+
 /* A sweep, the same for all its workers. */
 struct sphgi_sweep {
     sphg_context *context;
@@ -57,6 +60,9 @@ struct sphgi_sweep {
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
     struct sphgi_kept_weights kept; /* s_ij that this sweep reads and writes */
+    bool may_read_records;            /* where these are there already */
+    enum sphgi_groups groups;       /* that are swept */
+    const void *records;            /* of the sources, if they are those with weights */
     struct sphgi_put_away put_away;
     struct sphgi_turn turn;
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */

@@ -7,16 +7,21 @@
 
 /* ---- Fields ---------------------------------------------------------------------------------- */
 
-/* Targets that are the sources of this set, with the same values: these stand packed already. */
-static bool are_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+bool sphgi_are_targets_sources(const struct sphgi_sweep *sweep,
+                               const struct sphgi_field_plan *field)
 {
-    const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_stream *stream = &sweep->set->streams[field->stream];
-    return sweep->packed && sweep->set_number == sweep->plan->own_set && field->streams == 1 &&
-           field->rows && sweep->set->neighbors->same &&
+    return sweep->set_number == sweep->plan->own_set && sweep->set->neighbors->same &&
            field->target.stride == stream->columns.stride &&
            memcmp(field->target.at, stream->columns.at,
                   (size_t)field->components * sizeof field->target.at[0]) == 0;
+}
+
+/* These stand packed already. */
+static bool are_targets_in_rows(const struct sphgi_worker *w, const struct sphgi_field_plan *field)
+{
+    return w->sweep->packed && field->streams == 1 && field->rows &&
+           sphgi_are_targets_sources(w->sweep, field);
 }
 
 void sphgi_find_targets_in_rows(struct sphgi_worker *w)

@@ -31,4 +31,8 @@ void sphgi_load_own_volume(struct sphgi_worker *worker, const struct sphgi_colum
 void sphgi_self_weight(struct sphgi_worker *worker, char *to);
 void sphgi_self_gradient(struct sphgi_worker *worker, char *gradient);
 
+/* The targets are sources of this set, with the same values of the field. */
+bool sphgi_are_targets_sources(const struct sphgi_sweep *sweep,
+                               const struct sphgi_field_plan *field);
+
 #endif

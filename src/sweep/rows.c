@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "rows.h"
 #include "fold.h"
+#include "records.h"
 #include "core/parallel.h"
 #include <string.h>
 
@@ -169,8 +170,10 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
         positions ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
     if (!positions && !arrays)
         return SPHG_OK;
-    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed,
-                       positions_size + arrays * rows * row_size(type), 1))
+    size_t bytes = positions_size + arrays * rows * row_size(type);
+    if (sweep->may_read_records && sphgi_record_bytes(sweep) > bytes)
+        bytes = sphgi_record_bytes(sweep);
+    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed, bytes, 1))
         return SPHG_ERROR_MEMORY;
     char *memory = sweep->context->packed.data;
     struct packing packing = {.sweep = sweep,

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "core/view.h"
 #include "host_lists.h"
+#include "records.h"
 #include "rows.h"
 #include "traverse.h"
 #include <math.h>
@@ -12,11 +13,19 @@ enum {
     PACK_WORTH = 16      /* fields are packed for a 16th of as many targets, or more */
 };
 
+/* Groups that have no weights yet are swept over rows that are copied, which takes more. */
+static size_t memory_of_worker(const struct sphgi_sweep *sweep)
+{
+    struct sphgi_sweep local = *sweep;
+    local.packed &= !sweep->may_read_records;
+    return sphgi_worker_size(&local);
+}
+
 /* Memory for the workers, tallies cleared. */
 static bool open_workers(struct sphgi_sweep *sweep)
 {
     sphg_context *context = sweep->context;
-    sweep->memory_each = sphgi_worker_size(sweep);
+    sweep->memory_each = memory_of_worker(sweep);
     if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
                        sweep->memory_each))
         return false;
@@ -69,6 +78,46 @@ static struct sphgi_kept_weights take_weights(const struct sphgi_sweep *sweep)
     return sphgi_weights_take(sweep->set->neighbors, &of, sweep->set->same_volumes);
 }
 
+/* Over so many groups, or of the host's lists so many targets. */
+static bool sweep_targets(struct sphgi_task *task, int32_t count, struct sphgi_tally *tally)
+{
+    struct sphgi_sweep *sweep = &task->sweep;
+    if (!open_workers(sweep))
+        return false;
+    if (sweep->set->neighbors->kind != SPHGI_HOST_LISTS)
+        sphgi_parallel_for(sweep->context, sphgi_group_task, task, count,
+                           LEAST_TARGETS / SPHGI_GROUP);
+    else
+        sphgi_parallel_for(sweep->context, sphgi_list_task, task, count, LEAST_TARGETS);
+    close_workers(sweep, tally);
+    return true;
+}
+
+static bool sweep_rows(struct sphgi_task *task, int32_t count, struct sphgi_tally *tally)
+{
+    struct sphgi_sweep *sweep = &task->sweep;
+    return !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) &&
+           sweep_targets(task, count, tally);
+}
+
+/* Groups with weights read records; the few others' rows are copied one by one. */
+static bool sweep_records(struct sphgi_task *task, int32_t groups, struct sphgi_tally *tally)
+{
+    struct sphgi_sweep *sweep = &task->sweep;
+    if (sphgi_pack_records(sweep, &tally->bad_volume))
+        return false;
+    sweep->groups = SPHGI_GROUPS_WITH_WEIGHTS;
+    bool done = sweep_targets(task, groups, tally);
+    sweep->records = NULL;
+    if (done && sphgi_lacks_weights(sweep)) {
+        sweep->groups = SPHGI_GROUPS_WITHOUT;
+        sweep->packed = false;
+        done = sweep_targets(task, groups, tally);
+    }
+    sweep->groups = SPHGI_ALL_GROUPS;
+    return done;
+}
+
 sphg_result sphgi_sweep_set(struct sphgi_task *task, struct sphgi_selection *selection,
                             struct sphgi_tally *tally)
 {
@@ -87,19 +136,13 @@ sphg_result sphgi_sweep_set(struct sphgi_task *task, struct sphgi_selection *sel
     const bool nothing_to_pack = !sweep->volumes && !sphgi_rows_read(sweep);
     sweep->packed = nothing_to_pack || sweep->plan->both_sides || sphgi_sorts_out_pairs(sweep) ||
                     (int64_t)active * PACK_WORTH >= n->source_count;
-    const bool ready =
-        !(sweep->packed && sphgi_pack(sweep, &tally->bad_volume)) && open_workers(sweep);
-    if (ready)
-        sweep->kept = take_weights(sweep);
-    if (ready && searched)
-        sphgi_parallel_for(context, sphgi_group_task, task, groups, LEAST_TARGETS / SPHGI_GROUP);
-    else if (ready)
-        sphgi_parallel_for(context, sphgi_list_task, task, items, LEAST_TARGETS);
+    sweep->kept = take_weights(sweep);
+    sweep->may_read_records = sphgi_may_read_records(sweep, selection);
+    const bool done = sphgi_reads_records(sweep)
+                          ? sweep_records(task, groups, tally)
+                          : sweep_rows(task, searched ? groups : items, tally);
     if (some)
         sphgi_selection_close(selection);
-    if (!ready)
-        return SPHG_ERROR_MEMORY;
-    close_workers(sweep, tally);
-    sphgi_weights_give_back(n, &sweep->kept, !tally->bad_volume);
-    return SPHG_OK;
+    sphgi_weights_give_back(n, &sweep->kept, done && !tally->bad_volume);
+    return done ? SPHG_OK : SPHG_ERROR_MEMORY;
 }

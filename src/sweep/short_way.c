@@ -3,6 +3,7 @@
 #include "batch.h"
 #include "lane_radii.h"
 #include "own.h"
+#include "records.h"
 #include "sums.h"
 
 /* Nothing is summed but what its pass knows. */
@@ -31,6 +32,11 @@ void sphgi_short_way_open(struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_plan *plan = sweep->plan;
     const bool moments = (sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes;
+    if (sweep->records) {
+        w->by_records = sphgi_record_sums(w);
+        w->is_short = true;
+        return;
+    }
     w->short_way = (struct sphgi_group_sums){
         .gather = &w->gather, .three = plan->dimension == 3, .moments = moments};
     w->is_short = is_short(w) && (moments || (sweep->steps & SPHGI_SUM_FIELDS));
@@ -60,9 +66,10 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
     const struct sphgi_plan *plan = w->sweep->plan;
     sphgi_put_to_work(w, w->bundle.summed);
     sphgi_read_lane_radii(w);
-    const bool fields = w->short_way.numbers;
+    const bool records = w->sweep->records, folded = records && w->by_records.fold;
+    const bool fields = records ? w->by_records.shape != 0 : w->short_way.numbers > 0;
     w->own.loaded = false;
-    if (w->short_way.at_target)
+    if (!records && w->short_way.at_target)
         sphgi_load_targets(w);
     const struct sphgi_group_lists lists = {
         .ids = ids,
@@ -72,13 +79,20 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
         .places = sphgi_places(w),
         .first = w->batch.first,
         .moments = sphgi_lane(w, w->reduced, plan->moment_sum),
-        .sums = fields ? sphgi_lane(w, w->reduced, first_sum(plan->fields)) : NULL};
+        .sums = fields ? sphgi_lane(w, w->reduced, first_sum(plan->fields)) : NULL,
+        .vectors =
+            folded ? sphgi_lane(w, w->reduced, plan->folded_sum[w->by_records.dense]) : NULL};
     w->tile.ids_end = w->ids_end;
-    w->passes->sum_group(&w->short_way, &w->shape, &lists, &w->tile);
+    if (records)
+        w->passes->sum_records(&w->by_records, &lists, &w->tile);
+    else
+        w->passes->sum_group(&w->short_way, &w->shape, &lists, &w->tile);
     w->batch.longest = steps;
     w->batch.summing = w->sweep->steps & SPHGI_SUMS;
     sphgi_batch_settle(w);
-    if (fields && !w->own.loaded)
+    if (folded)
+        sphgi_load_targets(w);
+    else if (fields && !w->own.loaded)
         sphgi_load_target_volumes(w);
     w->bundle.summed = w->bundle.count;
 }

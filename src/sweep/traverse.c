@@ -182,6 +182,14 @@ static const uint32_t *end_of_ids(const sphg_neighbors *n)
     return found->ids + (found->ids_used < found->room ? found->ids_used : found->room);
 }
 
+static bool is_left_out(const struct sphgi_sweep *sweep, int32_t group)
+{
+    if (sweep->groups == SPHGI_ALL_GROUPS)
+        return false;
+    const bool with = sweep->kept.marks[group] == sweep->kept.number;
+    return with != (sweep->groups == SPHGI_GROUPS_WITH_WEIGHTS);
+}
+
 void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
@@ -198,6 +206,8 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t group = groups ? groups[k] : k;
+        if (is_left_out(&task->sweep, group))
+            continue;
         if (sphgi_is_kept(n, group))
             sweep_kept(task, &w, group);
         else

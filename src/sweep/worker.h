@@ -130,8 +130,9 @@ struct sphgi_worker {
     const uint32_t *ids_end; /* of the lists that are kept */
     bool is_short;           /* whole groups are summed by one pass, which is told ... */
     struct sphgi_group_sums short_way;
-    bool both_as_gathered;   /* pairs that count with two radii are weighed then, too */
-    bool near_as_gathered;   /* ... and those within the target's own among them */
+    struct sphgi_record_sums by_records; /* instead, where the sweep has records */
+    bool both_as_gathered;               /* pairs that count with two radii are weighed then, too */
+    bool near_as_gathered;               /* ... and those within the target's own among them */
     bool coefficients_first; /* they must be known before all that this sweep sums can be: it comes
                                 in rounds, or they are there */
 

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+/* Sums of targets whose pairs have their weights in memory. What they read of a source stands in
+ * its record: x y z, and the numbers of the field behind them. Nothing else is read of it, V_j
+ * least of all, which is in the weights. */
+
+/* ---- Records --------------------------------------------------------------------------------- */
+
+/* x y z of rows and what columns have, behind one another; columns NULL: room is left for it. */
+SPHGI_TEMPLATE void put_records_as(const real *row, const struct sphgi_columns *columns,
+                                   const int32_t *order, int64_t count, int32_t axes,
+                                   int32_t numbers, int32_t width, real *record)
+{
+    enum { SOURCES_AHEAD = 16 };
+    for (int64_t k = 0; k < count; ++k, row += SPHGI_ROW, record += width) {
+        *(quad *)record = *(const quad *)row;
+        if (!columns)
+            continue;
+        if (order && k + SOURCES_AHEAD < count)
+            __builtin_prefetch(columns->at[0] + order[k + SOURCES_AHEAD] * columns->stride);
+        const ptrdiff_t offset = (order ? order[k] : k) * columns->stride;
+        if (numbers) {
+            __builtin_memcpy(record + axes, columns->at[0] + offset,
+                             (size_t)numbers * sizeof(real));
+            continue;
+        }
+        for (int32_t c = 0; c < columns->count; ++c)
+            record[axes + c] = number_at(columns->at[c] + offset);
+    }
+}
+
+static void put_records(const void *rows, const struct sphgi_columns *columns, const int32_t *order,
+                        int64_t count, int32_t axes, int32_t width, void *records)
+{
+    const bool together = columns && columns->together;
+    if (together && columns->count == 1)
+        put_records_as(rows, columns, order, count, axes, 1, width, records);
+    else if (together && columns->count == 3)
+        put_records_as(rows, columns, order, count, axes, 3, width, records);
+    else if (together && columns->count == 6)
+        put_records_as(rows, columns, order, count, axes, 6, width, records);
+    else
+        put_records_as(rows, columns, order, count, axes, 0, width, records);
+}
+
+/* ---- Sums ------------------------------------------------------------------------------------ */
+
+/* What is known when a loop is compiled. */
+struct record_how {
+    bool three, moments;
+    bool divergence, dense;
+    sphg_shape shape; /* of the field; 0: there is none */
+    enum sphgi_fold fold;
+};
+
+SPHGI_TEMPLATE int32_t record_axes(struct record_how how)
+{
+    return how.three ? 3 : 2;
+}
+
+/* Of the field, in a record. */
+SPHGI_TEMPLATE int32_t numbers_of_record(struct record_how how)
+{
+    if (how.fold)
+        return sphgi_folded_numbers(how.fold, record_axes(how)) + (how.dense ? 1 : 0);
+    return !how.shape                 ? 0
+           : how.shape == SPHG_SCALAR ? 1
+                                      : components_of(how.shape, record_axes(how));
+}
+
+SPHGI_TEMPLATE int32_t sums_of_record(struct record_how how)
+{
+    const int32_t d = record_axes(how), numbers = numbers_of_record(how);
+    if (how.fold)
+        return how.fold == SPHGI_FOLDED_VECTOR ? 1 : d;
+    return !how.divergence ? d * numbers : how.shape == SPHG_VECTOR ? 1 : d;
+}
+
+/* The records of LANES particles, by the numbers of their rows times step / width. */
+#if REAL_IS_F64 && VECTOR_BYTES == 16
+SPHGI_TEMPLATE void gather_records(const real *records, const uint32_t *ids, size_t step,
+                                   int32_t width, vec *v)
+{
+    for (int32_t n = 0; n < width; n += SPHGI_ROW) {
+        const real *row[LANES] = {records + step * ids[0] + n, records + step * ids[1] + n};
+        const struct four numbers = transpose(row);
+        v[n] = numbers.x;
+        v[n + 1] = numbers.y;
+        v[n + 2] = numbers.z;
+        v[n + 3] = numbers.w;
+    }
+}
+#else
+/* Of every fourth lane, row by row. */
+SPHGI_TEMPLATE void gather_quarter(const real *records, const uint32_t *ids, size_t step,
+                                   int32_t width, vec *part)
+{
+    const real *record[LANES];
+    for (int k = 0; k < LANES; k += 4)
+        record[k] = records + step * ids[k];
+    for (int32_t n = 0; n < width / SPHGI_ROW; ++n) {
+        const real *row[LANES];
+        for (int k = 0; k < LANES; k += 4)
+            row[k] = record[k] + SPHGI_ROW * n;
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+        part[n] = four_rows(row);
+#elif VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8
+        part[n] = two_rows(row[0], row[4]);
+#else
+        part[n] = load(row[0]);
+#endif
+    }
+}
+
+/* Pointers to all of them at once would not fit the registers. */
+SPHGI_TEMPLATE void gather_records(const real *records, const uint32_t *ids, size_t step,
+                                   int32_t width, vec *v)
+{
+    vec a[4], b[4], c[4], d[4];
+    gather_quarter(records, ids, step, width, a);
+    gather_quarter(records, ids + 1, step, width, b);
+    gather_quarter(records, ids + 2, step, width, c);
+    gather_quarter(records, ids + 3, step, width, d);
+    for (int32_t n = 0; n < width / SPHGI_ROW; ++n, v += SPHGI_ROW) {
+        const struct four numbers = turned(a[n], b[n], c[n], d[n]);
+        v[0] = numbers.x;
+        v[1] = numbers.y;
+        v[2] = numbers.z;
+        v[3] = numbers.w;
+    }
+}
+#endif
+
+/* What the sums subtract from A_j. */
+SPHGI_TEMPLATE void own_of_records(const struct sphgi_record_sums *g, const int32_t *places,
+                                   struct record_how how, vec *own)
+{
+    const int32_t numbers = numbers_of_record(how),
+                  width = sphgi_record_width(record_axes(how), numbers);
+    clear(own, numbers);
+    if (!g->own)
+        return;
+    vec v[16];
+    gather_records(g->records, (const uint32_t *)places, (size_t)width, width, v);
+    for (int32_t c = 0; c < numbers; ++c)
+        own[c] = splat(R(g->own)) * v[record_axes(how) + c];
+}
+
+SPHGI_TEMPLATE void add_one_sided(const vec *a, const vec *own, const vec *gradient, vec *sum,
+                                  struct record_how how)
+{
+    const int32_t d = record_axes(how), numbers = numbers_of_record(how);
+    vec difference[9];
+    for (int32_t c = 0; c < numbers; ++c)
+        difference[c] = a[c] - own[c];
+    if (how.divergence)
+        add_contracted(how.shape, d, difference, gradient, sum);
+    for (int32_t c = 0; c < numbers && !how.divergence; ++c)
+        for (int32_t b = 0; b < d; ++b)
+            sum[c * d + b] = plus(sum[c * d + b], difference[c], gradient[b]);
+}
+
+SPHGI_TEMPLATE void add_folded(const vec *b, const vec *gradient, vec *sum, vec *vectors,
+                               struct record_how how)
+{
+    const int32_t d = record_axes(how);
+    if (how.fold == SPHGI_FOLDED_NUMBER)
+        for (int32_t a = 0; a < d; ++a)
+            sum[a] = plus(sum[a], b[0], gradient[a]);
+    else
+        add_contracted(how.fold == SPHGI_FOLDED_VECTOR      ? SPHG_VECTOR
+                       : how.fold == SPHGI_FOLDED_SYMMETRIC ? SPHG_SYM_TENSOR
+                                                            : SPHG_TENSOR,
+                       d, b, gradient, sum);
+    for (int32_t a = 0; a < d; ++a)
+        vectors[a] =
+            plus_vector(vectors[a], gradient[a], how.dense ? &b[numbers_of_record(how) - 1] : NULL);
+}
+
+SPHGI_TEMPLATE void chunk_of_records(const struct sphgi_record_sums *g,
+                                     const struct sphgi_group_lists *lists,
+                                     const struct sphgi_tile *tile, struct record_how how)
+{
+    const int32_t d = record_axes(how), width = sphgi_record_width(d, numbers_of_record(how));
+    const struct four row = target_rows(g->gather, lists->places);
+    const vec target[3] = {row.x, row.y, row.z};
+    vec moment[6], sum[9], vectors[3], own[9];
+    clear(moment, how.moments ? 6 : 0);
+    clear(sum, sums_of_record(how));
+    clear(vectors, how.fold ? d : 0);
+    if (how.shape && !how.fold)
+        own_of_records(g, lists->places, how, own);
+    const size_t step = (size_t)width / SPHGI_ID_STEP;
+    const real *records = g->records;
+    const uint32_t *ids = tile->ids, *to_come = ids_ahead(tile);
+    const real *factor = (const real *)lists->kept + (ids - lists->ids);
+    for (int32_t k = 0; k < tile->steps; ++k, ids += SPHGI_GROUP, factor += SPHGI_GROUP) {
+        __builtin_prefetch(ids + AHEAD * SPHGI_GROUP);
+        __builtin_prefetch(factor + AHEAD * SPHGI_GROUP);
+        for (int l = 1; l<LANES; l += width> SPHGI_ROW ? 2 : 4)
+            __builtin_prefetch(records + step * to_come[l]);
+        to_come += SPHGI_GROUP;
+        vec v[16], x[3], gradient[3];
+        gather_records(records, ids, step, width, v);
+        const vec s = load(factor);
+        for (int32_t a = 0; a < d; ++a) {
+            x[a] = target[a] - v[a];
+            gradient[a] = s * x[a];
+        }
+        if (how.moments)
+            add_moments(gradient, x, moment, how.three);
+        if (how.fold)
+            add_folded(v + d, gradient, sum, vectors, how);
+        else if (how.shape)
+            add_one_sided(v + d, own, gradient, sum, how);
+    }
+    if (how.moments)
+        end_chunk(tile, moment, how.three ? 6 : 3, lists->moments);
+    if (how.shape)
+        end_chunk(tile, sum, sums_of_record(how), lists->sums);
+    if (how.fold)
+        end_chunk(tile, vectors, d, lists->vectors);
+}
+
+SPHGI_TEMPLATE void records_as(const struct sphgi_record_sums *g,
+                               const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
+                               struct record_how how)
+{
+    for (int32_t left = lists->steps;; left -= SPHGI_CHUNK) {
+        tile->steps = sphgi_min32(left, SPHGI_CHUNK);
+        chunk_of_records(g, lists, tile, how);
+        if (left <= SPHGI_CHUNK)
+            break;
+        tile->ids += SPHGI_CHUNK * SPHGI_GROUP;
+        ++tile->chunk;
+    }
+}
+
+/* Fields whose other side is in b_j. */
+SPHGI_TEMPLATE void folded_records(const struct sphgi_record_sums *g,
+                                   const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
+                                   bool three, bool dense)
+{
+#define RECORDS(kind)                                                                              \
+    records_as(                                                                                    \
+        g, lists, tile,                                                                            \
+        (struct record_how){.three = three, .dense = dense, .shape = SPHG_SCALAR, .fold = kind})
+    if (g->fold == SPHGI_FOLDED_VECTOR)
+        RECORDS(SPHGI_FOLDED_VECTOR);
+    else if (g->fold == SPHGI_FOLDED_SYMMETRIC)
+        RECORDS(SPHGI_FOLDED_SYMMETRIC);
+    else
+        RECORDS(SPHGI_FOLDED_MATRIX);
+#undef RECORDS
+}
+
+SPHGI_TEMPLATE void records_in(const struct sphgi_record_sums *g,
+                               const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
+                               bool three)
+{
+#define RECORDS(...) records_as(g, lists, tile, (struct record_how){.three = three, __VA_ARGS__})
+    if (!g->shape)
+        RECORDS(.moments = true);
+    else if (g->fold == SPHGI_FOLDED_NUMBER)
+        RECORDS(.dense = true, .shape = SPHG_SCALAR, .fold = SPHGI_FOLDED_NUMBER);
+    else if (g->fold)
+        WITH(dense, g->dense, folded_records(g, lists, tile, three, dense));
+    else if (g->divergence && g->shape == SPHG_VECTOR)
+        RECORDS(.divergence = true, .shape = SPHG_VECTOR);
+    else if (g->divergence)
+        RECORDS(.divergence = true, .shape = SPHG_SYM_TENSOR);
+    else if (g->shape == SPHG_SCALAR)
+        WITH(moments, g->moments, RECORDS(.moments = moments, .shape = SPHG_SCALAR));
+    else
+        WITH(moments, g->moments, RECORDS(.moments = moments, .shape = SPHG_VECTOR));
+#undef RECORDS
+}
+
+static void sum_records(const struct sphgi_record_sums *g, const struct sphgi_group_lists *lists,
+                        struct sphgi_tile *tile)
+{
+    tile->ids = lists->ids;
+    tile->id_stride = SPHGI_GROUP;
+    tile->spread = false;
+    tile->chunk = 0;
+    WITH(three, g->dimension == 3, records_in(g, lists, tile, three));
+}
