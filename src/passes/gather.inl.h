@@ -60,15 +60,20 @@ enum { AHEAD = 64 /* steps: ids come from memory, those to come are asked for */
  * that follow. Lanes beside each other read the same lines. */
 enum { ROWS_AHEAD = 24 /* steps */, LANES_A_LINE = 2 };
 
-/* The first ids whose rows are asked for; where memory ends before, they are those that are read.
- */
-SPHGI_TEMPLATE const uint32_t *ids_ahead(const struct sphgi_tile *tile)
+/* The first ids whose rows are asked for, so many steps ahead; where memory ends before, they are
+ * those that are read. */
+SPHGI_TEMPLATE const uint32_t *ids_steps_ahead(const struct sphgi_tile *tile, ptrdiff_t ahead)
 {
-    const ptrdiff_t steps = tile->steps + ROWS_AHEAD;
+    const ptrdiff_t steps = tile->steps + ahead;
     const bool there = tile->ids_end && tile->ids_end - tile->ids >= steps * tile->id_stride;
-    const uint32_t *ids = tile->ids + (there ? ROWS_AHEAD * tile->id_stride : 0);
+    const uint32_t *ids = tile->ids + (there ? ahead * tile->id_stride : 0);
     __asm__("" : "+r"(ids)); /* else GCC keeps a register for each lane's distance from tile->ids */
     return ids;
+}
+
+SPHGI_TEMPLATE const uint32_t *ids_ahead(const struct sphgi_tile *tile)
+{
+    return ids_steps_ahead(tile, ROWS_AHEAD);
 }
 
 /* also NULL: there is one array of rows. */

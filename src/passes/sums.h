@@ -143,11 +143,13 @@ struct sphgi_group_lists {
 };
 
 /* The same where all s_ij are there: of a source nothing is read but its record, its coordinates
- * along the axes and, behind them, the numbers of the field. */
+ * along the axes and, behind them, the numbers of the field. Where s_ij are formed, records hold
+ * these numbers alone. */
 struct sphgi_record_sums {
     const struct sphgi_gather *gather; /* for the rows of the targets */
     const void *records;               /* those of the targets, too, where own is not 0 */
     int32_t dimension;
+    bool apart; /* s_ij are formed; of more than a row of b_j or of a symmetric tensor, in 3D */
     bool moments, divergence; /* divergence: of the field, instead of its gradient */
     sphg_shape shape;         /* of the field; 0: there is none */
     int32_t own;              /* as in sphgi_group_sums */

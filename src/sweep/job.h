@@ -44,7 +44,7 @@ struct sphgi_pair_sink {
 };
 
 /* Which groups a sweep goes through. */
-enum sphgi_groups { SPHGI_ALL_GROUPS, SPHGI_GROUPS_WITH_WEIGHTS, SPHGI_GROUPS_WITHOUT };
+enum sphgi_groups { SPHGI_ALL_GROUPS, SPHGI_GROUPS_BY_RECORDS, SPHGI_OTHER_GROUPS };
 
 /* A sweep, the same for all its workers. */
 struct sphgi_sweep {
@@ -59,10 +59,11 @@ struct sphgi_sweep {
     const char *packed_rows;      /* plan->row_count arrays of as many rows each */
     bool volumes;                 /* V_j differ: they are the 4th numbers of the positions */
     double volume;                /* V / H^d of all sources otherwise */
-    struct sphgi_kept_weights kept; /* s_ij that this sweep reads and writes */
-    bool may_read_records;            /* where these are there already */
-    enum sphgi_groups groups;       /* that are swept */
-    const void *records;            /* of the sources, if they are those with weights */
+    struct sphgi_kept_weights kept;       /* s_ij that this sweep reads and writes */
+    bool may_read_records, reads_records; /* in the place of rows ... */
+    bool weights_stand;                   /* ... with coordinates, since nothing is formed */
+    const void *records;                  /* of the sources; NULL: rows are read */
+    enum sphgi_groups groups;             /* that are swept */
     struct sphgi_put_away put_away;
     struct sphgi_turn turn;
     const struct sphgi_columns *coefficients; /* table in units of H made by this call, or NULL */

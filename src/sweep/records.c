@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "records.h"
-#include "core/parallel.h"
 #include "fold.h"
 #include "own.h"
 #include <string.h>
 
 enum {
-    PACK_GRAIN = 4096, /* particles */
-    WORTH = 16         /* groups, of which one may be without weights */
+    WORTH = 16 /* groups, of which one may be left to the sweep that comes after */
 };
 
 static const struct sphgi_field_plan *field_of(const struct sphgi_sweep *sweep)
@@ -26,12 +24,18 @@ static int32_t numbers_of(const struct sphgi_sweep *sweep)
     return !field ? 0 : !field->fold ? field->components : sphgi_numbers_folded(sweep->plan, field);
 }
 
-static int32_t width_of(const struct sphgi_sweep *sweep)
+/* Coordinates stand in records only where factors need not be formed of them. */
+static int32_t axes_of(const struct sphgi_sweep *sweep)
 {
-    return sphgi_record_width(sweep->plan->dimension, numbers_of(sweep));
+    return sweep->weights_stand ? sweep->plan->dimension : 0;
 }
 
-static size_t record_size(const struct sphgi_sweep *sweep)
+static int32_t width_of(const struct sphgi_sweep *sweep)
+{
+    return sphgi_record_width(axes_of(sweep), numbers_of(sweep));
+}
+
+size_t sphgi_record_size(const struct sphgi_sweep *sweep)
 {
     return (size_t)width_of(sweep) * sphgi_size_of_type(sweep->plan->type);
 }
@@ -75,16 +79,34 @@ static bool is_known(const struct sphgi_sweep *sweep)
            !(field->sums_divergence && sums_moments(sweep));
 }
 
+/* Where weights are yet to be formed, what is a row or less goes by rows as well. */
+static bool is_worth_two_loops(const struct sphgi_sweep *sweep)
+{
+    const struct sphgi_field_plan *field = field_of(sweep);
+    return field && sweep->plan->dimension == 3 &&
+           (field->fold || field->shape == SPHG_SYM_TENSOR) && numbers_of(sweep) > SPHGI_ROW &&
+           !sums_moments(sweep) && sphgi_forms_factors_alone(sweep) && !sphgi_is_masked(sweep);
+}
+
+bool sphgi_goes_by_records(const struct sphgi_sweep *sweep, int32_t group)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    if (sweep->weights_stand)
+        return sweep->kept.marks[group] == sweep->kept.number;
+    return sphgi_is_kept(n, group) && sphgi_kept_steps(n, group) != SPHGI_APART &&
+           sphgi_targets_in(n, group) == SPHGI_GROUP;
+}
+
 static int32_t groups_without(const struct sphgi_sweep *sweep)
 {
     const int32_t groups = sphgi_group_count(sweep->set->neighbors->target_count);
     int32_t without = 0;
     for (int32_t k = 0; k < groups; ++k)
-        without += sweep->kept.marks[k] != sweep->kept.number;
+        without += !sphgi_goes_by_records(sweep, k);
     return without;
 }
 
-bool sphgi_lacks_weights(const struct sphgi_sweep *sweep)
+bool sphgi_lacks_records(const struct sphgi_sweep *sweep)
 {
     return groups_without(sweep) > 0;
 }
@@ -92,76 +114,64 @@ bool sphgi_lacks_weights(const struct sphgi_sweep *sweep)
 bool sphgi_may_read_records(const struct sphgi_sweep *sweep,
                             const struct sphgi_selection *selection)
 {
-    return sweep->passes->sum_records && sweep->kept.number && !selection->subset &&
-           is_known(sweep);
+    return sweep->passes->sum_records && sweep->set->neighbors->kind != SPHGI_HOST_LISTS &&
+           !selection->subset && is_known(sweep) &&
+           (sweep->kept.number || is_worth_two_loops(sweep));
 }
 
-bool sphgi_reads_records(const struct sphgi_sweep *sweep)
+static bool are_most(const struct sphgi_sweep *sweep)
 {
-    return sweep->may_read_records && (int64_t)groups_without(sweep) * WORTH <=
-                                        sphgi_group_count(sweep->set->neighbors->target_count);
+    return (int64_t)groups_without(sweep) * WORTH <=
+           sphgi_group_count(sweep->set->neighbors->target_count);
 }
 
+bool sphgi_reads_records(struct sphgi_sweep *sweep)
+{
+    if (!sweep->may_read_records)
+        return false;
+    sweep->weights_stand = sweep->kept.number;
+    if (sweep->weights_stand && are_most(sweep))
+        return true;
+    sweep->weights_stand = false;
+    return is_worth_two_loops(sweep) && are_most(sweep);
+}
+
+/* With or without coordinates. */
 size_t sphgi_record_bytes(const struct sphgi_sweep *sweep)
 {
+    struct sphgi_sweep most = *sweep;
     const size_t records = (size_t)sweep->set->neighbors->source_count + 1;
-    return field_of(sweep) ? records * record_size(sweep) : 0;
+    most.weights_stand = true;
+    return field_of(sweep) ? records * sphgi_record_size(&most) : 0;
 }
 
 /* ---- Packing --------------------------------------------------------------------------------- */
 
-struct packing {
-    const struct sphgi_sweep *sweep;
-    char *records;
-    atomic_bool bad_volume;
-};
-
-static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
+bool sphgi_fill_records(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
+                        int64_t end, char *to)
 {
-    struct packing *packing = data;
-    const struct sphgi_sweep *sweep = packing->sweep;
     const struct sphgi_field_plan *field = field_of(sweep);
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t size = sphgi_size_of_type(sweep->plan->type);
-    const int32_t d = sweep->plan->dimension, width = width_of(sweep);
-    const int32_t *order = n->sources.order.data;
-    char *to = packing->records + (size_t)begin * record_size(sweep);
-    (void)worker;
-    sweep->passes->put_records((const char *)n->sources.rows.data +
-                                   (size_t)begin * SPHGI_ROW * size,
-                               field->fold ? NULL : &sweep->set->streams[field->stream].columns,
-                               order + begin, end - begin, d, width, to);
-    if (field->fold &&
-        !sphgi_fold_records(sweep, field, order, begin, end, to + (size_t)d * size, width))
-        atomic_store(&packing->bad_volume, true);
+    const int32_t axes = axes_of(sweep), width = width_of(sweep);
+    const char *rows = (const char *)n->sources.rows.data + (size_t)begin * SPHGI_ROW * size;
+    if (axes || !field->fold)
+        sweep->passes->put_records(rows,
+                                   field->fold ? NULL : &sweep->set->streams[field->stream].columns,
+                                   order + begin, end - begin, axes, width, to);
+    return !field->fold ||
+           sphgi_fold_records(sweep, field, order, begin, end, to + (size_t)axes * size, width);
 }
 
-/* Where the dummy is, with a field of 0. */
-static void put_dummy(const struct sphgi_sweep *sweep, char *record)
+char *sphgi_put_dummy_record(const struct sphgi_sweep *sweep, char *records)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
-    const size_t size = sphgi_size_of_type(sweep->plan->type);
-    memset(record, 0, record_size(sweep));
-    memcpy(record, (const char *)n->sources.rows.data + (size_t)n->source_count * SPHGI_ROW * size,
-           (size_t)sweep->plan->dimension * size);
-}
-
-sphg_result sphgi_pack_records(struct sphgi_sweep *sweep, bool *bad_volume)
-{
-    const sphg_neighbors *n = sweep->set->neighbors;
-    const size_t bytes = sphgi_record_bytes(sweep);
-    sweep->records = n->sources.rows.data;
-    if (!bytes)
-        return SPHG_OK;
-    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed, bytes, 1))
-        return SPHG_ERROR_MEMORY;
-    struct packing packing = {.sweep = sweep, .records = sweep->context->packed.data};
-    atomic_store(&packing.bad_volume, false);
-    sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
-    put_dummy(sweep, packing.records + (size_t)n->source_count * record_size(sweep));
-    sweep->records = packing.records;
-    *bad_volume |= atomic_load(&packing.bad_volume);
-    return SPHG_OK;
+    const size_t size = sphgi_size_of_type(sweep->plan->type), sources = (size_t)n->source_count;
+    char *dummy = records + sources * sphgi_record_size(sweep);
+    memset(dummy, 0, sphgi_record_size(sweep));
+    memcpy(dummy, (const char *)n->sources.rows.data + sources * SPHGI_ROW * size,
+           (size_t)axes_of(sweep) * size);
+    return records;
 }
 
 struct sphgi_record_sums sphgi_record_sums(const struct sphgi_worker *w)
@@ -171,6 +181,7 @@ struct sphgi_record_sums sphgi_record_sums(const struct sphgi_worker *w)
     struct sphgi_record_sums sums = {.gather = &w->gather,
                                      .records = sweep->records,
                                      .dimension = sweep->plan->dimension,
+                                     .apart = !sweep->weights_stand,
                                      .moments = sums_moments(sweep)};
     if (!field)
         return sums;

@@ -1,26 +1,30 @@
 /* SPDX-License-Identifier: MIT */
-/* Sweeps whose weights are all kept read of each source one record and nothing else: position and
- * field, or b_j, side by side. */
+/* Sweeps of one field whose groups stand side by side read of each source one record: where weights
+ * are kept, position and field, or b_j, and nothing else; where they are formed, b_j alone. */
 #ifndef SPHGI_RECORDS_H
 #define SPHGI_RECORDS_H
 #include "selection.h"
 #include "worker.h"
 
 /* The sums of the sweep are such as the pass over records knows. Then there is memory for it
- * whether it comes to that or not: what is kept depends on where the particles are. */
+ * whether it comes to that or not: how lists are kept depends on where the particles are. */
 bool sphgi_may_read_records(const struct sphgi_sweep *sweep,
                             const struct sphgi_selection *selection);
 size_t sphgi_record_bytes(const struct sphgi_sweep *sweep);
 
-/* Nearly all groups have weights, too. Those without are left to a sweep that comes after it. */
-bool sphgi_reads_records(const struct sphgi_sweep *sweep);
+/* Nearly all groups can go that way, too; sets sweep->weights_stand. The others are left to a sweep
+ * that comes after it. */
+bool sphgi_reads_records(struct sphgi_sweep *sweep);
+bool sphgi_goes_by_records(const struct sphgi_sweep *sweep, int32_t group);
+bool sphgi_lacks_records(const struct sphgi_sweep *sweep); /* any group */
 
-/* Has any group no weights? */
-bool sphgi_lacks_weights(const struct sphgi_sweep *sweep);
-
-/* Writes them into the context's memory. Gives OK or MEMORY; tells of volumes that are not valid.
- */
-sphg_result sphgi_pack_records(struct sphgi_sweep *sweep, bool *bad_volume);
+/* Those of the sources order[begin] to order[end - 1] of the host. False: a volume is negative or
+ * not finite. */
+bool sphgi_fill_records(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
+                        int64_t end, char *to);
+size_t sphgi_record_size(const struct sphgi_sweep *sweep);
+/* Behind the last one; returns the first. */
+char *sphgi_put_dummy_record(const struct sphgi_sweep *sweep, char *records);
 
 /* What their pass is told. */
 struct sphgi_record_sums sphgi_record_sums(const struct sphgi_worker *worker);

@@ -44,7 +44,7 @@ static void use_packed_rows(struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t rows = (size_t)n->source_count + 1, size = row_size(sweep->plan->type);
-    w->gather.rows = sweep->volumes ? sweep->packed_positions : n->sources.rows.data;
+    w->gather.rows = sphgi_reads_volumes(sweep) ? sweep->packed_positions : n->sources.rows.data;
     w->gather.dummy = (uint32_t)(SPHGI_ID_STEP * (rows - 1));
     w->rows.items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
     for (int32_t k = 0; k < sweep->plan->row_count; ++k)
@@ -65,7 +65,7 @@ void sphgi_use_rows(struct sphgi_worker *w)
         use_local_rows(w);
     else
         use_packed_rows(w);
-    if (w->rows.local || !(w->sweep->steps & SPHGI_SUM_FIELDS) || !w->sweep->plan->row_count)
+    if (w->rows.local || w->sweep->records || !sphgi_rows_read(w->sweep))
         return;
     w->tile.also = w->rows.at[0];
     w->tile.also_arrays = sphgi_min32(w->sweep->plan->row_count, ASKED_MOST);
@@ -145,11 +145,15 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
     const sphg_type type = sweep->plan->type;
     const size_t size = row_size(type), rows = (size_t)n->source_count + 1;
     (void)worker;
-    if (sphgi_rows_read(sweep) &&
+    if (sweep->reads_records && packing->rows &&
+        !sphgi_fill_records(sweep, packing->order, begin, end,
+                            packing->rows + (size_t)begin * sphgi_record_size(sweep)))
+        atomic_store(&packing->bad_volume, true);
+    if (!sweep->reads_records && sphgi_rows_read(sweep) &&
         !sphgi_fill_rows(sweep, packing->order, begin, end, packing->rows + (size_t)begin * size,
                          rows * size))
         atomic_store(&packing->bad_volume, true);
-    if (sphgi_rows_read(sweep) && sweep->plan->radius_row >= 0)
+    if (!sweep->reads_records && sphgi_rows_read(sweep) && sweep->plan->radius_row >= 0)
         fill_radii(sweep, begin, end,
                    packing->rows + ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);
     if (packing->positions &&
@@ -159,37 +163,48 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
         atomic_store(&packing->bad_volume, true);
 }
 
-/* Positions with volumes, and fields, as rows in storage order. */
+static char *put_dummies(const struct sphgi_sweep *sweep, char *arrays, char *positions)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const size_t row = row_size(sweep->plan->type), rows = (size_t)n->source_count + 1;
+    for (size_t k = 0; !sweep->reads_records && k < (size_t)sphgi_rows_read(sweep); ++k)
+        memset(arrays + ((k + 1) * rows - 1) * row, 0, row);
+    if (positions) {
+        const size_t position = row_size(n->position_type), dummy = (rows - 1) * position;
+        memcpy(positions + dummy, (const char *)n->sources.rows.data + dummy, position);
+    }
+    return arrays;
+}
+
+/* Positions with volumes, and fields as rows in storage order, or records in their place. */
 sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
-    const sphg_type type = sweep->plan->type;
-    const size_t rows = (size_t)n->source_count + 1, arrays = (size_t)sphgi_rows_read(sweep);
-    const bool positions = sweep->volumes;
+    const size_t rows = (size_t)n->source_count + 1;
+    const bool positions = sphgi_reads_volumes(sweep), arrays = sphgi_rows_read(sweep);
     const size_t positions_size =
-        positions ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
+        sweep->volumes ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
+    size_t size = (size_t)sphgi_rows_read(sweep) * rows * row_size(sweep->plan->type);
+    if (sweep->reads_records && !arrays)
+        sweep->records = n->sources.rows.data;
     if (!positions && !arrays)
         return SPHG_OK;
-    size_t bytes = positions_size + arrays * rows * row_size(type);
-    if (sweep->may_read_records && sphgi_record_bytes(sweep) > bytes)
-        bytes = sphgi_record_bytes(sweep);
-    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed, bytes, 1))
+    if (sweep->may_read_records && sphgi_record_bytes(sweep) > size)
+        size = sphgi_record_bytes(sweep);
+    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed, positions_size + size,
+                       1))
         return SPHG_ERROR_MEMORY;
     char *memory = sweep->context->packed.data;
     struct packing packing = {.sweep = sweep,
                               .positions = positions ? memory : NULL,
-                              .rows = memory + positions_size,
+                              .rows = arrays ? memory + positions_size : NULL,
                               .order = n->kind == SPHGI_HOST_LISTS ? NULL : n->sources.order.data};
     atomic_store(&packing.bad_volume, false);
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
-    for (size_t k = 0; k < arrays; ++k) /* the dummy rows */
-        memset(packing.rows + ((k + 1) * rows - 1) * row_size(type), 0, row_size(type));
-    if (positions) {
-        const size_t row = row_size(n->position_type), dummy = (rows - 1) * row;
-        memcpy(memory + dummy, (const char *)n->sources.rows.data + dummy, row);
-    }
     sweep->packed_positions = packing.positions;
-    sweep->packed_rows = packing.rows;
+    sweep->packed_rows = put_dummies(sweep, packing.rows, packing.positions);
+    if (sweep->reads_records && arrays)
+        sweep->records = sphgi_put_dummy_record(sweep, packing.rows);
     *bad_volume |= atomic_load(&packing.bad_volume);
     return SPHG_OK;
 }

@@ -13,6 +13,12 @@ static inline int32_t sphgi_rows_read(const struct sphgi_sweep *sweep)
     return sweep->steps & SPHGI_SUM_FIELDS ? sweep->plan->row_count : 0;
 }
 
+/* The positions are read with volumes behind them. */
+static inline bool sphgi_reads_volumes(const struct sphgi_sweep *sweep)
+{
+    return sweep->volumes && !(sweep->reads_records && sweep->weights_stand);
+}
+
 /* Packs positions with volumes, and fields, into the context's memory. Gives OK or MEMORY; tells of
  * volumes that are not valid. */
 sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume);

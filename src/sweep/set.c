@@ -100,17 +100,17 @@ static bool sweep_rows(struct sphgi_task *task, int32_t count, struct sphgi_tall
            sweep_targets(task, count, tally);
 }
 
-/* Groups with weights read records; the few others' rows are copied one by one. */
+/* The rows of the few groups that do not go by records are copied one by one. Weights that are
+ * formed meanwhile change nothing about who they are. */
 static bool sweep_records(struct sphgi_task *task, int32_t groups, struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
-    if (sphgi_pack_records(sweep, &tally->bad_volume))
-        return false;
-    sweep->groups = SPHGI_GROUPS_WITH_WEIGHTS;
-    bool done = sweep_targets(task, groups, tally);
+    sweep->groups = SPHGI_GROUPS_BY_RECORDS;
+    bool done = sweep_rows(task, groups, tally);
     sweep->records = NULL;
-    if (done && sphgi_lacks_weights(sweep)) {
-        sweep->groups = SPHGI_GROUPS_WITHOUT;
+    sweep->reads_records = false;
+    sweep->groups = SPHGI_OTHER_GROUPS;
+    if (done && sphgi_lacks_records(sweep)) {
         sweep->packed = false;
         done = sweep_targets(task, groups, tally);
     }
@@ -138,9 +138,9 @@ sphg_result sphgi_sweep_set(struct sphgi_task *task, struct sphgi_selection *sel
                     (int64_t)active * PACK_WORTH >= n->source_count;
     sweep->kept = take_weights(sweep);
     sweep->may_read_records = sphgi_may_read_records(sweep, selection);
-    const bool done = sphgi_reads_records(sweep)
-                          ? sweep_records(task, groups, tally)
-                          : sweep_rows(task, searched ? groups : items, tally);
+    sweep->reads_records = sphgi_reads_records(sweep);
+    const bool done = sweep->reads_records ? sweep_records(task, groups, tally)
+                                           : sweep_rows(task, searched ? groups : items, tally);
     if (some)
         sphgi_selection_close(selection);
     sphgi_weights_give_back(n, &sweep->kept, done && !tally->bad_volume);

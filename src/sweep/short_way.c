@@ -84,7 +84,7 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
             folded ? sphgi_lane(w, w->reduced, plan->folded_sum[w->by_records.dense]) : NULL};
     w->tile.ids_end = w->ids_end;
     if (records)
-        w->passes->sum_records(&w->by_records, &lists, &w->tile);
+        w->passes->sum_records(&w->by_records, &w->shape, &lists, &w->tile);
     else
         w->passes->sum_group(&w->short_way, &w->shape, &lists, &w->tile);
     w->batch.longest = steps;

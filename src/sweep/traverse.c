@@ -4,6 +4,7 @@
 #include "held.h"
 #include "own.h"
 #include "pieces.h"
+#include "records.h"
 #include "short_way.h"
 #include "waiting.h"
 #include "rows.h"
@@ -184,10 +185,8 @@ static const uint32_t *end_of_ids(const sphg_neighbors *n)
 
 static bool is_left_out(const struct sphgi_sweep *sweep, int32_t group)
 {
-    if (sweep->groups == SPHGI_ALL_GROUPS)
-        return false;
-    const bool with = sweep->kept.marks[group] == sweep->kept.number;
-    return with != (sweep->groups == SPHGI_GROUPS_WITH_WEIGHTS);
+    return sweep->groups != SPHGI_ALL_GROUPS &&
+           sphgi_goes_by_records(sweep, group) != (sweep->groups == SPHGI_GROUPS_BY_RECORDS);
 }
 
 void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
