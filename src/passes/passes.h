@@ -98,11 +98,11 @@ struct sphgi_passes {
 
     /* The same over records; NULL: there is no such pass. These are made of rows x y z . of `count`
      * sources, of which `axes` numbers stand in records, and what columns have of them, in order;
-     * columns NULL: without it. width: as sphgi_record_width says. */
+     * columns NULL: without it. width: as sphgi_record_width says; past: the caches. */
     void (*sum_records)(const struct sphgi_record_sums *sums, const struct sphgi_shape *shape,
                         const struct sphgi_group_lists *lists, struct sphgi_tile *tile);
     void (*put_records)(const void *rows, const struct sphgi_columns *columns, const int32_t *order,
-                        int64_t count, int32_t axes, int32_t width, void *records);
+                        int64_t count, int32_t axes, int32_t width, bool past, void *records);
 
     /* SPHGI_GROUP lists side by side: [step][list]. Each is padded to four with the dummy or, if
      * that is not 0, has `padded` dummies behind it; then up to sixteen steps more are written. */

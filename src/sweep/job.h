@@ -63,6 +63,7 @@ struct sphgi_sweep {
     bool may_read_records, reads_records; /* in the place of rows ... */
     bool weights_stand;                   /* ... with coordinates, since nothing is formed */
     const void *records;                  /* of the sources; NULL: rows are read */
+    int32_t groups_left;                  /* without them */
     enum sphgi_groups groups;             /* that are swept */
     struct sphgi_put_away put_away;
     struct sphgi_turn turn;

@@ -5,7 +5,8 @@
 #include <string.h>
 
 enum {
-    WORTH = 16 /* groups, of which one may be left to the sweep that comes after */
+    FAR_BYTES = 8 << 20, /* what is more is written past the caches */
+    WORTH = 16           /* groups, of which one may be left to the sweep that comes after */
 };
 
 static const struct sphgi_field_plan *field_of(const struct sphgi_sweep *sweep)
@@ -88,27 +89,24 @@ static bool is_worth_two_loops(const struct sphgi_sweep *sweep)
            !sums_moments(sweep) && sphgi_forms_factors_alone(sweep) && !sphgi_is_masked(sweep);
 }
 
-bool sphgi_goes_by_records(const struct sphgi_sweep *sweep, int32_t group)
+/* They have no list beside those of fifteen others. */
+static int32_t groups_apart(const sphg_neighbors *n)
 {
-    const sphg_neighbors *n = sweep->set->neighbors;
-    if (sweep->weights_stand)
-        return sweep->kept.marks[group] == sweep->kept.number;
-    return sphgi_is_kept(n, group) && sphgi_kept_steps(n, group) != SPHGI_APART &&
-           sphgi_targets_in(n, group) == SPHGI_GROUP;
-}
-
-static int32_t groups_without(const struct sphgi_sweep *sweep)
-{
-    const int32_t groups = sphgi_group_count(sweep->set->neighbors->target_count);
-    int32_t without = 0;
-    for (int32_t k = 0; k < groups; ++k)
-        without += !sphgi_goes_by_records(sweep, k);
+    const int32_t full = n->list_free ? 0 : n->target_count / SPHGI_GROUP;
+    int32_t without = sphgi_group_count(n->target_count) - full;
+    for (int32_t k = 0; k < full; ++k)
+        without += !sphgi_is_kept(n, k) || sphgi_kept_steps(n, k) == SPHGI_APART;
     return without;
 }
 
-bool sphgi_lacks_records(const struct sphgi_sweep *sweep)
+static int32_t groups_without_weights(const struct sphgi_sweep *sweep)
 {
-    return groups_without(sweep) > 0;
+    const uint32_t *marks = sweep->kept.marks, number = sweep->kept.number;
+    const int32_t groups = sphgi_group_count(sweep->set->neighbors->target_count);
+    int32_t without = 0;
+    for (int32_t k = 0; k < groups; ++k)
+        without += marks[k] != number;
+    return without;
 }
 
 bool sphgi_may_read_records(const struct sphgi_sweep *sweep,
@@ -119,21 +117,17 @@ bool sphgi_may_read_records(const struct sphgi_sweep *sweep,
            (sweep->kept.number || is_worth_two_loops(sweep));
 }
 
-static bool are_most(const struct sphgi_sweep *sweep)
-{
-    return (int64_t)groups_without(sweep) * WORTH <=
-           sphgi_group_count(sweep->set->neighbors->target_count);
-}
-
 bool sphgi_reads_records(struct sphgi_sweep *sweep)
 {
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const int32_t few = sphgi_group_count(n->target_count) / WORTH;
     if (!sweep->may_read_records)
         return false;
-    sweep->weights_stand = sweep->kept.number;
-    if (sweep->weights_stand && are_most(sweep))
-        return true;
-    sweep->weights_stand = false;
-    return is_worth_two_loops(sweep) && are_most(sweep);
+    sweep->groups_left = sweep->kept.number ? groups_without_weights(sweep) : INT32_MAX;
+    sweep->weights_stand = sweep->groups_left <= few;
+    if (!sweep->weights_stand)
+        sweep->groups_left = is_worth_two_loops(sweep) ? groups_apart(n) : INT32_MAX;
+    return sweep->groups_left <= few;
 }
 
 /* With or without coordinates. */
@@ -156,9 +150,9 @@ bool sphgi_fill_records(const struct sphgi_sweep *sweep, const int32_t *order, i
     const int32_t axes = axes_of(sweep), width = width_of(sweep);
     const char *rows = (const char *)n->sources.rows.data + (size_t)begin * SPHGI_ROW * size;
     if (axes || !field->fold)
-        sweep->passes->put_records(rows,
-                                   field->fold ? NULL : &sweep->set->streams[field->stream].columns,
-                                   order + begin, end - begin, axes, width, to);
+        sweep->passes->put_records(
+            rows, field->fold ? NULL : &sweep->set->streams[field->stream].columns, order + begin,
+            end - begin, axes, width, sphgi_record_bytes(sweep) > FAR_BYTES, to);
     return !field->fold ||
            sphgi_fold_records(sweep, field, order, begin, end, to + (size_t)axes * size, width);
 }

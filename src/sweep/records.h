@@ -12,11 +12,19 @@ bool sphgi_may_read_records(const struct sphgi_sweep *sweep,
                             const struct sphgi_selection *selection);
 size_t sphgi_record_bytes(const struct sphgi_sweep *sweep);
 
-/* Nearly all groups can go that way, too; sets sweep->weights_stand. The others are left to a sweep
- * that comes after it. */
+/* Nearly all groups can go that way, too: those with weights, which sets sweep->weights_stand, or
+ * all whose lists stand side by side. sweep->groups_left is how many are left to a sweep that comes
+ * after it. */
 bool sphgi_reads_records(struct sphgi_sweep *sweep);
-bool sphgi_goes_by_records(const struct sphgi_sweep *sweep, int32_t group);
-bool sphgi_lacks_records(const struct sphgi_sweep *sweep); /* any group */
+
+static inline bool sphgi_goes_by_records(const struct sphgi_sweep *sweep, int32_t group)
+{
+    const sphg_neighbors *n = sweep->set->neighbors;
+    if (sweep->weights_stand)
+        return sweep->kept.marks[group] == sweep->kept.number;
+    return sphgi_is_kept(n, group) && sphgi_kept_steps(n, group) != SPHGI_APART &&
+           sphgi_targets_in(n, group) == SPHGI_GROUP;
+}
 
 /* Those of the sources order[begin] to order[end - 1] of the host. False: a volume is negative or
  * not finite. */

@@ -110,7 +110,7 @@ static bool sweep_records(struct sphgi_task *task, int32_t groups, struct sphgi_
     sweep->records = NULL;
     sweep->reads_records = false;
     sweep->groups = SPHGI_OTHER_GROUPS;
-    if (done && sphgi_lacks_records(sweep)) {
+    if (done && sweep->groups_left) {
         sweep->packed = false;
         done = sweep_targets(task, groups, tally);
     }

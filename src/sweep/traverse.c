@@ -205,6 +205,11 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t group = groups ? groups[k] : k;
+        if (!groups) {
+            __builtin_prefetch(n->found.groups + k + 16);
+            if (task->sweep.kept.number)
+                __builtin_prefetch(task->sweep.kept.marks + k + 32);
+        }
         if (is_left_out(&task->sweep, group))
             continue;
         if (sphgi_is_kept(n, group))
