@@ -201,19 +201,30 @@ SPHGI_TEMPLATE void load_together(const struct sphgi_columns *columns, const int
     }
 }
 
-/* Columns that follow one another share lines of the cache. */
+SPHGI_TEMPLATE void ask_for(const char *at, bool write)
+{
+    if (write)
+        __builtin_prefetch(at, 1);
+    else
+        __builtin_prefetch(at, 0);
+}
+
+/* Of numbers that follow one another the first and, unless they are few, the last, which often
+ * stands in another line of the cache. */
 static void ask_for_lanes(int32_t width, const struct sphgi_columns *columns, const int32_t *items,
                           bool write)
 {
+    enum { FEW = 16 /* bytes */ };
     const bool together = columns->together || columns->layout;
     const int32_t count = together ? sphgi_min32(columns->count, 1) : columns->count;
+    const ptrdiff_t last = (sphgi_numbers_of(columns) - 1) * (ptrdiff_t)sizeof(real);
+    const bool both = together && last >= FEW;
     for (int32_t c = 0; c < count && columns->stride; ++c)
         for (int32_t l = 0; l < width; ++l) {
             const char *at = columns->at[c] + items[l] * columns->stride;
-            if (write)
-                __builtin_prefetch(at, 1);
-            else
-                __builtin_prefetch(at, 0);
+            ask_for(at, write);
+            if (both)
+                ask_for(at + last, write);
         }
     __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
 }
