@@ -98,7 +98,7 @@ SPHGI_TEMPLATE void end_chunk(const struct sphgi_tile *tile, const vec *v, int32
 /* A chunk of the lists, in one loop. */
 SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                                   const struct sphgi_group_lists *lists,
-                                  const struct sphgi_tile *tile, sphg_kernel kernel, bool kept,
+                                  const struct sphgi_tile *tile, sphg_kernel kernel,
                                   struct group_how how)
 {
     const struct four target = target_rows(g->gather, lists->places);
@@ -122,17 +122,11 @@ SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct
         to_come += SPHGI_GROUP;
         const struct four row = gather_rows(rows, ids);
         const vec x[3] = {target.x - row.x, target.y - row.y, target.z - row.z};
-        vec s;
-        if (kept) {
-            __builtin_prefetch(factor + AHEAD * SPHGI_GROUP);
-            s = load(factor);
-        } else {
-            const vec plane = plus(x[0] * x[0], x[1], x[1]);
-            const vec square = how.three ? plus(plane, x[2], x[2]) : plane;
-            s = factor_of(scale, inverse_h, vsqrt(square), select(volumes, row.w, volume), kernel,
-                          SPHG_KGC);
-            store(factor, s);
-        }
+        const vec plane = plus(x[0] * x[0], x[1], x[1]);
+        const vec square = how.three ? plus(plane, x[2], x[2]) : plane;
+        const vec s = factor_of(scale, inverse_h, vsqrt(square), select(volumes, row.w, volume),
+                                kernel, SPHG_KGC);
+        store(factor, s);
         const vec gradient[3] = {s * x[0], s * x[1], s * x[2]};
         if (how.moments)
             add_moments(gradient, x, moment, how.three);
@@ -180,12 +174,12 @@ SPHGI_TEMPLATE void chunk_by_tile(const struct sphgi_group_sums *g, const struct
 /* Goes through the chunks; at once: unless the sums are too many. */
 SPHGI_TEMPLATE void group_in(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                              const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
-                             sphg_kernel kernel, bool kept, bool at_once, struct group_how how)
+                             sphg_kernel kernel, bool at_once, struct group_how how)
 {
     for (int32_t left = lists->steps;; left -= SPHGI_CHUNK) {
         tile->steps = sphgi_min32(left, SPHGI_CHUNK);
         if (at_once)
-            chunk_at_once(g, shape, lists, tile, kernel, kept, how);
+            chunk_at_once(g, shape, lists, tile, kernel, how);
         else
             chunk_by_tile(g, shape, lists, tile, how);
         if (left <= SPHGI_CHUNK)
@@ -198,22 +192,21 @@ SPHGI_TEMPLATE void group_in(const struct sphgi_group_sums *g, const struct sphg
 /* True: it is done. Of those at once, sums that fit the registers; of the others, all. */
 SPHGI_TEMPLATE bool group_if(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                              const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
-                             sphg_kernel kernel, bool kept, bool at_once, struct group_how how)
+                             sphg_kernel kernel, bool at_once, struct group_how how)
 {
     const int32_t sums = sums_of_moments(how) + (how.numbers ? sums_of_field(how) : 0);
     if (at_once && sums > SUMS_IN_REGISTERS)
         return false;
-    group_in(g, shape, lists, tile, kernel, kept, at_once, how);
+    group_in(g, shape, lists, tile, kernel, at_once, how);
     return true;
 }
 
 SPHGI_TEMPLATE bool group_as(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
                              const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
-                             sphg_kernel kernel, bool kept, bool at_once, bool three)
+                             sphg_kernel kernel, bool at_once, bool three)
 {
 #define GROUP(...)                                                                                 \
-    return group_if(g, shape, lists, tile, kernel, kept, at_once,                                  \
-                    (struct group_how){three, __VA_ARGS__})
+    return group_if(g, shape, lists, tile, kernel, at_once, (struct group_how){three, __VA_ARGS__})
     if (!g->numbers)
         GROUP(true, false, 0);
     if (g->divergence)
@@ -230,7 +223,7 @@ SPHGI_TEMPLATE bool group_as(const struct sphgi_group_sums *g, const struct sphg
      const struct sphgi_group_lists *lists, struct sphgi_tile *tile, bool *done)
 #define ARGUMENTS (g, shape, lists, tile, done)
 #define CALL(kernel)                                                                               \
-    WITH(three, g->three, *done = group_as(g, shape, lists, tile, kernel, false, true, three))
+    WITH(three, g->three, *done = group_as(g, shape, lists, tile, kernel, true, three))
 #include "by_kernel.inl.h"
 
 static void sum_group(const struct sphgi_group_sums *g, const struct sphgi_shape *shape,
@@ -245,5 +238,5 @@ static void sum_group(const struct sphgi_group_sums *g, const struct sphgi_shape
         group_at_once(g, shape, lists, tile, &done);
     if (!done)
         WITH(three, g->three,
-             (void)group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, false, false, three));
+             (void)group_as(g, shape, lists, tile, SPHG_CUBIC_SPLINE, false, three));
 }

@@ -74,8 +74,8 @@ SPHGI_TEMPLATE bool put_records_in(const void *rows, const struct sphgi_columns 
         put_records_as(rows, columns, order, count, axes, 1, past, records);
     else if (columns->count == axes)
         put_records_as(rows, columns, order, count, axes, axes, past, records);
-    else if (columns->count == 6 && axes == 3)
-        put_records_as(rows, columns, order, count, 3, 6, past, records);
+    else if (columns->count == 6 && axes != 2)
+        put_records_as(rows, columns, order, count, axes, 6, past, records);
     else
         return false;
     return true;
@@ -89,6 +89,8 @@ static void put_records(const void *rows, const struct sphgi_columns *columns, c
         WITH(beyond, past, done = put_records_in(rows, columns, order, count, 3, beyond, records));
     else if (axes == 2)
         done = put_records_in(rows, columns, order, count, 2, false, records);
+    else
+        done = put_records_in(rows, columns, order, count, 0, false, records);
     if (!done)
         put_any_records(rows, columns, order, count, axes, width, records);
 #if defined(__x86_64__)
