@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Groups whose lists stand side by side, kept or found on the spot, go from ids to sums in one
- * pass, where one field or the corrections alone are wanted; forces and other divergences of all
+ * pass, where a few fields or the corrections are wanted; forces and other divergences of all
  * targets read records. The bits are those of targets that are asked for a few at a time, which go
  * step by step. */
 #include "support/setup.h"
 #include <math.h>
+#include <string.h>
 
 typedef struct scene {
     const test_case *test;
@@ -257,6 +258,122 @@ static void some_of_the_particles_go_it(const test_case *test)
     }
 }
 
+/* ---- Several fields -------------------------------------------------------------------------- */
+
+/* A letter for each field: of a scalar the gradient (s) or the force of a pressure (p), of a vector
+ * the Jacobian (v) or the divergence (d); large letters: direct, not differences. */
+static const char *const mixtures[] = {"vv", "vs",   "sv",       "ss",        "Vs", "sV",
+                                       "vS", "VsvS", "svvssvVs", "vvvvsssss", "dv", "vd",
+                                       "sD", "dsDs", "pv",       "sdp",       "pp"};
+enum { MIXTURES = sizeof mixtures / sizeof mixtures[0], FIELDS_MOST = 9 };
+
+typedef struct mixed_fields {
+    int count;
+    sphg_view views[FIELDS_MOST];
+    sphg_field fields[FIELDS_MOST];
+    setup_array results[FIELDS_MOST];
+} mixed_fields;
+
+static sphg_field field_of(const scene *of, char letter, const sphg_view *view, setup_array *result)
+{
+    const int d = of->test->dimension, scalar = letter == 's' || letter == 'S' || letter == 'p';
+    const int divergence = letter == 'd' || letter == 'D';
+    sphg_field field = {.shape = scalar ? SPHG_SCALAR : SPHG_VECTOR, .at_sources = view};
+    if (letter == 'p')
+        field.form = SPHG_ADJOINT;
+    else if (letter < 'a')
+        field.form = SPHG_DIRECT;
+    *result = setup_output(test_field_type(of->test), of->points.count,
+                           divergence ? 1
+                           : scalar   ? d
+                                      : d * d);
+    if (divergence)
+        field.divergence = setup_view(result);
+    else
+        field.gradient = setup_view(result);
+    return field;
+}
+
+static mixed_fields *mixed(const scene *of, const char *letters)
+{
+    mixed_fields *all = test_memory(sizeof *all);
+    random_state random = random_seeded(17);
+    for (all->count = 0; letters[all->count]; ++all->count) {
+        const char letter = letters[all->count];
+        const int width = strchr("sSp", letter) ? 1 : of->test->dimension;
+        const setup_array numbers = numbers_of(of, width, &random);
+        sphg_view *view = &all->views[all->count];
+        *view = setup_view(&numbers);
+        all->fields[all->count] = field_of(of, letter, view, &all->results[all->count]);
+    }
+    return all;
+}
+
+static void sum_fields(const scene *of, const sphg_neighbors *neighbors, const sphg_subset *subset,
+                       const sphg_field *fields, int count, const setup_array *table)
+{
+    const sphg_sources sources = {
+        .neighbors = neighbors, .volume = setup_view(&of->volume), .same_volumes = 1};
+    sphg_request request = {.sources = &sources,
+                            .fields = fields,
+                            .set_count = 1,
+                            .field_count = count,
+                            .subset = subset};
+    if (table)
+        request.correction = setup_view(table);
+    SETUP_OK(of->context, sphg_evaluate(of->context, &of->scheme, &request));
+}
+
+static void require_as_alone(const scene *of, const char *letters, const sphg_subset *subset,
+                             int corrections, const char *how)
+{
+    const int d = of->test->dimension;
+    const mixed_fields *alone = mixed(of, letters);
+    for (int k = 0; k < alone->count; ++k)
+        sum_fields(of, of->found, subset, &alone->fields[k], 1, NULL);
+    const wish table_alone = {"corrections", 1, 0, SPHG_DIFFERENCE, 0, 0};
+    const outcome expected = nothing_yet(of, &table_alone);
+    if (corrections)
+        evaluate(of, &table_alone, of->found, setup_view(&of->volume), subset, &expected);
+    for (int turn = 0; turn < 3; ++turn) {
+        const mixed_fields *together = mixed(of, letters);
+        const setup_array table =
+            setup_output(test_field_type(of->test), of->points.count, d * (d + 1) / 2);
+        sum_fields(of, turn ? of->kept : of->found, subset, together->fields, together->count,
+                   corrections ? &table : NULL);
+        if (corrections)
+            TEST_REQUIRE(setup_same_bits(&expected.table, &table), "%s, %s, turn %d: corrections",
+                         letters, how, turn);
+        for (int k = 0; k < together->count; ++k)
+            TEST_REQUIRE(setup_same_bits(&alone->results[k], &together->results[k]),
+                         "%s, %s, turn %d: field %d", letters, how, turn, k);
+    }
+}
+
+/* Two of them in one loop, one beside the moments, and more than one pass takes. */
+static void several_fields_go_it(const test_case *test)
+{
+    const double radius[] = {2, 4.5};
+    const int plain = test->method == SPHG_PLAIN;
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        sphg_context *context = setup_context_on(isa);
+        for (int k = 0; context && k < 4; ++k) {
+            const scene of = scene_on(test, context, radius[k / 2], k % 2, k == 2);
+            uint8_t *mask = test_memory((size_t)of.targets);
+            for (int i = 0; i < of.targets; ++i)
+                mask[i] = i % 8 != 3;
+            const sphg_subset most = sphg_masked(mask, of.targets);
+            const char *how = test_text("path %d, scene %d", (int)isa, k);
+            for (int m = 0; m < MIXTURES; ++m) {
+                const int of_plain = strpbrk(mixtures[m], "dDp") != NULL;
+                if (of_plain && (!plain || (of.graded && strchr(mixtures[m], 'p'))))
+                    continue;
+                require_as_alone(&of, mixtures[m], m % 2 ? &most : NULL, !plain && m % 3, how);
+            }
+        }
+    }
+}
+
 static void every_kernel_goes_it(const test_case *test)
 {
     scene of = scene_on(test, setup_context(), 2, 0, 0);
@@ -285,6 +402,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(radii_of_their_own_go_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(some_of_the_particles_go_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(several_fields_go_it, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(every_kernel_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),

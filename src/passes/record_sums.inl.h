@@ -344,43 +344,23 @@ SPHGI_TEMPLATE void chunk_of_records(const struct sphgi_record_sums *g,
             add_one_sided(v + axes, own, gradient, sum, how);
     }
     if (how.moments)
-        end_chunk(tile, moment, how.three ? 6 : 3, lists->moments);
+        end_chunk(tile, moment, how.three ? 6 : 3, sums_at(lists, g->moment_sums));
     if (how.shape)
-        end_chunk(tile, sum, sums_of_record(how), lists->sums);
+        end_chunk(tile, sum, sums_of_record(how), sums_at(lists, g->sums));
     if (how.fold)
-        end_chunk(tile, vectors, d, lists->vectors);
+        end_chunk(tile, vectors, d, sums_at(lists, g->vectors));
 }
 
 /* Where records hold no coordinates the tile is filled first. */
-static void fill_tile(const struct sphgi_record_sums *g, const struct sphgi_shape *shape,
-                      const struct sphgi_group_lists *lists, struct sphgi_tile *tile)
-{
-    real *factors = lists->kept;
-    if (factors)
-        factors += tile->ids - lists->ids;
-    if (lists->kept_stand) {
-        gather_offsets(g->gather, factors, lists->places, tile);
-        return;
-    }
-    gather_factors(g->gather, shape, lists->places, tile);
-    if (factors)
-        keep_factors(tile, factors);
-}
-
 SPHGI_TEMPLATE void records_as(const struct sphgi_record_sums *g, const struct sphgi_shape *shape,
                                const struct sphgi_group_lists *lists, struct sphgi_tile *tile,
                                struct record_how how)
 {
-    for (int32_t left = lists->steps;; left -= SPHGI_CHUNK) {
-        tile->steps = sphgi_min32(left, SPHGI_CHUNK);
+    do {
         if (how.apart)
-            fill_tile(g, shape, lists, tile);
+            fill_tile(g->gather, shape, lists, tile);
         chunk_of_records(g, lists, tile, how);
-        if (left <= SPHGI_CHUNK)
-            break;
-        tile->ids += SPHGI_CHUNK * SPHGI_GROUP;
-        ++tile->chunk;
-    }
+    } while (next_chunk(lists, tile));
 }
 
 #define RECORDS(...)                                                                               \
@@ -443,10 +423,7 @@ SPHGI_TEMPLATE void records_apart(const struct sphgi_record_sums *g,
 static void sum_records(const struct sphgi_record_sums *g, const struct sphgi_shape *shape,
                         const struct sphgi_group_lists *lists, struct sphgi_tile *tile)
 {
-    tile->ids = lists->ids;
-    tile->id_stride = SPHGI_GROUP;
-    tile->spread = false;
-    tile->chunk = 0;
+    first_chunk(lists, tile);
     if (g->apart)
         records_apart(g, shape, lists, tile);
     else

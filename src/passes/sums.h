@@ -119,17 +119,24 @@ enum sphgi_fold {
     SPHGI_FOLDED_MATRIX
 };
 
-/* All sums of targets whose lists stand side by side: moments, and those of one field. */
+/* All sums of targets whose lists stand side by side: moments, and those of some fields. */
+enum { SPHGI_GROUP_FIELDS = 8 };
+struct sphgi_group_field {
+    int32_t numbers;       /* 1 or as many as axes */
+    bool divergence;       /* of a vector is summed; else gradients */
+    const void *rows;      /* A_j */
+    const void *at_target; /* what is subtracted from A_j, [number][SPHGI_WIDTH]. NULL, of one field
+                              alone: A_i stands among the rows at the targets' places, and
+                              A_j - A_i is wanted ... */
+    int32_t own;           /* ... for 1, A_j + A_i for -1, A_j for 0 */
+    void *sums;            /* [sum][SPHGI_WIDTH] */
+};
 struct sphgi_group_sums {
     const struct sphgi_gather *gather;
-    bool three;               /* dimensions */
-    bool moments, divergence; /* of a vector */
-    int32_t numbers;       /* of the field whose gradient is summed, 1 or as many as axes; 0: there
-                              is none */
-    const void *field;     /* rows of A_j */
-    const void *at_target; /* what is subtracted from A_j, [number][SPHGI_WIDTH]. NULL: A_i stands
-                              among the rows at the targets' places, and A_j - A_i is wanted ... */
-    int32_t own;           /* ... for 1, A_j + A_i for -1, A_j for 0 */
+    bool three;    /* dimensions */
+    void *moments; /* [sum][SPHGI_WIDTH]; NULL: none */
+    int32_t fields;
+    struct sphgi_group_field field[SPHGI_GROUP_FIELDS];
 };
 struct sphgi_group_lists {
     const uint32_t *ids;
@@ -138,8 +145,6 @@ struct sphgi_group_lists {
     const int32_t *places; /* of the targets, a lane each */
     int32_t first;         /* the lane of the first, of SPHGI_WIDTH */
     void *kept;            /* s_ij of the first target's list; NULL: none */
-    void *moments, *sums;  /* [sum][SPHGI_WIDTH] */
-    void *vectors;         /* of fields that are folded: what stands before A_i */
 };
 
 /* The same where all s_ij are there: of a source nothing is read but its record, its coordinates
@@ -155,6 +160,8 @@ struct sphgi_record_sums {
     int32_t own;              /* as in sphgi_group_sums */
     enum sphgi_fold fold;     /* the numbers are b_j ... */
     bool dense;               /* ... and what stands behind them */
+    void *moment_sums, *sums; /* [sum][SPHGI_WIDTH] */
+    void *vectors;            /* of fields that are folded: what stands before A_i */
 };
 
 /* Numbers in a record, whole rows. */

@@ -142,6 +142,12 @@ static inline int32_t sphgi_correction_rows(const struct sphgi_plan *plan)
                              : d - 1;
 }
 
+/* Where the sums of one derivative begin. */
+static inline int32_t sphgi_first_sum(const struct sphgi_field_plan *field)
+{
+    return field->sums_divergence ? field->divergence_sum : field->sum;
+}
+
 /* Sums of moments of order 2: of second, third and fourth order. */
 static inline int32_t sphgi_quadratic_moments(int32_t dimension)
 {

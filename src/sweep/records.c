@@ -177,12 +177,17 @@ struct sphgi_record_sums sphgi_record_sums(const struct sphgi_worker *w)
                                      .dimension = sweep->plan->dimension,
                                      .apart = !sweep->weights_stand,
                                      .moments = sums_moments(sweep)};
+    if (sums.moments)
+        sums.moment_sums = sphgi_lane(w, w->reduced, sweep->plan->moment_sum);
     if (!field)
         return sums;
+    sums.sums = sphgi_lane(w, w->reduced, sphgi_first_sum(field));
     sums.shape = field->shape;
     sums.divergence = field->sums_divergence;
     sums.fold = field->fold;
     sums.dense = is_dense(field);
+    if (sums.fold)
+        sums.vectors = sphgi_lane(w, w->reduced, sweep->plan->folded_sum[sums.dense]);
     sums.own = field->antisymmetric ? -1 : field->form == SPHG_DIFFERENCE;
     return sums;
 }
