@@ -377,7 +377,8 @@ static setup_array random_vectors(const test_case *test, int count, random_state
 }
 
 /* Those that have no pairs in the other set are finished before those that have. */
-static void compare_beside_wall(const test_case *test, double height, int some_are_near)
+static void compare_beside_wall(const test_case *test, double height, int some_are_near,
+                                int list_free)
 {
     random_state random = random_seeded(87);
     const int d = test->dimension;
@@ -391,7 +392,8 @@ static void compare_beside_wall(const test_case *test, double height, int some_a
                                    .source_count = wall.count,
                                    .targets = setup_view(&positions[0]),
                                    .target_count = points.count,
-                                   .precision = test_field_type(test)};
+                                   .precision = test_field_type(test),
+                                   .list_free = list_free};
     const setup_array volume =
         setup_numbers(test_field_type(test), wall.count, 1, cloud_volumes(&wall, .2, &random));
     const setup_array numbers[2] = {random_vectors(test, points.count, &random),
@@ -424,8 +426,10 @@ static void compare_beside_wall(const test_case *test, double height, int some_a
 
 static void targets_far_from_a_wall_have_the_bits_of_no_wall(const test_case *test)
 {
-    compare_beside_wall(test, .125, 1);
-    compare_beside_wall(test, 1, 0);
+    for (int list_free = 0; list_free < 2; ++list_free) {
+        compare_beside_wall(test, .125, 1, list_free);
+        compare_beside_wall(test, 1, 0, list_free);
+    }
 }
 
 /* ---- Corrections of some targets ----------------------------------------------------------------

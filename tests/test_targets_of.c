@@ -52,11 +52,14 @@ static void search(sphg_context *context, sphg_neighbors *neighbors, const scene
 
 static sphg_geometry geometry_of(const pair_of *pair, const sphg_neighbors *other)
 {
-    sphg_geometry geometry = scene_geometry(&pair->wall);
-    geometry.targets = sphg_absent();
-    geometry.target_support = sphg_absent();
-    geometry.target_count = 0;
-    geometry.targets_of = other;
+    const sphg_geometry wall = scene_geometry(&pair->wall);
+    sphg_geometry geometry = sphg_targets_of(other, wall.sources, wall.source_count);
+    geometry.source_support = wall.source_support;
+    geometry.mutual = wall.mutual;
+    geometry.precision = wall.precision;
+    geometry.list_free = wall.list_free;
+    geometry.skin = wall.skin;
+    memcpy(geometry.period, wall.period, sizeof wall.period);
     return geometry;
 }
 

@@ -147,27 +147,6 @@ SPHGI_TEMPLATE void gather_records(const real *records, const uint32_t *ids, siz
     }
 }
 #else
-/* Of every fourth lane, row by row. */
-SPHGI_TEMPLATE void gather_quarter(const real *records, const uint32_t *ids, size_t step,
-                                   int32_t width, vec *part)
-{
-    const real *record[LANES];
-    for (int k = 0; k < LANES; k += 4)
-        record[k] = records + step * ids[k];
-    for (int32_t n = 0; n < width / SPHGI_ROW; ++n) {
-        const real *row[LANES];
-        for (int k = 0; k < LANES; k += 4)
-            row[k] = record[k] + SPHGI_ROW * n;
-#if VECTOR_BYTES == 64 && !REAL_IS_F64
-        part[n] = four_rows(row);
-#elif VECTOR_BYTES / (1 + REAL_IS_F64) / 4 == 8
-        part[n] = two_rows(row[0], row[4]);
-#else
-        part[n] = load(row[0]);
-#endif
-    }
-}
-
 #if VECTOR_BYTES == 64 && !REAL_IS_F64
 /* Two rows of a record at once: half as many loads. */
 SPHGI_TEMPLATE vec two_records(const real *low, const real *high)
