@@ -189,6 +189,17 @@ static bool is_left_out(const struct sphgi_sweep *sweep, int32_t group)
            sphgi_goes_by_records(sweep, group) != (sweep->groups == SPHGI_GROUPS_BY_RECORDS);
 }
 
+/* What is known of groups, unless nothing is kept, is read before their lists can be asked for. */
+static void ask_for_group(const struct sphgi_sweep *sweep, int32_t group, int32_t end)
+{
+    enum { GROUPS = 16, MARKS = 32 };
+    const sphg_neighbors *n = sweep->set->neighbors;
+    if (!n->list_free && group + GROUPS < end)
+        __builtin_prefetch(n->found.groups + group + GROUPS);
+    if (sweep->kept.number && group + MARKS < end)
+        __builtin_prefetch(sweep->kept.marks + group + MARKS);
+}
+
 void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
@@ -205,11 +216,8 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t group = groups ? groups[k] : k;
-        if (!groups) {
-            __builtin_prefetch(n->found.groups + k + 16);
-            if (task->sweep.kept.number)
-                __builtin_prefetch(task->sweep.kept.marks + k + 32);
-        }
+        if (!groups)
+            ask_for_group(&task->sweep, k, end);
         if (is_left_out(&task->sweep, group))
             continue;
         if (sphgi_is_kept(n, group))
