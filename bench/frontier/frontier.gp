@@ -86,7 +86,7 @@ do for [k = 0:1] {
         set label 13 sprintf("{/:Bold plain SPH}\n%.0f ns, %.1f times the error", time[6], wavy[6] / wavy[1]) \
             at 1.06 * time[6], 0.94 * wavy[6] left tc rgb plain front
         set label 14 'the line: nothing is both faster and nearer' \
-            at graph 0.99, graph 0.05 right font 'Sans,11' tc rgb '#777777' front
+            at graph 0.99, graph 0.96 right font 'Sans,11' tc rgb '#777777' front
     } else {
         set title 'linear field: corrected gradients are exact up to rounding'
         set ylabel 'largest relative error'
