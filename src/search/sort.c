@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Sorting particles into the blocks and cells of a grid. */
-#include "sort.h"
+#include "sorting.h"
 #include "core/parallel.h"
 #include <float.h>
 #include <string.h>

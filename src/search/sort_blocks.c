@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The blocks that chunks have met become those of the grid, in the order of their keys. */
-#include "sort.h"
+#include "sorting.h"
 #include <string.h>
 
 /* Two runs in order become one. */

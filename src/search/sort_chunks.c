@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Particles of a chunk: which block and cell each is in, and how many these hold. */
-#include "sort.h"
+#include "sorting.h"
 #include <string.h>
 
 enum {

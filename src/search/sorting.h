@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What the files share that sort particles into the blocks and cells of a grid. */
-#ifndef SPHGI_SORT_H
-#define SPHGI_SORT_H
+#ifndef SPHGI_SORTING_H
+#define SPHGI_SORTING_H
 #include "grid.h"
 
 /* A block of a chunk, as the pass names it, and its number plus 1; 0: none. */
