@@ -47,8 +47,8 @@ static void use_packed_rows(struct sphgi_worker *w)
     w->gather.rows = sphgi_reads_volumes(sweep) ? sweep->packed_positions : n->sources.rows.data;
     w->gather.dummy = (uint32_t)(SPHGI_ID_STEP * (rows - 1));
     w->rows.items = n->kind != SPHGI_HOST_LISTS ? n->sources.order.data : NULL;
-    for (int32_t k = 0; k < sweep->plan->row_count; ++k)
-        w->rows.at[k] = sweep->packed_rows + (size_t)k * rows * size;
+    for (int32_t k = 0; k < sweep->plan->row_count; ++k) /* none where there are records */
+        w->rows.at[k] = sweep->packed_rows ? sweep->packed_rows + (size_t)k * rows * size : NULL;
     w->both = w->gather; /* rows as the search left them hold the radii of the sources */
     w->both.rows = n->sources.rows.data;
     w->both.either = sphgi_sorts_out_pairs(sweep);
