@@ -132,21 +132,6 @@ SPHGI_TEMPLATE int32_t sums_of_record(struct record_how how)
     return !how.divergence ? d * numbers : how.shape == SPHG_VECTOR ? 1 : d;
 }
 
-/* The records of LANES particles, by the numbers of their rows times step / width. */
-#if REAL_IS_F64 && VECTOR_BYTES == 16
-SPHGI_TEMPLATE void gather_records(const real *records, const uint32_t *ids, size_t step,
-                                   int32_t width, vec *v)
-{
-    for (int32_t n = 0; n < width; n += SPHGI_ROW) {
-        const real *row[LANES] = {records + step * ids[0] + n, records + step * ids[1] + n};
-        const struct four numbers = transpose(row);
-        v[n] = numbers.x;
-        v[n + 1] = numbers.y;
-        v[n + 2] = numbers.z;
-        v[n + 3] = numbers.w;
-    }
-}
-#else
 #if VECTOR_BYTES == 64 && !REAL_IS_F64
 /* Two rows of a record at once: half as many loads. */
 SPHGI_TEMPLATE vec two_records(const real *low, const real *high)
@@ -180,6 +165,7 @@ SPHGI_TEMPLATE void gather_eight(const real *records, const uint32_t *ids, size_
 }
 #endif
 
+/* The records of LANES particles, by the numbers of their rows times step / width. */
 SPHGI_TEMPLATE void gather_records(const real *records, const uint32_t *ids, size_t step,
                                    int32_t width, vec *v)
 {
@@ -199,7 +185,6 @@ SPHGI_TEMPLATE void gather_records(const real *records, const uint32_t *ids, siz
         v[n + 3] = numbers.w;
     }
 }
-#endif
 
 /* Coordinates in a record, before its numbers. */
 SPHGI_TEMPLATE int32_t axes_in_record(struct record_how how)
