@@ -70,7 +70,7 @@ static sphg_result check_block(const struct exporting *e)
         return sphgi_fail(checker.context, SPHG_ERROR_ARGUMENT,
                           "%s: pairs.block is %d, must be 0, 4, 8 or 16", checker.function,
                           (int)block);
-    if (block && g->x && (g->y || g->stride != (ptrdiff_t)pair))
+    if (block && g->x && (g->y || g->z || g->stride != (ptrdiff_t)pair))
         return sphgi_fail(
             checker.context, SPHG_ERROR_ARGUMENT,
             "%s: pairs.gradient must be one array of stride %d where pairs.block is %d",
