@@ -152,6 +152,42 @@ static void another_scheme_or_volume_forms_them_anew(const test_case *test)
     require_fresh(&on, other, 1, "the radius of before");
 }
 
+/* A gradient of every pair: the sums of a host's own loop, whose volumes count as those of a sweep
+ * do. */
+static void export_pairs(const kept *on, sphg_view volume)
+{
+    const int most = on->points.count * on->points.count, d = on->test->dimension;
+    const setup_array gradient = setup_output(test_field_type(on->test), most, d);
+    const sphg_sources sources = {.neighbors = on->keeping, .volume = volume};
+    sphg_pairs pairs = {.indices = test_memory((size_t)most * sizeof *pairs.indices),
+                        .gradient = setup_view(&gradient),
+                        .capacity = most};
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, NULL, sphg_absent(), &pairs));
+}
+
+/* Sweeps that keep nothing: by a classic method, of order 2, over pairs for the host. */
+static void volumes_of_sweeps_that_keep_nothing_count(const test_case *test)
+{
+    kept on = kept_on(test, setup_context());
+    const sphg_view volume = setup_view(&on.volume), other = setup_view(&on.other_volume);
+    const sphg_scheme mine = on.scheme;
+    require_fresh(&on, volume, 0, "before a classic method");
+    on.scheme.method = SPHG_CRKPM;
+    require_fresh(&on, other, 0, "a classic method");
+    on.scheme = mine;
+    require_fresh(&on, other, 1, "after a classic method");
+    require_fresh(&on, volume, 0, "before order 2");
+    on.scheme.method = SPHG_RKPM;
+    on.scheme.order = 2;
+    require_fresh(&on, other, 0, "order 2");
+    on.scheme = mine;
+    require_fresh(&on, other, 1, "after order 2");
+    require_fresh(&on, volume, 0, "before pairs");
+    export_pairs(&on, other);
+    require_fresh(&on, other, 1, "after pairs");
+}
+
 static void one_volume_for_all_is_compared(const test_case *test)
 {
     const kept on = kept_on(test, setup_context());
@@ -299,6 +335,8 @@ static const test_entry entries[] = {
                0),
     TEST_ENTRY(another_scheme_or_volume_forms_them_anew, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(volumes_of_sweeps_that_keep_nothing_count, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(one_volume_for_all_is_compared, TEST_SINGLE_AND_DOUBLE, 0,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(a_new_search_forgets_them, TEST_SINGLE_AND_DOUBLE, 0, 0, 0),

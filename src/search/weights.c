@@ -3,7 +3,8 @@
 
 struct sphgi_weights_book {
     atomic_bool taken;
-    uint32_t number; /* of the factors that were last asked for */
+    atomic_bool other_volumes; /* a sweep that did not take the memory had others */
+    uint32_t number;           /* of the factors that were last asked for */
     struct sphgi_weights_of of;
     uint32_t marks[]; /* per group */
 };
@@ -44,13 +45,24 @@ static bool are_the_same(const struct sphgi_weights_of *a, const struct sphgi_we
            a->volume == b->volume;
 }
 
+void sphgi_weights_pass(const sphg_neighbors *n, bool same_volumes)
+{
+    if (n->keeps_weights && book_of(n) && !same_volumes)
+        atomic_store(&book_of(n)->other_volumes, true);
+}
+
 struct sphgi_kept_weights sphgi_weights_take(const sphg_neighbors *n,
                                              const struct sphgi_weights_of *of, bool same_volumes)
 {
     struct sphgi_weights_book *book = book_of(n);
-    if (!n->keeps_weights || !book || atomic_exchange(&book->taken, true))
+    if (!n->keeps_weights || !book)
         return (struct sphgi_kept_weights){.number = 0};
-    const bool same = same_volumes || of->volume >= 0;
+    if (atomic_exchange(&book->taken, true)) {
+        sphgi_weights_pass(n, same_volumes);
+        return (struct sphgi_kept_weights){.number = 0};
+    }
+    const bool others = atomic_exchange(&book->other_volumes, false);
+    const bool same = (same_volumes && !others) || of->volume >= 0;
     if (!book->number || !same || !are_the_same(&book->of, of)) {
         book->of = *of;
         ++book->number;

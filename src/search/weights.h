@@ -26,6 +26,9 @@ bool sphgi_weights_reserve(sphg_neighbors *neighbors);
  * volumes of their own are those of the sweep before. */
 struct sphgi_kept_weights sphgi_weights_take(const sphg_neighbors *neighbors,
                                              const struct sphgi_weights_of *of, bool same_volumes);
+/* A sweep goes without. What others have kept is that of the sweep before no more, unless it has
+ * the same volumes. */
+void sphgi_weights_pass(const sphg_neighbors *neighbors, bool same_volumes);
 /* good: what was written is what was asked for. */
 void sphgi_weights_give_back(const sphg_neighbors *neighbors,
                              const struct sphgi_kept_weights *weights, bool good);

@@ -73,9 +73,13 @@ static struct sphgi_kept_weights take_weights(const struct sphgi_sweep *sweep)
                                                                                : scheme->method,
                                         .radius = scheme->radius,
                                         .volume = sweep->volumes ? -1 : sweep->volume};
-    if (!sphgi_forms_factors_alone(sweep) || sphgi_is_masked(sweep) || sweep->plan->quadratic)
+    const struct sphgi_columns *volume = &sweep->set->volume;
+    const bool same = sweep->set->same_volumes || !volume->count || !volume->stride;
+    if (!sphgi_forms_factors_alone(sweep) || sphgi_is_masked(sweep) || sweep->plan->quadratic) {
+        sphgi_weights_pass(sweep->set->neighbors, same);
         return (struct sphgi_kept_weights){.number = 0};
-    return sphgi_weights_take(sweep->set->neighbors, &of, sweep->set->same_volumes);
+    }
+    return sphgi_weights_take(sweep->set->neighbors, &of, same);
 }
 
 /* Over so many groups, or of the host's lists so many targets. */
