@@ -147,32 +147,48 @@ static void escapees_leave_the_grid_as_it_is(const test_case *test)
     }
 }
 
-/* Pairs a rounding inside and outside of H, at borders of cells, each partner in another image. */
+/* Pairs a rounding inside and outside of H, at borders of so many cells, partners in images up to
+ * `most` periods away. */
+static void put_pairs_at_borders(const scene *particles, double length, int cells, double most,
+                                 random_state *random)
+{
+    const int d = particles->dimension;
+    const double step = (particles->is_double ? 0x1p-52 : 0x1p-23) * length;
+    for (int i = 0; i < MANY; i += 2) {
+        double *x = &particles->sources[i * d];
+        memcpy(x + d, x, (size_t)d * sizeof *x);
+        const double border = length / cells * (int)random_index(random, cells + 1);
+        x[i % d] = border + step * ((int)random_index(random, 5) - 2);
+        x[d + i % d] = x[i % d] + (i % 4 ? 1 : -1) + step * ((int)random_index(random, 3) - 1);
+        for (int k = 0; k < 2 * d; ++k)
+            x[k] = scene_rounded(particles,
+                                 x[k] + length * nearbyint(random_between(random, -most, most)));
+    }
+}
+
+/* Cells of any width, and cells no wider than they must be, which coordinates just within what is
+ * taken into the box need to be wider, also beside one who is taken there. */
 static void pairs_at_cell_borders_are_those_of_brute_force(const test_case *test)
 {
     sphg_context *context = setup_context_of(1);
     sphg_neighbors *neighbors = brute_force_neighbors(context);
     random_state random = random_seeded(101);
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 300; ++round) {
         scene particles = scene_empty(test, MANY);
-        const int d = test->dimension, most = round % 3 == 0 ? 0 : round % 3 == 1 ? 5 : 6000;
-        const double length = scene_rounded(&particles, random_between(&random, 3.02, 9));
-        const double cells = floor(length / (1 + 0x1p-9));
+        const int d = test->dimension, narrow = round >= 60;
+        const double narrowest = (4 + (int)random_index(&random, 4)) * (1 + 0x1p-9 + 0x1p-20);
+        const double length =
+            scene_rounded(&particles, narrow ? narrowest : random_between(&random, 3.02, 9));
+        const double limit = (particles.is_double ? 0x1p45 : 0x1p16) / length - 2;
+        const double most = narrow ? limit : round % 3 == 0 ? 0 : round % 3 == 1 ? 5 : 6000;
         scatter(&particles, particles.sources, MANY, length, &random);
         for (int a = 0; a < d; ++a)
             particles.period[a] = length;
-        for (int i = 0; i < MANY; i += 2) {
-            double *x = &particles.sources[i * d];
-            memcpy(x + d, x, (size_t)d * sizeof *x);
-            const double border = length / cells * (int)random_index(&random, (int)cells + 1);
-            const double step = (particles.is_double ? 0x1p-52 : 0x1p-23) * length;
-            x[i % d] = border + step * ((int)random_index(&random, 5) - 2);
-            x[d + i % d] = x[i % d] + (i % 4 ? 1 : -1) + step * ((int)random_index(&random, 3) - 1);
-            for (int k = 0; k < 2 * d; ++k)
-                x[k] = scene_rounded(&particles,
-                                     x[k] + length * (random_index(&random, 2 * most + 1) - most));
-        }
-        particles.list_free = round % 2;
+        put_pairs_at_borders(&particles, length, (int)floor(length / (1 + 0x1p-9)), most, &random);
+        for (int a = 0; a < d && narrow && round % 2; ++a)
+            particles.sources[a] =
+                scene_rounded(&particles, particles.sources[a] + length * 64 * limit);
+        particles.list_free = round / 2 % 2;
         rows_require_search_exact(context, neighbors, &particles, 1, test_text("round %d", round));
     }
 }
