@@ -63,7 +63,7 @@ run_long() {
 # New inputs go to build/fuzz/corpus, the kept ones are only read. SPHG_FUZZ_RUNS ends a target after
 # so many executions, SPHG_FUZZ_TARGETS names some of them.
 run_fuzz() {
-    local targets=${SPHG_FUZZ_TARGETS:-search lists matrices calls}
+    local targets=${SPHG_FUZZ_TARGETS:-search lists matrices calls kept}
     build_preset fuzz -DSPHG_BUILD_TESTS=ON || return 1
     printf '%s\n' $targets | xargs -P "$(nproc)" -I TARGET sh -c '
         log=build/fuzz/TARGET.log
