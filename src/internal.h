@@ -13,8 +13,14 @@
 
 #define SPHGI_ALIGNMENT 64 /* [byte] of every internal array: a cache line, the widest vector */
 
-/* A C "template": called with constant arguments, so that the compiler removes branches on them. */
-#define SPHGI_TEMPLATE  static inline __attribute__((always_inline))
+/* A C "template": called with constant arguments, so that the compiler removes branches on them.
+ * One that does not optimise would only write all of them down, which takes twenty times as long;
+ * so do tests that watch every access (SPHGI_KEEP_CALLS). The numbers are the same. */
+#if defined(__OPTIMIZE__) && !defined(SPHGI_KEEP_CALLS)
+#define SPHGI_TEMPLATE static inline __attribute__((always_inline))
+#else
+#define SPHGI_TEMPLATE static inline
+#endif
 
 /* A function that takes a format, and what it names from argument `first` on, as printf does. */
 #if defined(__MINGW32__) && !defined(__clang__) /* "printf" means the system's there */
