@@ -150,18 +150,60 @@ static int is_neighbour(const scene *particles, int i, int j, double support_rad
                                 : is_near_single(d, difference, (float)radius);
 }
 
+/* The farthest that any radius and its rounding can reach. */
+static double reach_of(const scene *particles, double support_radius)
+{
+    double most = support_radius;
+    for (int j = 0; j < particles->source_count && particles->support; ++j)
+        most = fmax(most, particles->support[j]);
+    for (int i = 0; i < particles->target_count && particles->target_support; ++i)
+        most = fmax(most, particles->target_support[i]);
+    return most < 1e18 ? 1.5 * most : INFINITY;
+}
+
+/* The coordinates along each axis one after the other, for the loop that rules out most pairs. */
+static double *columns_of(const scene *particles)
+{
+    const int d = particles->dimension, count = particles->source_count;
+    double *columns = test_memory((size_t)count * (size_t)d * sizeof *columns);
+    for (int k = 0; k < d * count; ++k)
+        columns[k % d * count + k / d] = particles->sources[k];
+    return columns;
+}
+
+static void rule_out(int count, double target, const double *restrict sources, double reach,
+                     char *restrict near)
+{
+    for (int j = 0; j < count; ++j)
+        near[j] &= (char)!(fabs(target - sources[j]) > reach);
+}
+
+/* Sources that are not beyond all reach along an axis without period. */
+static void mark_candidates(const scene *particles, int i, const double *columns, double reach,
+                            char *near)
+{
+    const int d = particles->dimension, count = particles->source_count;
+    const double *target = (particles->targets ? particles->targets : particles->sources) + i * d;
+    memset(near, 1, (size_t)count);
+    for (int k = 0; k < d; ++k)
+        if (!(particles->period[k] > 0))
+            rule_out(count, target[k], columns + k * count, reach, near);
+}
+
 rows rows_by_brute_force(const scene *particles, double support_radius)
 {
     const int targets = particles->target_count, sources = particles->source_count;
+    const double *columns = columns_of(particles), reach = reach_of(particles, support_radius);
     char *near = test_memory((size_t)targets * (size_t)sources);
     rows found = {targets, test_memory(((size_t)targets + 1) * sizeof(int64_t)), NULL};
     for (int i = 0; i < targets; ++i) {
+        char *row = near + (size_t)i * (size_t)sources;
         found.offsets[i + 1] = found.offsets[i];
-        for (int j = 0; j < sources; ++j) {
-            near[(size_t)i * (size_t)sources + (size_t)j] =
-                (char)is_neighbour(particles, i, j, support_radius);
-            found.offsets[i + 1] += near[(size_t)i * (size_t)sources + (size_t)j];
-        }
+        mark_candidates(particles, i, columns, reach, row);
+        for (int j = 0; j < sources; ++j)
+            if (row[j])
+                found.offsets[i + 1] += row[j] =
+                    (char)is_neighbour(particles, i, j, support_radius);
     }
     found.indices = test_memory((size_t)found.offsets[targets] * sizeof(int32_t));
     int64_t next = 0;
