@@ -16,7 +16,8 @@ const char *const sweep_names[] = {"slab",      "threshold", "offset",  "scale",
 const char *const policy_names[] = {[SPHG_BLEND] = "blend",
                                     [SPHG_REPLACE] = "replace",
                                     [SPHG_TRUNCATE] = "truncate",
-                                    [SPHG_IDENTITY] = "identity"};
+                                    [SPHG_IDENTITY] = "identity",
+                                    NULL};
 
 /* ---- Cases ----------------------------------------------------------------------------------- */
 
@@ -116,7 +117,7 @@ static void create_cases(struct stability *stability)
                        .kernel = stability->settings.kernel,
                        .threshold = 1e-2,
                        .order = sweep == SWEEP_CURVATURE || sweep == SWEEP_THINNING ? 2 : 1}};
-        if (makes_sense(&one))
+        if (makes_sense(&one) && (!stability->one_policy || one.scheme.policy == stability->policy))
             add_places(stability, one);
     }
 }
@@ -162,7 +163,8 @@ static int show(const struct stability *stability)
     report_number("seed", stability->seed);
     report_number(".block", (double)side * side * side);
     report_number(".compared", stability->compared);
-    report_number(".all", stability->first == 0 && stability->last == SWEEPS - 1);
+    report_number(".all",
+                  stability->first == 0 && stability->last == SWEEPS - 1 && !stability->one_policy);
     report_number(".alone", stability->first == stability->last);
     table_begin("stability");
     for (int k = 0; k < stability->case_count; ++k)
@@ -184,6 +186,8 @@ int command_stability(int argc, char **argv)
          "crowds, which only shows how errors grow; grading, of radii; curvature (eps_q) and "
          "thinning (a slab), of order 2",
          OPTION_CHOICE, &stability.first, 0, 0, sweep_names, &one_sweep},
+        {"policy", 0, "NAME", "this one alone: blend, replace, truncate, identity", OPTION_CHOICE,
+         &stability.policy, 0, 0, policy_names, &stability.one_policy},
         {"compare", 0, "N",
          "targets of a case that stand beside the reference (32, quick 2); 0: none",
          AS_WHOLE(stability.compared, 0, 1 << 20)},

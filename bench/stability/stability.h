@@ -51,10 +51,11 @@ struct stability_case {
 
 struct stability {
     struct settings settings;
-    bool quick;
-    int first, last;  /* sweeps */
-    int32_t seed;     /* of all random numbers */
-    int32_t compared; /* targets of a case that stand beside the reference */
+    bool quick, one_policy;
+    sphg_policy policy; /* where there is one */
+    int first, last;    /* sweeps */
+    int32_t seed;       /* of all random numbers */
+    int32_t compared;   /* targets of a case that stand beside the reference */
     int case_count;
     struct stability_case *cases; /* those of a sweep stand together */
 };

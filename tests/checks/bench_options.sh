@@ -48,6 +48,7 @@ refuses frontier --particles 0
 refuses scaling --full=yes
 refuses scaling --support 100
 refuses stability --sweep nothing
+refuses stability --policy nothing
 refuses stability --quick=yes
 refuses stability --jitter 2
 exit $status
