@@ -18,10 +18,14 @@ SPHGI_TEMPLATE void quadratic_of_pairs(const struct sphgi_gather *g,
     const int32_t steps = tile->steps;
     const ptrdiff_t stride = tile->id_stride;
     const ptrdiff_t ahead = ids == tile->own_ids ? 0 : AHEAD * stride;
+    const uint32_t *to_come = ids_ahead(tile);
+    const real *rows = g->rows, *also = tile->also ? tile->also : rows;
     real *at = tile->arrays;
     for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride) {
         __builtin_prefetch(ids + ahead);
-        const struct four row = gather_rows(g->rows, ids);
+        ask_for_rows(rows, also, to_come);
+        to_come += stride;
+        const struct four row = gather_rows(rows, ids);
         const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         const vec v = select(in_rows, row.w, volume);
         vec square = plus(dx * dx, dy, dy);

@@ -95,6 +95,10 @@ struct sphgi_passes {
      * arrays. */
     void (*sum_group)(const struct sphgi_group_sums *group, const struct sphgi_shape *shape,
                       const struct sphgi_group_lists *lists, struct sphgi_tile *tile);
+    /* The same for order 2. */
+    void (*sum_quadratic_group)(const struct sphgi_group_sums *group,
+                                const struct sphgi_shape *shape,
+                                const struct sphgi_group_lists *lists, struct sphgi_tile *tile);
 
     /* The same over records; NULL: there is no such pass. These are made of rows x y z . of `count`
      * sources, of which `axes` numbers stand in records, and what columns have of them, in order;

@@ -63,6 +63,7 @@
 #endif
 #include "classic.inl.h"
 #include "quadratic_sums.inl.h"
+#include "quadratic_groups.inl.h"
 #include "diffusion.inl.h"
 #include "values.inl.h"
 #include "eigen.inl.h"
@@ -100,6 +101,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .keep_factors = keep_factors,
     .stage = stage,
     .sum_group = sum_group,
+    .sum_quadratic_group = sum_quadratic_group,
 #if defined(RECORDS_ARE_READ)
     .sum_records = sum_records,
     .put_records = put_records,

@@ -176,19 +176,25 @@ SPHGI_TEMPLATE void eliminate(const struct sphgi_second *second, const real *sum
         }
         whiten(second, R(1), m3[a], three);
     }
+    vec m4[15], s[PAIRS_MOST][PAIRS_MOST];
+    for (int k = 0; k < (three ? 15 : 5); ++k)
+        m4[k] = factor * load(fourth + k * SPHGI_WIDTH);
     UNROLLED
     for (int k = 0; k < n; ++k) {
+        UNROLLED
         for (int l = 0; l < n; ++l)
-            b->s[k][l] = factor * load(fourth + fourth_index(k, l, three) * SPHGI_WIDTH);
-        whiten(second, R(1), b->s[k], three);
+            s[k][l] = m4[fourth_index(k, l, three)];
+        whiten(second, R(1), s[k], three);
     }
     UNROLLED
     for (int l = 0; l < n; ++l) {
         vec column[PAIRS_MOST];
+        UNROLLED
         for (int k = 0; k < n; ++k)
-            column[k] = b->s[k][l];
+            column[k] = s[k][l];
         whiten(second, R(1), column, three);
-        for (int k = 0; k < n; ++k)
+        UNROLLED
+        for (int k = l; k < n; ++k)
             b->s[k][l] = column[k];
     }
     b->trace4 = trace_of(b->s, n);

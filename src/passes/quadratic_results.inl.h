@@ -4,10 +4,14 @@
 
 SPHGI_TEMPLATE void note_directions(vec resolved, int32_t lanes, uint8_t *directions)
 {
-    for (int l = 0; l < LANES && l < lanes; ++l) {
-        const int nearest = resolved[l] > R(0) ? (int)(resolved[l] + R(.5)) : 0;
-        directions[l] = (uint8_t)nearest;
-    }
+    const vec some = where(less(splat(R(0)), resolved), resolved + R(.5));
+    const bit_pattern nearest = __builtin_convertvector(some, bit_pattern);
+    if (lanes >= LANES)
+        for (int l = 0; l < LANES; ++l)
+            directions[l] = (uint8_t)nearest[l];
+    else
+        for (int l = 0; l < lanes; ++l)
+            directions[l] = (uint8_t)nearest[l];
 }
 
 /* One vector of targets on its way. */

@@ -19,8 +19,8 @@ SPHGI_TEMPLATE void offsets_at(const struct sphgi_tile *tile, int32_t k, bool th
 }
 
 /* Sixteen registers hold few sums beside products, so that these stay in arrays for other loops; 32
- * hold as many as can be added while one loop forms them. */
-enum { KEEPS_PRODUCTS = VECTOR_BYTES < 64 };
+ * hold as many as can be added while a loop forms its products anew. */
+enum { KEEPS_PRODUCTS = SUMS_IN_REGISTERS < 15 };
 
 /* s_ij x_a x_b */
 SPHGI_TEMPLATE void products_at(const struct sphgi_tile *tile, int32_t k, bool three, vec *products)
@@ -58,100 +58,78 @@ static void shape_products(const struct sphgi_tile *tile, int32_t dimension)
     WITH(three, dimension == 3, products_as(tile, three));
 }
 
-/* The sums of third order, from these products. */
-SPHGI_TEMPLATE void add_triples(vec *sum, const vec *p, const vec *x, bool three)
-{
-    for (int c = 0; c < (three ? 6 : 3); ++c)
-        sum[c] = plus(sum[c], p[c], x[0]);
-    if (three) {
-        sum[6] = plus(sum[6], p[3], x[1]);
-        sum[7] = plus(sum[7], p[3], x[2]);
-        sum[8] = plus(sum[8], p[4], x[2]);
-        sum[9] = plus(sum[9], p[5], x[2]);
-    } else {
-        sum[3] = plus(sum[3], p[2], x[1]);
-    }
-}
-
-SPHGI_TEMPLATE void third_moments_as(const struct sphgi_tile *tile, real *sums, bool three)
-{
-    const int32_t n = three ? 10 : 4;
-    vec sum[10];
-    clear(sum, n);
-    for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], p[6];
-        offsets_at(tile, k, three, x);
-        products_at(tile, k, three, p);
-        add_triples(sum, p, x, three);
-    }
-    end_tile(tile, sum, n, sums);
-}
-
-/* Those of second order, as moments_as has them, with the products; and if there is room for them
- * those of third. */
-SPHGI_TEMPLATE void first_moments_as(const struct sphgi_tile *tile, real *sums, bool third,
-                                     bool three)
-{
-    const int d = three ? 3 : 2;
-    const int32_t n = three ? 6 : 3, all = third ? n + (three ? 10 : 4) : n;
-    vec sum[16];
-    clear(sum, all);
-    for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], g[3], p[6];
-        offsets_at(tile, k, three, x);
-        vectors_at(tile, k, SPHGI_FACTORS, three, g);
-        pair_products(g, x, three, p);
-        keep_products(tile, k, three, p);
-        for (int a = 0; a < d; ++a)
-            for (int c = a; c < d; ++c) {
-                const int m = sphgi_pair_index(a, c, d);
-                sum[m] = minus(sum[m], g[a], x[c]);
-            }
-        if (third)
-            add_triples(sum + n, p, x, three);
-    }
-    end_tile(tile, sum, all, sums);
-}
-
-/* Which two pairs make each product of four. */
+/* Which axes make each product of two of them, which pair and which axis each of three, and which
+ * two pairs each of four. */
+static const int second_of_two[3][2] = {{0, 0}, {0, 1}, {1, 1}};
+static const int third_of_two[4][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}};
 static const int fourth_of_two[5][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 2}};
+static const int second_of_three[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
+static const int third_of_three[10][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0},
+                                          {5, 0}, {3, 1}, {3, 2}, {4, 2}, {5, 2}};
 static const int fourth_of_three[15][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4},
                                            {0, 5}, {1, 3}, {1, 4}, {1, 5}, {2, 5},
                                            {3, 3}, {3, 4}, {3, 5}, {4, 5}, {5, 5}};
 
-SPHGI_TEMPLATE void fourth_moments_as(const struct sphgi_tile *tile, real *sums, bool three,
-                                      int first, int count)
+/* Those that one loop sums, of second, third and fourth order. */
+struct some_moments {
+    int second, seconds, third, thirds, fourth, fourths; /* first of each, and how many */
+};
+
+/* Those of second order are what moments_as has. */
+SPHGI_TEMPLATE void some_moments_as(const struct sphgi_tile *tile, real *sums, bool three,
+                                    struct some_moments some)
 {
-    vec sum[15];
-    clear(sum, count);
+    vec second[6], third[10], fourth[15];
+    clear(second, some.seconds);
+    clear(third, some.thirds);
+    clear(fourth, some.fourths);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], weighted[6], plain[6];
+        vec x[3], g[3], weighted[6], plain[6];
         offsets_at(tile, k, three, x);
-        products_at(tile, k, three, weighted);
+        if (some.seconds) {
+            vectors_at(tile, k, SPHGI_FACTORS, three, g);
+            pair_products(g, x, three, weighted);
+            keep_products(tile, k, three, weighted);
+        } else {
+            products_at(tile, k, three, weighted);
+        }
         pair_products(x, x, three, plain);
-        for (int c = 0; c < count; ++c) {
-            const int *of = three ? fourth_of_three[first + c] : fourth_of_two[first + c];
-            sum[c] = minus(sum[c], weighted[of[0]], plain[of[1]]);
+        for (int c = 0; c < some.seconds; ++c) {
+            const int *of = (three ? second_of_three : second_of_two)[some.second + c];
+            second[c] = minus(second[c], g[of[0]], x[of[1]]);
+        }
+        for (int c = 0; c < some.thirds; ++c) {
+            const int *of = (three ? third_of_three : third_of_two)[some.third + c];
+            third[c] = plus(third[c], weighted[of[0]], x[of[1]]);
+        }
+        for (int c = 0; c < some.fourths; ++c) {
+            const int *of = (three ? fourth_of_three : fourth_of_two)[some.fourth + c];
+            fourth[c] = minus(fourth[c], weighted[of[0]], plain[of[1]]);
         }
     }
-    end_tile(tile, sum, count, sums + first * SPHGI_WIDTH);
+    const int thirds_at = three ? 6 : 3, fourths_at = thirds_at + (three ? 10 : 4);
+    end_tile(tile, second, some.seconds, sums + some.second * SPHGI_WIDTH);
+    end_tile(tile, third, some.thirds, sums + (thirds_at + some.third) * SPHGI_WIDTH);
+    end_tile(tile, fourth, some.fourths, sums + (fourths_at + some.fourth) * SPHGI_WIDTH);
 }
 
+/* Loops whose sums fit the registers beside what they are made of: of 32, first those that hold x,
+ * then the others, so that few products are formed twice. */
 SPHGI_TEMPLATE void quadratic_moments_as(const struct sphgi_tile *tile, real *sums, bool three)
 {
-    const int d = three ? 3 : 2, pairs = three ? 6 : 3, triples = three ? 10 : 4;
-    real *third = sums + pairs * SPHGI_WIDTH, *fourth = third + triples * SPHGI_WIDTH;
     if (KEEPS_PRODUCTS) {
-        first_moments_as(tile, sums, false, three);
-        third_moments_as(tile, third, three);
+        some_moments_as(tile, sums, three, (struct some_moments){.seconds = three ? 6 : 3});
+        some_moments_as(tile, sums, three, (struct some_moments){.thirds = three ? 10 : 4});
+        some_moments_as(tile, sums, three, (struct some_moments){.fourths = three ? 8 : 5});
+        if (three)
+            some_moments_as(tile, sums, three, (struct some_moments){.fourth = 8, .fourths = 7});
+    } else if (three) {
+        some_moments_as(tile, sums, three,
+                        (struct some_moments){.seconds = 3, .thirds = 6, .fourths = 10});
+        some_moments_as(tile, sums, three, (struct some_moments){3, 3, 6, 4, 10, 5});
     } else {
-        first_moments_as(tile, sums, true, three);
-    }
-    if (d == 2 || VECTOR_BYTES == 64) {
-        fourth_moments_as(tile, fourth, three, 0, three ? 15 : 5);
-    } else { /* 15 sums do not fit sixteen registers beside what they are made of */
-        fourth_moments_as(tile, fourth, three, 0, 8);
-        fourth_moments_as(tile, fourth, three, 8, 7);
+        some_moments_as(tile, sums, three,
+                        (struct some_moments){.seconds = 3, .thirds = 4, .fourths = 5});
     }
 }
 
@@ -237,7 +215,7 @@ SPHGI_TEMPLATE void quadratic_field_as(const struct sphgi_tile *tile, const void
                                        int32_t count, const void *at_target, void *sums,
                                        real *second, bool three)
 {
-    const int32_t at_once = VECTOR_BYTES == 64 ? 3 : three ? 1 : 2;
+    const int32_t at_once = !KEEPS_PRODUCTS ? 3 : three ? 1 : 2;
     first_sums_as(tile, rows, at_target, sums, count, three);
     for (int32_t c = 0; c < count; c += at_once)
         second_sums_as(tile, c, count - c < at_once ? count - c : at_once, second, three);

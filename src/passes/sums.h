@@ -130,6 +130,7 @@ struct sphgi_group_field {
                               A_j - A_i is wanted ... */
     int32_t own;           /* ... for 1, A_j + A_i for -1, A_j for 0 */
     void *sums;            /* [sum][SPHGI_WIDTH] */
+    void *second;          /* of order 2, those over products of offsets */
 };
 struct sphgi_group_sums {
     const struct sphgi_gather *gather;

@@ -12,7 +12,7 @@ static bool is_short(const struct sphgi_worker *w)
     const struct sphgi_sweep *sweep = w->sweep;
     const struct sphgi_plan *plan = sweep->plan;
     return w->factors_at_once && !w->gather.masked && !w->held.room && !sweep->pairs &&
-           !plan->quadratic && !plan->diffuses;
+           !plan->diffuses;
 }
 
 /* A field whose gradient or, if nothing stands between, divergence is summed over G_ij. */
@@ -24,7 +24,7 @@ static bool is_short_field(const struct sphgi_worker *w, const struct sphgi_fiel
     const bool divergence =
         field->sums_divergence && !field->sums_gradient && field->shape == SPHG_VECTOR;
     return field->one_sided && field->rows == 1 && !field->square.count && field->value_sum < 0 &&
-           (gradient || divergence);
+           !field->lent_rows && (gradient || divergence);
 }
 
 /* Of one field A_i is read where it stands, if it does. */
@@ -35,6 +35,8 @@ static struct sphgi_group_field group_field(const struct sphgi_worker *w,
                                    .divergence = field->sums_divergence,
                                    .rows = w->rows.at[field->row],
                                    .sums = sphgi_lane(w, w->reduced, sphgi_first_sum(field))};
+    if (w->sweep->plan->quadratic)
+        of.second = sphgi_lane(w, w->reduced, field->second_sum);
     const bool alone = w->sweep->plan->field_count == 1 && !field->mirrors;
     if (alone && (field->form == SPHG_DIRECT || (w->own.in_rows & 1)))
         of.own = field->antisymmetric ? -1 : field->form == SPHG_DIFFERENCE;
@@ -85,6 +87,8 @@ void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t st
     w->tile.ids_end = w->ids_end;
     if (records)
         w->passes->sum_records(&w->by_records, &w->shape, &lists, &w->tile);
+    else if (w->sweep->plan->quadratic)
+        w->passes->sum_quadratic_group(way, &w->shape, &lists, &w->tile);
     else
         w->passes->sum_group(way, &w->shape, &lists, &w->tile);
     w->batch.longest = steps;
