@@ -408,18 +408,18 @@ static void bits_of_order_2_are_those_of_any_compiler(const test_case *test)
 {
 #if PINS_HOLD_HERE
     static const pins pinned[2][3] = {
-        {{{UINT64_C(0x83c94f6d74f04799), UINT64_C(0x3d9aec692e7ff4b1)},
-          {UINT64_C(0x6ee16c3a791c2f55), UINT64_C(0x9390368b1640964e)}},
-         {{UINT64_C(0x420c0f5aca7cc552), UINT64_C(0x5239cff96bd7d942)},
-          {UINT64_C(0x0bf445bc316b06c8), UINT64_C(0x76c5130986e347f3)}},
-         {{UINT64_C(0x56b9c3899ac6c4a6), UINT64_C(0x4e055a66baf8583e)},
-          {UINT64_C(0xe8880f1a650da0dc), UINT64_C(0xfe3c71031ce59c4b)}}},
-        {{{UINT64_C(0x25ceb173337071aa), UINT64_C(0x7e1d389e659305ee)},
-          {UINT64_C(0x23a50688e9916cdc), UINT64_C(0xe5b9d1fa6068019d)}},
-         {{UINT64_C(0x7c344990a1669e0d), UINT64_C(0x7848e3d5ebed8fc7)},
-          {UINT64_C(0xa573e4ee573e87c7), UINT64_C(0x9151a05a9e5b4420)}},
-         {{UINT64_C(0x257568dee9d6d173), UINT64_C(0xeca2642c12e32160)},
-          {UINT64_C(0x48cb12eb2ec42dbd), UINT64_C(0x3c59004963d4cdb2)}}}};
+        {{{UINT64_C(0xf827b1d2957a8a6c), UINT64_C(0x7fd6dc7f0e366270)},
+          {UINT64_C(0x451e9069f1d6a886), UINT64_C(0x0149c79bb46bf4b7)}},
+         {{UINT64_C(0x0fa9a3e21590d4c3), UINT64_C(0xb60ea372f151b440)},
+          {UINT64_C(0x19c689d100ed2b59), UINT64_C(0xd7ce743767b7ccf7)}},
+         {{UINT64_C(0x492cf90cd8d21f02), UINT64_C(0x7861af8707a49dda)},
+          {UINT64_C(0x84ba9e97fcc05054), UINT64_C(0xa6cacf29c2037c97)}}},
+        {{{UINT64_C(0xde04177888348137), UINT64_C(0xca053ae48070f5b4)},
+          {UINT64_C(0x88f8203561a2de1e), UINT64_C(0x683b67418b90f0ac)}},
+         {{UINT64_C(0x810f0292e251dc54), UINT64_C(0x527fc685713d0ee4)},
+          {UINT64_C(0x54efd44c6f5932fe), UINT64_C(0xe4bacd11da4a780a)}},
+         {{UINT64_C(0x44c9cc6f33401b88), UINT64_C(0x4ad23b11f2a2562f)},
+          {UINT64_C(0x67594b8db36d9a47), UINT64_C(0x25f861c9a40e09c1)}}}};
     require_pinned(test, 2, &pinned[test->precision == TEST_F64][test->method]);
 #else
     print_message("skipped: no pinned values for this machine (%d)\n", (int)test->precision);

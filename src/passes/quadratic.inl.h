@@ -4,13 +4,6 @@
 
 enum { PAIRS_MOST = 6 };
 
-/* Loops over the pairs whose numbers are to be constants, lest matrices stay in memory. */
-#if defined(__clang__)
-#define UNROLLED _Pragma("clang loop unroll(full)")
-#else
-#define UNROLLED _Pragma("GCC unroll 6")
-#endif
-
 /* Index of the product of two pairs among the sums of fourth order. */
 SPHGI_TEMPLATE int fourth_index(int k, int l, bool three)
 {

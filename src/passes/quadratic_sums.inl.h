@@ -58,78 +58,103 @@ static void shape_products(const struct sphgi_tile *tile, int32_t dimension)
     WITH(three, dimension == 3, products_as(tile, three));
 }
 
-/* Which axes make each product of two of them, which pair and which axis each of three, and which
- * two pairs each of four. */
+/* Loops whose numbers are to be constants, lest sums and matrices stay in memory. */
+#if defined(__clang__)
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#else
+#define UNROLLED _Pragma("GCC unroll 10")
+#endif
+
+/* Which axes make each product of two of them, which product of two and which axis each of three;
+ * and which of four each of three makes with each axis: -1, another one does. */
 static const int second_of_two[3][2] = {{0, 0}, {0, 1}, {1, 1}};
 static const int third_of_two[4][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}};
-static const int fourth_of_two[5][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 2}, {2, 2}};
+static const int fourth_of_two[4][3] = {{0, 1}, {-1, -1}, {2, 3}, {-1, 4}};
 static const int second_of_three[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 static const int third_of_three[10][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0},
                                           {5, 0}, {3, 1}, {3, 2}, {4, 2}, {5, 2}};
-static const int fourth_of_three[15][2] = {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4},
-                                           {0, 5}, {1, 3}, {1, 4}, {1, 5}, {2, 5},
-                                           {3, 3}, {3, 4}, {3, 5}, {4, 5}, {5, 5}};
+static const int fourth_of_three[10][3] = {{0, 1, 2},    {-1, -1, -1}, {-1, -1, -1}, {3, 6, 7},
+                                           {4, -1, -1},  {5, 8, 9},    {-1, 10, 11}, {-1, -1, -1},
+                                           {-1, 12, -1}, {-1, 13, 14}};
 
-/* Those that one loop sums, of second, third and fourth order. */
+/* Those of second and third order that one loop sums, a bit each, with those of fourth order that
+ * are made of the latter. */
 struct some_moments {
-    int second, seconds, third, thirds, fourth, fourths; /* first of each, and how many */
+    unsigned second, third;
 };
 
-/* Those of second order are what moments_as has. */
+/* Those of second order are what moments_as has. Products of three are rounded before they are
+ * added, so that those of four take one multiplication more. */
 SPHGI_TEMPLATE void some_moments_as(const struct sphgi_tile *tile, real *sums, bool three,
                                     struct some_moments some)
 {
+    const int d = three ? 3 : 2;
+    const int32_t seconds = three ? 6 : 3, thirds = three ? 10 : 4, fourths = three ? 15 : 5;
     vec second[6], third[10], fourth[15];
-    clear(second, some.seconds);
-    clear(third, some.thirds);
-    clear(fourth, some.fourths);
+    clear(second, seconds);
+    clear(third, thirds);
+    clear(fourth, fourths);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        vec x[3], g[3], weighted[6], plain[6];
+        vec x[3], g[3], p[6];
         offsets_at(tile, k, three, x);
-        if (some.seconds) {
+        if (some.second) {
             vectors_at(tile, k, SPHGI_FACTORS, three, g);
-            pair_products(g, x, three, weighted);
-            keep_products(tile, k, three, weighted);
+            pair_products(g, x, three, p);
+            keep_products(tile, k, three, p);
         } else {
-            products_at(tile, k, three, weighted);
+            products_at(tile, k, three, p);
         }
-        pair_products(x, x, three, plain);
-        for (int c = 0; c < some.seconds; ++c) {
-            const int *of = (three ? second_of_three : second_of_two)[some.second + c];
-            second[c] = minus(second[c], g[of[0]], x[of[1]]);
+        for (int c = 0; c < seconds; ++c) {
+            const int *of = (three ? second_of_three : second_of_two)[c];
+            if (some.second >> c & 1)
+                second[c] = minus(second[c], g[of[0]], x[of[1]]);
         }
-        for (int c = 0; c < some.thirds; ++c) {
-            const int *of = (three ? third_of_three : third_of_two)[some.third + c];
-            third[c] = plus(third[c], weighted[of[0]], x[of[1]]);
-        }
-        for (int c = 0; c < some.fourths; ++c) {
-            const int *of = (three ? fourth_of_three : fourth_of_two)[some.fourth + c];
-            fourth[c] = minus(fourth[c], weighted[of[0]], plain[of[1]]);
+        UNROLLED
+        for (int c = 0; c < thirds; ++c) {
+            if (!(some.third >> c & 1))
+                continue;
+            const int *of = (three ? third_of_three : third_of_two)[c];
+            const int *to = (three ? fourth_of_three : fourth_of_two)[c];
+            const vec t = p[of[0]] * x[of[1]];
+            third[c] += t;
+            for (int a = 0; a < d; ++a)
+                if (to[a] >= 0)
+                    fourth[to[a]] = minus(fourth[to[a]], t, x[a]);
         }
     }
-    const int thirds_at = three ? 6 : 3, fourths_at = thirds_at + (three ? 10 : 4);
-    end_tile(tile, second, some.seconds, sums + some.second * SPHGI_WIDTH);
-    end_tile(tile, third, some.thirds, sums + (thirds_at + some.third) * SPHGI_WIDTH);
-    end_tile(tile, fourth, some.fourths, sums + (fourths_at + some.fourth) * SPHGI_WIDTH);
+    for (int c = 0; c < seconds; ++c)
+        if (some.second >> c & 1)
+            end_tile(tile, second + c, 1, sums + c * SPHGI_WIDTH);
+    sums += seconds * SPHGI_WIDTH;
+    UNROLLED
+    for (int c = 0; c < thirds; ++c) {
+        if (!(some.third >> c & 1))
+            continue;
+        const int *to = (three ? fourth_of_three : fourth_of_two)[c];
+        end_tile(tile, third + c, 1, sums + c * SPHGI_WIDTH);
+        for (int a = 0; a < d; ++a)
+            if (to[a] >= 0)
+                end_tile(tile, fourth + to[a], 1, sums + (thirds + to[a]) * SPHGI_WIDTH);
+    }
 }
 
-/* Loops whose sums fit the registers beside what they are made of: of 32, first those that hold x,
- * then the others, so that few products are formed twice. */
+/* In loops whose sums fit the registers beside what they are made of: of 32, first what holds x,
+ * then the others. */
 SPHGI_TEMPLATE void quadratic_moments_as(const struct sphgi_tile *tile, real *sums, bool three)
 {
-    if (KEEPS_PRODUCTS) {
-        some_moments_as(tile, sums, three, (struct some_moments){.seconds = three ? 6 : 3});
-        some_moments_as(tile, sums, three, (struct some_moments){.thirds = three ? 10 : 4});
-        some_moments_as(tile, sums, three, (struct some_moments){.fourths = three ? 8 : 5});
-        if (three)
-            some_moments_as(tile, sums, three, (struct some_moments){.fourth = 8, .fourths = 7});
+    if (three && KEEPS_PRODUCTS) {
+        some_moments_as(tile, sums, three, (struct some_moments){0x3f, 0});
+        some_moments_as(tile, sums, three, (struct some_moments){0, 0x017});
+        some_moments_as(tile, sums, three, (struct some_moments){0, 0x028});
+        some_moments_as(tile, sums, three, (struct some_moments){0, 0x3c0});
     } else if (three) {
-        some_moments_as(tile, sums, three,
-                        (struct some_moments){.seconds = 3, .thirds = 6, .fourths = 10});
-        some_moments_as(tile, sums, three, (struct some_moments){3, 3, 6, 4, 10, 5});
+        some_moments_as(tile, sums, three, (struct some_moments){0x07, 0x03f});
+        some_moments_as(tile, sums, three, (struct some_moments){0x38, 0x3c0});
+    } else if (KEEPS_PRODUCTS) {
+        some_moments_as(tile, sums, three, (struct some_moments){0x7, 0});
+        some_moments_as(tile, sums, three, (struct some_moments){0, 0xf});
     } else {
-        some_moments_as(tile, sums, three,
-                        (struct some_moments){.seconds = 3, .thirds = 4, .fourths = 5});
+        some_moments_as(tile, sums, three, (struct some_moments){0x7, 0xf});
     }
 }
 
