@@ -287,6 +287,7 @@ SPHGI_TEMPLATE void first_chunk(const struct sphgi_group_lists *lists, struct sp
     tile->ids = lists->ids;
     tile->id_stride = SPHGI_GROUP;
     tile->spread = false;
+    tile->carries = lists->steps > SPHGI_PLAIN_CHUNKS * SPHGI_CHUNK;
     tile->chunk = 0;
     tile->steps = sphgi_min32(lists->steps, SPHGI_CHUNK);
 }

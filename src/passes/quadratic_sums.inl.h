@@ -138,6 +138,13 @@ SPHGI_TEMPLATE void some_moments_as(const struct sphgi_tile *tile, real *sums, b
     }
 }
 
+/* Those of third and fourth order in 3D. */
+SPHGI_TEMPLATE void higher_moments_as(const struct sphgi_tile *tile, real *sums)
+{
+    some_moments_as(tile, sums, true, (struct some_moments){0, 0x03f});
+    some_moments_as(tile, sums, true, (struct some_moments){0, 0x3c0});
+}
+
 /* In loops whose sums fit the registers beside what they are made of: of 32, first what holds x,
  * then the others. */
 SPHGI_TEMPLATE void quadratic_moments_as(const struct sphgi_tile *tile, real *sums, bool three)

@@ -77,6 +77,7 @@ struct sphgi_tile {
     int32_t steps;           /* SPHGI_CHUNK at most */
     int32_t chunk;           /* of the lists, that the tile holds: 0 starts the sums */
     bool spread;             /* the lanes hold one list, a chunk each */
+    bool carries;            /* lists have more chunks than are added as they are */
     ptrdiff_t section; /* numbers from a sum to its carry, and on to what a spread chunk comes to */
 };
 

@@ -19,7 +19,8 @@ SPHGI_TEMPLATE void add_chunk(const struct sphgi_tile *tile, int32_t number, vec
     real *carry = sum + tile->section;
     if (number == 0) {
         store(sum, v);
-        store(carry, splat(R(-0.0)));
+        if (tile->carries)
+            store(carry, splat(R(-0.0)));
     } else if (number < SPHGI_PLAIN_CHUNKS) {
         store(sum, load(sum) + v);
     } else {

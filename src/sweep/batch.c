@@ -51,6 +51,7 @@ static struct sphgi_sums sums_of_round(const struct sphgi_worker *w)
 static void run_lanes(struct sphgi_worker *w)
 {
     w->tile.spread = false;
+    w->tile.carries = w->batch.longest > SPHGI_PLAIN_CHUNKS * SPHGI_CHUNK;
     int64_t at = 0; /* lists may be as long as int32_t can tell */
     do {
         w->tile.chunk = (int32_t)(at / SPHGI_CHUNK);
@@ -79,7 +80,7 @@ void sphgi_run_spread(struct sphgi_worker *w, const uint32_t *ids, int32_t count
         lists.count[l] = sphgi_max32(0, sphgi_min32(SPHGI_CHUNK, count - first));
         lists.stride[l] = stride;
     }
-    w->tile.spread = true;
+    w->tile.spread = w->tile.carries = true;
     w->batch.spread_pairs = count;
     w->tile.chunk = at / SPHGI_CHUNK;
     w->tile.steps = sphgi_min32(SPHGI_CHUNK, count);
