@@ -189,13 +189,25 @@ SPHGI_TEMPLATE int32_t sort_block(const struct sphgi_sort *sort, int32_t b, size
 static float radius_of_block(const struct sphgi_sort *sort, int32_t b)
 {
     const struct sphgi_grid *grid = sort->grid;
-    const int32_t first = grid->blocks[b].first, last = grid->blocks[b + 1].first;
+    const bool wide = sort->type == SPHG_F64;
     double largest = 0;
-    for (int32_t k = first; k < last; ++k) {
-        const double radius = sphgi_number_of_row(sort, ((const int32_t *)grid->order.data)[k], 3);
+    for (int32_t k = grid->blocks[b].first; k < grid->blocks[b + 1].first; ++k) {
+        const size_t at = SPHGI_ROW * (size_t)k + 3;
+        const double radius = wide ? ((const double *)grid->rows.data)[at]
+                                   : (double)((const float *)grid->rows.data)[at];
         largest = radius > largest ? radius : largest;
     }
     return largest < (double)FLT_MAX ? (float)largest : FLT_MAX;
+}
+
+SPHGI_TEMPLATE int32_t sort_block_as(const struct sphgi_sort *sort, int32_t b, size_t row_size)
+{
+    if (!sort->raster->octaves)
+        return sort_block(sort, b, row_size, 1);
+    const int32_t fullest = sort_block(sort, b, row_size, SPHGI_QUARTERS);
+    struct sphgi_leaf *leaf = &sort->grid->tree.leaves[b / SPHGI_TREE_WIDTH];
+    leaf->radius[b % SPHGI_TREE_WIDTH] = radius_of_block(sort, b);
+    return fullest;
 }
 
 static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
@@ -204,14 +216,9 @@ static void cells_task(void *data, int32_t begin, int32_t end, int32_t worker)
     int32_t fullest = 0;
     (void)worker;
     for (int32_t b = begin; b < end; ++b) {
-        int32_t most;
-        if (sort->raster->octaves) {
-            most = sort_block(sort, b, SPHGI_ROW * sphgi_size_of_type(sort->type), SPHGI_QUARTERS);
-            sort->grid->tree.leaves[b / SPHGI_TREE_WIDTH].radius[b % SPHGI_TREE_WIDTH] =
-                radius_of_block(sort, b);
-        } else
-            most = sort->type == SPHG_F64 ? sort_block(sort, b, SPHGI_ROW * sizeof(double), 1)
-                                          : sort_block(sort, b, SPHGI_ROW * sizeof(float), 1);
+        const int32_t most = sort->type == SPHG_F64
+                                 ? sort_block_as(sort, b, SPHGI_ROW * sizeof(double))
+                                 : sort_block_as(sort, b, SPHGI_ROW * sizeof(float));
         fullest = sphgi_max32(fullest, most);
     }
     note_fullest(sort, fullest);
