@@ -111,9 +111,12 @@ static const wish wishes[] = {
 };
 enum { WISHES = sizeof wishes / sizeof wishes[0] };
 
-/* PLAIN has no corrections; lists that are not mutual lack pairs of two-sided forms. */
+/* PLAIN has no corrections; lists that are not mutual lack pairs of two-sided forms. Order 2 has
+ * differences. */
 static int is_offered(const scene *of, const wish *w)
 {
+    if (of->scheme.order == 2)
+        return w->form == SPHG_DIFFERENCE;
     return !(of->test->method == SPHG_PLAIN && w->corrections) &&
            !(of->graded && w->form >= SPHG_SYMMETRIC);
 }
@@ -131,6 +134,12 @@ static int numbers_of_result(const wish *w, int d)
     return w->divergence ? rows : components * d;
 }
 
+static int numbers_of_table(const scene *of)
+{
+    const int d = of->test->dimension, pairs = d * (d + 1) / 2, all = d + pairs;
+    return of->scheme.order == 2 ? all * (all + 1) / 2 : pairs;
+}
+
 typedef struct outcome {
     setup_array table, result;
 } outcome;
@@ -138,9 +147,9 @@ typedef struct outcome {
 static outcome nothing_yet(const scene *of, const wish *w)
 {
     const sphg_type type = test_field_type(of->test);
-    const int d = of->test->dimension;
-    return (outcome){setup_output(type, of->points.count, d * (d + 1) / 2),
-                     setup_output(type, of->points.count, numbers_of_result(w, d))};
+    return (outcome){
+        setup_output(type, of->points.count, numbers_of_table(of)),
+        setup_output(type, of->points.count, numbers_of_result(w, of->test->dimension))};
 }
 
 static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neighbors,
@@ -370,7 +379,6 @@ static void sum_fields(const scene *of, const sphg_neighbors *neighbors, const s
 static void require_as_alone(const scene *of, const char *letters, const sphg_subset *subset,
                              int corrections, const char *how)
 {
-    const int d = of->test->dimension;
     const mixed_fields *alone = mixed(of, letters);
     for (int k = 0; k < alone->count; ++k)
         sum_fields(of, of->found, subset, &alone->fields[k], 1, NULL);
@@ -381,7 +389,7 @@ static void require_as_alone(const scene *of, const char *letters, const sphg_su
     for (int n = 0; n < SUPPLIES; ++n) {
         const mixed_fields *together = mixed(of, letters);
         const setup_array table =
-            setup_output(test_field_type(of->test), of->points.count, d * (d + 1) / 2);
+            setup_output(test_field_type(of->test), of->points.count, numbers_of_table(of));
         sum_fields(of, supply(of, n), subset, together->fields, together->count,
                    corrections ? &table : NULL);
         if (corrections)
@@ -426,6 +434,33 @@ static void every_kernel_goes_it(const test_case *test)
     }
 }
 
+static void order_2_goes_it(const test_case *test)
+{
+    static const char *const letters[] = {"vv", "vs", "sv", "ss", "vsvsssvv"};
+    const double radius[] = {2, 3, 4.5};
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        sphg_context *context = context_on(isa);
+        for (int k = 0; context && k < 3; ++k) {
+            scene of = scene_on(test, context, radius[k], 0);
+            of.scheme.order = 2;
+            const char *how = test_text("path %d, H = %g, order 2", (int)isa, radius[k]);
+            require_all(&of, how);
+            for (int m = 0; m < 5; ++m)
+                require_as_alone(&of, letters[m], NULL, m % 2, how);
+        }
+    }
+}
+
+static void every_kernel_of_order_2_goes_it(const test_case *test)
+{
+    scene of = scene_on(test, setup_context(), 2, 0);
+    of.scheme.order = 2;
+    for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
+        of.scheme.kernel = (sphg_kernel)kernel;
+        require_all(&of, test_text("kernel %d, order 2", kernel));
+    }
+}
+
 /* A_i that is not finite reaches no sum of the direct form at i. */
 static void the_direct_form_does_not_look_at_the_target(const test_case *test)
 {
@@ -450,6 +485,9 @@ static const test_entry entries[] = {
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(every_kernel_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(order_2_goes_it, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(every_kernel_of_order_2_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
     TEST_ENTRY(the_direct_form_does_not_look_at_the_target, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
 };
