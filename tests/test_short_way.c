@@ -148,7 +148,7 @@ static outcome nothing_yet(const scene *of, const wish *w)
 {
     const sphg_type type = test_field_type(of->test);
     return (outcome){
-        setup_output(type, of->points.count, numbers_of_table(of)),
+        setup_output(type, of->points.count, w->corrections ? numbers_of_table(of) : 1),
         setup_output(type, of->points.count, numbers_of_result(w, of->test->dimension))};
 }
 
@@ -437,10 +437,10 @@ static void every_kernel_goes_it(const test_case *test)
 static void order_2_goes_it(const test_case *test)
 {
     static const char *const letters[] = {"vv", "vs", "sv", "ss", "vsvsssvv"};
-    const double radius[] = {2, 3, 4.5};
+    const double radius[] = {2, 4.5};
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = context_on(isa);
-        for (int k = 0; context && k < 3; ++k) {
+        for (int k = 0; context && k < 2; ++k) {
             scene of = scene_on(test, context, radius[k], 0);
             of.scheme.order = 2;
             const char *how = test_text("path %d, H = %g, order 2", (int)isa, radius[k]);
