@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Groups whose lists stand side by side, kept or found on the spot, go from ids to sums in one
  * pass, where a few fields or the corrections are wanted; forces and other divergences of all
- * targets read records. The bits are those of targets that are asked for a few at a time, which go
- * step by step. */
+ * targets read records; some of the targets are put together from several groups, or read copies.
+ * The bits are those of targets that are found and asked for a few at a time, which go step by
+ * step. */
 #include "support/setup.h"
 #include <math.h>
 #include <string.h>
@@ -184,37 +185,48 @@ static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neigh
     SETUP_OK(of->context, sphg_evaluate(of->context, &of->scheme, &request));
 }
 
-/* Of each group so few targets at a time that their lists are not summed side by side. */
-static outcome long_way(const scene *of, const wish *w, sphg_view volume)
+/* Memory of a wish, for one evaluation after the other. */
+typedef struct outcomes {
+    outcome none, all, expected, got;
+} outcomes;
+
+static outcomes outcomes_of(const scene *of, const wish *w)
 {
-    enum { PARTS = 3 };
-    const outcome all = nothing_yet(of, w);
-    uint8_t *mask = test_memory((size_t)of->targets);
+    return (outcomes){nothing_yet(of, w), nothing_yet(of, w), nothing_yet(of, w),
+                      nothing_yet(of, w)};
+}
+
+/* Items of the first targets that a mask selects; the others' are those of `none`. */
+static void take(const setup_array *to, const setup_array *from, const setup_array *none,
+                 const uint8_t *mask, int targets)
+{
+    const size_t number = to->type == SPHG_F64 ? sizeof(double) : sizeof(float);
+    const size_t item = (size_t)to->width * number;
+    for (int i = 0; i < to->count; ++i) {
+        const setup_array *source = mask && i < targets && mask[i] ? from : none;
+        memcpy((char *)to->data + (size_t)i * item, (char *)source->data + (size_t)i * item, item);
+    }
+}
+
+static void take_both(const outcomes *own, const outcome *to, const uint8_t *mask, int targets)
+{
+    take(&to->table, &own->all.table, &own->none.table, mask, targets);
+    take(&to->result, &own->all.result, &own->none.result, mask, targets);
+}
+
+/* Of all: lists that are found on the spot, of each group so few targets at a time that they are
+ * not laid side by side. */
+static void long_way(const scene *of, const wish *w, const outcomes *own, sphg_view volume)
+{
+    enum { PARTS = 4 };
+    uint8_t mask[1024];
+    take_both(own, &own->all, NULL, 0);
     for (int part = 0; part < PARTS; ++part) {
         for (int i = 0; i < of->targets; ++i)
             mask[i] = i % PARTS == part;
         const sphg_subset some = sphg_masked(mask, of->targets);
-        evaluate(of, w, of->kept, volume, &some, &all);
+        evaluate(of, w, of->found, volume, &some, &own->all);
     }
-    return all;
-}
-
-static void copy_some(const setup_array *from, const uint8_t *mask, int targets, setup_array *to)
-{
-    for (int i = 0; i < targets; ++i)
-        for (int c = 0; mask[i] && c < from->width; ++c)
-            setup_put(to, i * from->width + c, setup_get(from, i, c));
-}
-
-/* The same numbers, of some of the targets. */
-static outcome of_some(const scene *of, const wish *w, const outcome *all, const uint8_t *mask)
-{
-    outcome some = nothing_yet(of, w);
-    if (w->corrections)
-        copy_some(&all->table, mask, of->targets, &some.table);
-    if (w->shape)
-        copy_some(&all->result, mask, of->targets, &some.result);
-    return some;
 }
 
 /* Every way to have neighbours. Weights are written by the first sweep, unless those of the same
@@ -228,38 +240,55 @@ static const sphg_neighbors *supply(const scene *of, int number)
     return number == 0 ? of->found : number == 1 ? of->kept : of->weighed;
 }
 
-static void require_same(const scene *of, const wish *w, sphg_view volume,
-                         const sphg_subset *subset, const outcome *expected, const char *how)
+static void require_same(const scene *of, const wish *w, const outcomes *own, sphg_view volume,
+                         const sphg_subset *subset, const char *how)
 {
+    const outcome *expected = subset ? &own->expected : &own->all;
+    if (subset)
+        take_both(own, expected, subset->mask, of->targets);
     for (int k = 0; k < SUPPLIES; ++k) {
-        const outcome got = nothing_yet(of, w);
-        evaluate(of, w, supply(of, k), volume, subset, &got);
-        TEST_REQUIRE(setup_same_bits(&expected->table, &got.table), "%s, %s, %s: corrections",
+        take_both(own, &own->got, NULL, 0);
+        evaluate(of, w, supply(of, k), volume, subset, &own->got);
+        TEST_REQUIRE(setup_same_bits(&expected->table, &own->got.table), "%s, %s, %s: corrections",
                      w->name, how, supply_names[k]);
-        TEST_REQUIRE(setup_same_bits(&expected->result, &got.result), "%s, %s, %s", w->name, how,
-                     supply_names[k]);
+        TEST_REQUIRE(setup_same_bits(&expected->result, &own->got.result), "%s, %s, %s", w->name,
+                     how, supply_names[k]);
     }
+}
+
+/* Most: groups are summed whole. Some: those of several are put together. Few: the rows of their
+ * neighbours are copied. */
+enum { MOST, SOME, FEW, SHARES };
+
+static sphg_subset share_of(const scene *of, int share)
+{
+    uint8_t *mask = test_memory((size_t)of->targets);
+    for (int i = 0; i < of->targets; ++i)
+        mask[i] = (uint8_t)(share == MOST   ? i % 8 != 3
+                            : share == SOME ? i * i % 7 == 2
+                                            : i % 49 == 5);
+    return sphg_masked(mask, of->targets);
 }
 
 static void require_all(const scene *of, const char *how)
 {
+    static const char *const names[] = {"most", "some", "few"};
+    const sphg_subset shares[] = {share_of(of, MOST), share_of(of, SOME), share_of(of, FEW)};
     const sphg_view each = setup_view(&of->volume);
     sphg_view one = setup_view(&of->one_volume);
     one.stride = 0;
-    uint8_t *mask = test_memory((size_t)of->targets);
-    for (int i = 0; i < of->targets; ++i)
-        mask[i] = i % 8 != 3;
-    const sphg_subset most = sphg_masked(mask, of->targets);
     for (int k = 0; k < WISHES; ++k) {
         const wish *w = &wishes[k];
         if (!is_offered(of, w))
             continue;
-        outcome expected = long_way(of, w, one);
-        require_same(of, w, one, NULL, &expected, test_text("%s, one volume", how));
-        expected = long_way(of, w, each);
-        require_same(of, w, each, NULL, &expected, how);
-        expected = of_some(of, w, &expected, mask);
-        require_same(of, w, each, &most, &expected, test_text("%s, most", how));
+        const outcomes own = outcomes_of(of, w);
+        long_way(of, w, &own, one);
+        require_same(of, w, &own, one, NULL, test_text("%s, one volume", how));
+        require_same(of, w, &own, one, &shares[FEW], test_text("%s, few, one volume", how));
+        long_way(of, w, &own, each);
+        require_same(of, w, &own, each, NULL, how);
+        for (int share = 0; share < SHARES; ++share)
+            require_same(of, w, &own, each, &shares[share], test_text("%s, %s", how, names[share]));
     }
 }
 
@@ -410,16 +439,15 @@ static void several_fields_go_it(const test_case *test)
         sphg_context *context = context_on(isa);
         for (int k = 0; context && k < 3; ++k) {
             const scene of = scene_on(test, context, radius[k > 0], k == 1);
-            uint8_t *mask = test_memory((size_t)of.targets);
-            for (int i = 0; i < of.targets; ++i)
-                mask[i] = i % 8 != 3;
-            const sphg_subset most = sphg_masked(mask, of.targets);
+            const sphg_subset shares[] = {share_of(&of, MOST), share_of(&of, SOME),
+                                          share_of(&of, FEW)};
             const char *how = test_text("path %d, scene %d", (int)isa, k);
             for (int m = 0; m < MIXTURES; ++m) {
                 const int of_plain = strpbrk(mixtures[m], "dDp") != NULL;
                 if (of_plain && (!plain || (of.graded && strchr(mixtures[m], 'p'))))
                     continue;
-                require_as_alone(&of, mixtures[m], m % 2 ? &most : NULL, !plain && m % 3, how);
+                require_as_alone(&of, mixtures[m], m % 4 < SHARES ? &shares[m % 4] : NULL,
+                                 !plain && m % 3, how);
             }
         }
     }

@@ -76,15 +76,25 @@ SPHGI_TEMPLATE const uint32_t *ids_ahead(const struct sphgi_tile *tile)
     return ids_steps_ahead(tile, ROWS_AHEAD);
 }
 
-/* also NULL: there is one array of rows. */
-SPHGI_TEMPLATE void ask_for_rows(const real *rows, const real *also, const uint32_t *ids)
+SPHGI_TEMPLATE void ask_for_lanes_from(int first, const real *rows, const real *also,
+                                       const uint32_t *ids)
 {
-    for (int l = LANES_A_LINE - 1; l < LANES; l += LANES_A_LINE) {
+    for (int l = first; l < LANES; l += LANES_A_LINE) {
         const size_t at = SPHGI_ROW / SPHGI_ID_STEP * (size_t)ids[l];
         __builtin_prefetch(rows + at);
         if (also)
             __builtin_prefetch(also + at);
     }
+}
+
+/* also NULL: there is one array of rows. scattered: lanes beside each other read other lines. */
+SPHGI_TEMPLATE void ask_for_rows(const real *rows, const real *also, const uint32_t *ids,
+                                 bool scattered)
+{
+    ask_for_lanes_from(LANES_A_LINE - 1, rows, also, ids);
+    __asm__("" : "+r"(scattered)); /* else GCC makes two loops of the one around */
+    if (scattered)
+        ask_for_lanes_from(0, rows, also, ids);
 }
 
 /* Rows of the arrays behind the first: fewer lanes of each, lest asking takes the time it saves. */

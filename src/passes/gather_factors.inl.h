@@ -24,7 +24,7 @@ SPHGI_TEMPLATE void factors_of_pairs(const struct sphgi_gather *g, const struct 
     for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride, kept += LANES) {
         __builtin_prefetch(ids + ahead);
         if (!masked) {
-            ask_for_rows(rows, also, to_come);
+            ask_for_rows(rows, also, to_come, tile->scattered);
             ask_for_more_rows(tile, to_come);
         }
         to_come += stride;

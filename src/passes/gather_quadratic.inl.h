@@ -23,7 +23,7 @@ SPHGI_TEMPLATE void quadratic_of_pairs(const struct sphgi_gather *g,
     real *at = tile->arrays;
     for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride) {
         __builtin_prefetch(ids + ahead);
-        ask_for_rows(rows, also, to_come);
+        ask_for_rows(rows, also, to_come, tile->scattered);
         to_come += stride;
         const struct four row = gather_rows(rows, ids);
         const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;

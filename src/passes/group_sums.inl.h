@@ -126,7 +126,7 @@ SPHGI_TEMPLATE void chunk_at_once(const struct sphgi_group_sums *g, const struct
         factor = (real *)lists->kept + (ids - lists->ids);
     for (int32_t k = 0; k < tile->steps; ++k, ids += SPHGI_GROUP, factor += step) {
         __builtin_prefetch(ids + AHEAD * SPHGI_GROUP);
-        ask_for_rows(rows, how.numbers ? field : NULL, to_come);
+        ask_for_rows(rows, how.numbers ? field : NULL, to_come, tile->scattered);
         to_come += SPHGI_GROUP;
         const struct four row = gather_rows(rows, ids);
         const vec x[3] = {target.x - row.x, target.y - row.y, target.z - row.z};

@@ -16,7 +16,7 @@ SPHGI_TEMPLATE void offsets_of_pairs(const struct sphgi_gather *g, const real *k
     for (int32_t k = 0; k < tile->steps; ++k, at += LANES, ids += stride, kept += SPHGI_GROUP) {
         __builtin_prefetch(ids + AHEAD * stride);
         __builtin_prefetch(kept + AHEAD * SPHGI_GROUP);
-        ask_for_rows(rows, also, to_come);
+        ask_for_rows(rows, also, to_come, tile->scattered);
         ask_for_more_rows(tile, to_come);
         to_come += stride;
         const struct four row = gather_rows(rows, ids);

@@ -112,6 +112,28 @@ static void weave(const uint32_t *const *lists, const int32_t *count, int32_t st
             turn_lanes(lists + l, count + l, k, &none, SPHGI_GROUP, to + l);
 }
 
+static void pick_lists(const uint32_t *ids, uint32_t active, int32_t steps, int32_t lane,
+                       uint32_t *to)
+{
+#if VECTOR_BYTES == 64 && !REAL_IS_F64
+    static const int32_t numbers[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const __m512i picked =
+        _mm512_maskz_compress_epi32((__mmask16)active, _mm512_loadu_si512(numbers));
+    const __mmask16 there = (__mmask16)(((1u << __builtin_popcount(active)) - 1) << lane);
+    const __m512i from = _mm512_maskz_expand_epi32(there, picked);
+    for (int32_t k = 0; k < steps; ++k) /* a line of the cache each */
+        _mm512_mask_storeu_epi32(
+            to + k * SPHGI_GROUP, there,
+            _mm512_permutexvar_epi32(from, _mm512_loadu_si512(ids + k * SPHGI_GROUP)));
+#else
+    for (uint32_t left = active; left; left &= left - 1, ++lane) {
+        const uint32_t *list = ids + __builtin_ctz(left);
+        for (int32_t k = 0; k < steps; ++k)
+            to[k * SPHGI_GROUP + lane] = list[k * SPHGI_GROUP];
+    }
+#endif
+}
+
 SPHGI_TEMPLATE bool follow_one_another(const struct sphgi_lane_lists *lists)
 {
     int32_t far = 0;

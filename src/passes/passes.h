@@ -112,6 +112,10 @@ struct sphgi_passes {
      * that is not 0, has `padded` dummies behind it; then up to sixteen steps more are written. */
     void (*weave)(const uint32_t *const *lists, const int32_t *count, int32_t steps, int32_t padded,
                   uint32_t dummy, uint32_t *to);
+    /* Of lists that stand side by side those with a bit in `active`, one beside the other from
+     * `lane` on. */
+    void (*pick_lists)(const uint32_t *ids, uint32_t active, int32_t steps, int32_t lane,
+                       uint32_t *to);
     /* Steps [begin, begin + tile->steps) of the lists become the ids of the tile. Lists with a
      * stride of 1 are padded to a multiple of four with the dummy. */
     void (*interleave)(const struct sphgi_lane_lists *lists, int32_t begin, uint32_t dummy,

@@ -112,6 +112,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .find_by_radii = find_by_radii,
     .keep_near = keep_near,
     .weave = weave,
+    .pick_lists = pick_lists,
     .interleave = interleave,
     .clean_ids = clean_ids,
     .interleave_hosts = interleave_hosts,

@@ -27,7 +27,7 @@ SPHGI_TEMPLATE void sums_as_read(const struct sphgi_group_sums *of, const struct
     real *at = tile->arrays;
     for (int32_t k = 0; k < tile->steps; ++k, at += LANES, ids += SPHGI_GROUP) {
         __builtin_prefetch(ids + AHEAD * SPHGI_GROUP);
-        ask_for_rows(rows, how.numbers ? field->rows : NULL, to_come);
+        ask_for_rows(rows, how.numbers ? field->rows : NULL, to_come, tile->scattered);
         to_come += SPHGI_GROUP;
         const struct four row = gather_rows(rows, ids);
         const vec dx = target.x - row.x, dy = target.y - row.y, dz = target.z - row.z;

@@ -78,6 +78,7 @@ struct sphgi_tile {
     int32_t chunk;           /* of the lists, that the tile holds: 0 starts the sums */
     bool spread;             /* the lanes hold one list, a chunk each */
     bool carries;            /* lists have more chunks than are added as they are */
+    bool scattered;          /* targets of lanes beside each other do not stand so in storage */
     ptrdiff_t section; /* numbers from a sum to its carry, and on to what a spread chunk comes to */
 };
 

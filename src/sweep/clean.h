@@ -14,8 +14,4 @@ void sphgi_clean_list(struct sphgi_worker *worker, int32_t target, const uint32_
 void sphgi_clean_lists(struct sphgi_worker *worker, const struct sphgi_lane_lists *lists,
                        int32_t begin);
 
-/* Copies the rows behind ids of rows, up to SPHGI_CHUNK, so that they can be read like packed ones,
- * to place `at` on; the ids become those of the copies, the dummy's where there is no source. */
-void sphgi_make_local(struct sphgi_worker *worker, uint32_t *ids, int32_t count, int32_t at);
-
 #endif

@@ -43,16 +43,30 @@ static void targets_of_group(const struct sphgi_worker *w, int32_t place, uint32
     sphgi_ask_for_targets(w, SPHGI_GROUP, targets);
 }
 
-/* A vector of them. */
-static void put_into_lanes(struct sphgi_worker *w, const int32_t *targets, int32_t place)
+/* Those of a mixed group, all of which are wanted; returns how many. */
+static int32_t targets_of_mixed(const struct sphgi_worker *w, const struct sphgi_group *group,
+                                int32_t *targets)
+{
+    const sphg_neighbors *n = w->sweep->set->neighbors;
+    const int32_t *order = sphgi_target_grid(n)->order.data;
+    int32_t count = 0;
+    for (uint32_t left = group->active; left; left >>= 1, ++count)
+        targets[count] = order[group->places[count]];
+    sphgi_ask_for_targets(w, count, targets);
+    return count;
+}
+
+/* Some of them; a vector, unless it is the last of a mixed group. */
+static void put_into_lanes(struct sphgi_worker *w, const struct sphgi_group *group,
+                           const int32_t *targets, int32_t first, int32_t count)
 {
     int32_t *const target = w->bundle.target + w->bundle.count;
     int32_t *const places = w->bundle.place + w->bundle.count;
-    for (int32_t l = 0; l < w->passes->lanes; ++l) {
-        target[l] = targets[l];
-        places[l] = place + l;
+    for (int32_t l = 0; l < count; ++l) {
+        target[l] = targets[first + l];
+        places[l] = group->places ? group->places[first + l] : group->place + first + l;
     }
-    w->bundle.count += w->passes->lanes;
+    w->bundle.count += count;
 }
 
 static int32_t longest_of(const uint16_t *lengths, int32_t count)
@@ -63,13 +77,14 @@ static int32_t longest_of(const uint16_t *lengths, int32_t count)
     return longest;
 }
 
-static void run_side_by_side(struct sphgi_worker *w, const uint32_t *ids, const uint16_t *lengths)
+static void run_side_by_side(struct sphgi_worker *w, const uint32_t *ids, const uint16_t *lengths,
+                             int32_t count)
 {
     struct sphgi_lane_lists *lists = w->batch.lists;
     lists->ids[0] = ids;
     lists->stride[0] = SPHGI_GROUP;
     lists->side_by_side = true;
-    for (int32_t l = 0; l < w->passes->lanes; ++l)
+    for (int32_t l = 0; l < count; ++l)
         lists->count[l] = lengths[l];
     sphgi_batch_run(w);
     lists->side_by_side = false;
@@ -79,22 +94,26 @@ void sphgi_group_run(struct sphgi_worker *w, const struct sphgi_group *group)
 {
     const struct sphgi_kept_weights *kept = &w->sweep->kept;
     const int32_t number = group->place / SPHGI_GROUP, lanes = w->passes->lanes;
-    const uint32_t all = (1u << lanes) - 1;
     if (w->bundle.count > SPHGI_WIDTH - SPHGI_GROUP)
         sphgi_finish_lanes(w);
-    int32_t targets[SPHGI_GROUP];
-    targets_of_group(w, group->place, group->active, targets);
+    int32_t targets[SPHGI_GROUP], count = SPHGI_GROUP;
+    if (group->places)
+        count = targets_of_mixed(w, group, targets);
+    else
+        targets_of_group(w, group->place, group->active, targets);
     w->batch.kept_stand = group->kept && kept->number && kept->marks[number] == kept->number;
-    for (int32_t first = 0; first < SPHGI_GROUP; first += lanes) {
-        const uint32_t active = group->active >> first & all, *ids = group->ids + first;
+    for (int32_t first = 0; first < count; first += lanes) {
+        const int32_t some = sphgi_min32(count - first, lanes);
+        const uint32_t all = (1u << some) - 1, *ids = group->ids + first;
+        const uint32_t active = group->active >> first & all;
         const uint16_t *lengths = group->lengths + first;
         w->batch.kept = kept_factors(w, group, ids);
-        put_into_lanes(w, targets + first, group->place + first);
+        put_into_lanes(w, group, targets, first, some);
         w->batch.drops = active != all && w->held.room;
         if (w->is_short)
-            sphgi_short_way_run(w, ids, longest_of(lengths, lanes));
+            sphgi_short_way_run(w, ids, longest_of(lengths, some));
         else
-            run_side_by_side(w, ids, lengths);
+            run_side_by_side(w, ids, lengths, some);
         if (active != all)
             sphgi_batch_keep(w, active);
     }
@@ -136,7 +155,8 @@ bool sphgi_woven_add(struct sphgi_worker *w, int32_t place, uint32_t active,
     uint16_t *kept = woven->lengths[woven->count];
     for (int32_t l = 0; l < SPHGI_GROUP; ++l)
         kept[l] = (uint16_t)lengths[l];
-    woven->group[woven->count++] = (struct sphgi_group){place, active, to, kept, false};
+    woven->group[woven->count++] =
+        (struct sphgi_group){.place = place, .active = active, .ids = to, .lengths = kept};
     woven->used += (int32_t)sphgi_round_up((size_t)longest, 4) * SPHGI_GROUP;
     const struct sphgi_passes *of_ids = sphgi_passes_of(w->sweep->context, SPHG_F32);
     of_ids->weave(lists, lengths, longest, SPHGI_FIND_PAD, w->gather.dummy, to);

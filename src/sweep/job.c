@@ -43,9 +43,9 @@ bool sphgi_forms_factors_alone(const struct sphgi_sweep *sweep)
     const struct sphgi_plan *plan = sweep->plan;
     const sphg_neighbors *n = sweep->set->neighbors;
     const bool tested = plan->quadratic ? sphgi_is_masked(sweep) : n->periodic;
-    return sweep->packed && !plan->both_sides && !tested && !plan->classic && !plan->wants_value &&
-           !plan->mean_volume && (plan->differentiates || plan->computes) &&
-           n->position_type == plan->type;
+    return (sweep->packed || !sphgi_is_masked(sweep)) && !plan->both_sides && !tested &&
+           !plan->classic && !plan->wants_value && !plan->mean_volume &&
+           (plan->differentiates || plan->computes) && n->position_type == plan->type;
 }
 
 bool sphgi_weighs_near_at_once(const struct sphgi_sweep *sweep)

@@ -15,19 +15,19 @@ static size_t row_size(sphg_type type)
     return SPHGI_ROW * sphgi_size_of_type(type);
 }
 
-/* NaN: nobody is near. */
-static void make_dummy(char *row, sphg_type type)
-{
-    memset(row, 0xff, row_size(type));
-}
-
-/* Rows are copied pair by pair; the one behind the last is the dummy. */
+/* Rows are copied pair by pair; the one behind the last is the dummy. NaN where pairs are tested:
+ * nobody is near. */
 static void use_local_rows(struct sphgi_worker *w)
 {
     const struct sphgi_sweep *sweep = w->sweep;
-    const sphg_type type = sweep->set->neighbors->position_type;
-    const size_t size = row_size(sweep->plan->type);
-    make_dummy(w->rows.positions + SPHGI_TILE * row_size(type), type);
+    const sphg_neighbors *n = sweep->set->neighbors;
+    const size_t size = row_size(sweep->plan->type), position = row_size(n->position_type);
+    char *dummy = w->rows.positions + SPHGI_TILE * position;
+    if (w->gather.masked)
+        memset(dummy, 0xff, position);
+    else
+        memcpy(dummy, (const char *)n->sources.rows.data + (size_t)n->source_count * position,
+               position);
     for (int32_t k = 0; k < sweep->plan->row_count; ++k) {
         char *rows = w->rows.numbers + (size_t)k * (SPHGI_TILE + 1) * size;
         memset(rows + SPHGI_TILE * size, 0, size);
@@ -35,7 +35,6 @@ static void use_local_rows(struct sphgi_worker *w)
     }
     w->gather.rows = w->rows.positions;
     w->gather.dummy = SPHGI_ID_STEP * SPHGI_TILE;
-    w->gather.masked = true;
     w->rows.items = w->rows.own_items;
 }
 

@@ -10,7 +10,7 @@
 
 enum {
     LEAST_TARGETS = 512, /* of a task: fewer are not worth a thread */
-    PACK_WORTH = 16      /* fields are packed for a 16th of as many targets, or more */
+    PACK_WORTH = 40      /* fields are packed for a 40th of as many targets, or more */
 };
 
 /* Groups that have no weights yet are swept over rows that are copied, which takes more. */
@@ -75,7 +75,8 @@ static struct sphgi_kept_weights take_weights(const struct sphgi_sweep *sweep)
                                         .volume = sweep->volumes ? -1 : sweep->volume};
     const struct sphgi_columns *volume = &sweep->set->volume;
     const bool same = sweep->set->same_volumes || !volume->count || !volume->stride;
-    if (!sphgi_forms_factors_alone(sweep) || sphgi_is_masked(sweep) || sweep->plan->quadratic) {
+    if (!sweep->packed || !sphgi_forms_factors_alone(sweep) || sphgi_is_masked(sweep) ||
+        sweep->plan->quadratic) {
         sphgi_weights_pass(sweep->set->neighbors, same);
         return (struct sphgi_kept_weights){.number = 0};
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "tile.h"
 #include "clean.h"
+#include "copies.h"
 #include "core/view.h"
 #include "held.h"
 #include "lane_radii.h"

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "traverse.h"
+#include "copies.h"
 #include "group.h"
 #include "held.h"
+#include "mixed.h"
 #include "own.h"
 #include "pieces.h"
 #include "records.h"
@@ -32,35 +34,22 @@ static uint32_t active_of(const struct sphgi_task *task, int32_t group)
     return active;
 }
 
-/* What is far apart in memory should be on its way before the first of it is read. */
-static void ask_for_rows(const sphg_neighbors *n, const uint32_t *ids, int32_t count,
-                         int32_t stride)
-{
-    const size_t size = SPHGI_ROW / SPHGI_ID_STEP * sphgi_size_of_type(n->position_type);
-    const char *position = n->sources.rows.data;
-    const int32_t *order = n->sources.order.data;
-    for (int32_t k = 0; k < count; ++k, ids += stride) {
-        __builtin_prefetch(position + *ids * size);
-        __builtin_prefetch(order + *ids / SPHGI_ID_STEP);
-    }
-    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
-}
-
 static void add_kept(struct sphgi_worker *w, int32_t place, const uint32_t *ids, int32_t count,
                      int32_t stride)
 {
     const sphg_neighbors *n = w->sweep->set->neighbors;
     if (w->rows.local)
-        ask_for_rows(n, ids, count, stride);
+        sphgi_ask_for_numbering(w, ids, count, stride);
     sphgi_add_list(w, target_at(n, place), place, ids, count, stride);
 }
 
 /* Are groups of which some targets are active summed whole? Dropped ones must leave no trace: where
  * matrices come before fields, those of all would be counted. Where they come alone, they are
- * finished when the others are gone. */
+ * finished when the others are gone. All groups go the same way: one that goes the other way in
+ * between costs both of them more. */
 static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_worker *w)
 {
-    enum { WORTH = 7 }; /* active targets of the sixteen, on average */
+    enum { WORTH = 11 }; /* active targets of the sixteen, on average */
     const struct sphgi_selection *selection = task->selection;
     const bool corrections = w->held.room && !(w->sweep->steps & SPHGI_SUM_FIELDS);
     return selection->groups && (!w->coefficients_first || corrections) && !w->sweep->pairs &&
@@ -106,9 +95,13 @@ static void sweep_kept(const struct sphgi_task *task, struct sphgi_worker *w, in
     const uint16_t *lengths = (const uint16_t *)n->found.lengths.data + first;
     const uint32_t active = active_of(task, group);
     if (is_summed_whole(task, w, group, active)) {
-        sphgi_group_run(w, &(struct sphgi_group){first, active, ids, lengths, true});
+        sphgi_group_run(
+            w, &(struct sphgi_group){
+                   .place = first, .active = active, .ids = ids, .lengths = lengths, .kept = true});
         return;
     }
+    if (sphgi_mixed_add(w, group, active))
+        return;
     for (uint32_t left = active; left; left &= left - 1) {
         const int32_t k = __builtin_ctz(left);
         add_kept(w, first + k, ids + k, lengths[k], SPHGI_GROUP);
@@ -154,6 +147,7 @@ static void sweep_found(const struct sphgi_task *task, struct sphgi_worker *w,
     const uint32_t active = active_of(task, group);
     if (!active)
         return;
+    sphgi_mixed_run(w);
     const bool collected = sphgi_find_group(finder, group, lists, lengths);
     if (collected && !sphgi_must_finish(w->sweep) && are_empty(lengths))
         return;
@@ -200,6 +194,39 @@ static void ask_for_group(const struct sphgi_sweep *sweep, int32_t group, int32_
         __builtin_prefetch(sweep->kept.marks + group + MARKS);
 }
 
+/* Of a group whose targets are not all active, so that its lists are not read one step after the
+ * other. */
+static void ask_for_lists(const struct sphgi_task *task, int32_t group)
+{
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const int32_t steps = sphgi_kept_steps(n, group);
+    if (!sphgi_is_kept(n, group) || steps == SPHGI_APART ||
+        task->selection->active[group] == (1u << SPHGI_GROUP) - 1)
+        return;
+    const uint32_t *ids = sphgi_kept_ids(n, group);
+    for (int32_t k = 0; k < steps; ++k)
+        __builtin_prefetch(ids + (ptrdiff_t)k * SPHGI_GROUP);
+    __asm__ volatile(""); /* GCC takes a function that only prefetches for one without effect */
+}
+
+/* Of groups of a subset: what is known of them, and later their lists. */
+static void ask_for_some(const struct sphgi_task *task, int32_t k, int32_t end)
+{
+    enum { LISTS = 8, GROUPS = 24 };
+    const sphg_neighbors *n = task->sweep.set->neighbors;
+    const int32_t *groups = task->selection->groups, *order = sphgi_target_grid(n)->order.data;
+    if (n->list_free)
+        return;
+    if (k + GROUPS < end) {
+        const ptrdiff_t group = groups[k + GROUPS];
+        __builtin_prefetch(n->found.groups + group);
+        __builtin_prefetch((const uint16_t *)n->found.lengths.data + group * SPHGI_GROUP);
+        __builtin_prefetch(order + group * SPHGI_GROUP);
+    }
+    if (k + LISTS < end)
+        ask_for_lists(task, groups[k + LISTS]);
+}
+
 void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
 {
     const struct sphgi_task *task = data;
@@ -216,7 +243,9 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
     sphgi_finder_open(&finder, task->sweep.context, n, w.finder_memory);
     for (int32_t k = begin; k < end; ++k) {
         const int32_t group = groups ? groups[k] : k;
-        if (!groups)
+        if (groups)
+            ask_for_some(task, k, end);
+        else
             ask_for_group(&task->sweep, k, end);
         if (is_left_out(&task->sweep, group))
             continue;
@@ -226,5 +255,6 @@ void sphgi_group_task(void *data, int32_t begin, int32_t end, int32_t number)
             sweep_found(task, &w, &finder, group);
     }
     sphgi_woven_run(&w);
+    sphgi_mixed_run(&w);
     sphgi_run_rest(&w);
 }

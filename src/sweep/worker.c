@@ -59,6 +59,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(rows.at, arrays + 1, sizeof(void *));
     CARVE(rows.positions, local, SPHGI_ROW * position);
     CARVE(rows.numbers, local * arrays, row);
+    CARVE(rows.copies, local ? SPHGI_MIXED_MOST + 1 : 0, sizeof(struct sphgi_copies));
     CARVE(held.tile, tiles, sizeof(struct sphgi_held_tile));
     CARVE(held.arrays, tiles * SPHGI_ARRAYS * SPHGI_TILE, size);
     CARVE(held.own_ids, tiles * SPHGI_TILE, sizeof(uint32_t));

@@ -59,8 +59,9 @@ struct sphgi_waiting {
 
 /* Sixteen targets whose lists stand side by side. */
 struct sphgi_group {
-    int32_t place;   /* of the first, in storage order */
-    uint32_t active; /* a bit for each whose results are wanted */
+    int32_t place;         /* of the first, in storage order ... */
+    const int32_t *places; /* of a mixed group instead, of each. NULL: it is none */
+    uint32_t active;       /* a bit for each whose results are wanted; of a mixed group for each */
     const uint32_t *ids;
     const uint16_t *lengths;
     bool kept; /* they stand in the neighbours' memory */
@@ -74,14 +75,47 @@ struct sphgi_woven {
     uint16_t lengths[SPHGI_WOVEN_MOST][SPHGI_GROUP];
 };
 
+/* Rows that are copied one by one: the sources behind them, and where these stand in storage. */
+struct sphgi_copies {
+    int32_t count, items[SPHGI_TILE];
+    uint32_t rows[SPHGI_TILE];
+};
+
+/* What a mixed group is put together from: some targets of a group, a bit for each. */
+struct sphgi_part {
+    const uint32_t *ids; /* of the group's lists */
+    uint32_t active;
+    int32_t count, steps; /* of the longest list */
+};
+
+/* A mixed group: targets of several groups, whose lists are laid side by side anew. */
+struct sphgi_mixed_group {
+    int32_t count, longest;
+    uint32_t *ids; /* in the memory of lists that wait */
+    int32_t places[SPHGI_GROUP];
+    uint16_t lengths[SPHGI_GROUP];
+    bool numbered; /* its rows are copied, and these numbered */
+};
+
+/* Some that wait, so that what they read can be asked for, and one that is not full yet. */
+enum { SPHGI_MIXED_MOST = 3 };
+struct sphgi_mixed {
+    int32_t oldest, waiting;
+    int32_t used; /* ids */
+    struct sphgi_mixed_group group[SPHGI_MIXED_MOST];
+    int32_t parts; /* of the one that is not full */
+    struct sphgi_part part[SPHGI_GROUP];
+};
+
 /* Where the rows of the sources are read. */
 struct sphgi_source_rows {
-    const void **at;           /* the arrays of rows, packed or copied */
-    bool local;                /* rows are copied pair by pair */
-    const int32_t *items;      /* sources behind the rows; NULL: the rows are their numbers */
-    char *positions, *numbers; /* copies */
-    int32_t *own_items;        /* the sources behind them */
-    uint32_t *clean_ids;       /* SPHGI_CHUNK ids a lane, made of the host's numbers */
+    const void **at;             /* the arrays of rows, packed or copied */
+    bool local;                  /* rows are copied pair by pair */
+    const int32_t *items;        /* sources behind the rows; NULL: the rows are their numbers */
+    char *positions, *numbers;   /* copies */
+    int32_t *own_items;          /* the sources behind them */
+    struct sphgi_copies *copies; /* of each mixed group, and of a list */
+    uint32_t *clean_ids;         /* SPHGI_CHUNK ids a lane, made of the host's numbers */
 };
 
 /* What the targets bring: A_i, V_i, rho_i. */
@@ -149,6 +183,7 @@ struct sphgi_worker {
     struct sphgi_tally *tally;
     char *finder_memory;
     struct sphgi_woven woven;
+    struct sphgi_mixed mixed;
 
     /* Numbers of the bundle, [number][SPHGI_WIDTH]: from sums to results. */
     char *reduced, *raw, *coefficients, *lambda_min, *jacobian, *contracted;
