@@ -34,10 +34,17 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
     const ptrdiff_t stride = tile->id_stride;
     uint32_t *kept = tile->own_ids + first;
     const ptrdiff_t ahead = tile->ids == tile->own_ids ? 0 : AHEAD * stride; /* those are here */
+    const uint32_t *to_come = ids_ahead(tile) + first;
+    const real *rows = g->rows, *also = sizeof(OUT) == sizeof(real) ? tile->also : NULL;
+    if (!also)
+        also = rows;
     OUT *at = (OUT *)tile->arrays + first;
     for (int32_t k = 0; k < tile->steps; ++k, at += lanes, ids += stride, kept += lanes) {
         __builtin_prefetch(ids + ahead);
-        const struct four row = gather_rows(g->rows, ids);
+        if (!how.masked)
+            ask_for_rows(rows, also, to_come, tile->scattered);
+        to_come += stride;
+        const struct four row = gather_rows(rows, ids);
         vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         mask inside = first_lanes(0);
         if (how.periodic) {
