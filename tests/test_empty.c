@@ -107,6 +107,30 @@ static void every_operator_takes_an_empty_set(const test_case *test)
 }
 
 /* Its views are the precision that the geometry named: others are refused, as for any set. */
+/* Nobody looks, from a place of their own: what stands at the targets may be absent. */
+static void no_targets_apart_need_nothing(const test_case *test)
+{
+    nobody own = nobody_of(test);
+    const single one = single_of(&own);
+    const sphg_type type = test_position_type(test);
+    const setup_array place = setup_numbers(type, 1, test->dimension, (const double[]){1, 1, 1});
+    sphg_geometry geometry = sphg_targets_apart(setup_view(&place), 0, setup_view(&place), 1);
+    geometry.precision = own.type;
+    const sphg_sources sources = {.neighbors = setup_search(own.context, &own.scheme, &geometry),
+                                  .volume = setup_view(&one.numbers),
+                                  .correction = setup_view(&one.table)};
+    const sphg_view numbers = setup_view(&one.numbers);
+    const sphg_field field = {.shape = SPHG_SCALAR,
+                              .form = SPHG_ADJOINT,
+                              .at_sources = &numbers,
+                              .coefficient = &numbers,
+                              .laplacian = setup_view(&one.result)};
+    const sphg_request request = {
+        .sources = &sources, .set_count = 1, .fields = &field, .field_count = 1};
+    SETUP_OK(own.context, sphg_evaluate(own.context, &own.scheme, &request));
+    assert_true(setup_is_canary(&one.result, 0));
+}
+
 static void an_empty_set_has_the_type_of_its_views(const test_case *test)
 {
     const nobody own = nobody_of(test);
@@ -242,6 +266,8 @@ static void batches_of_no_matrices_are_done(const test_case *test)
 static const test_entry entries[] = {
     TEST_ENTRY(every_operator_takes_an_empty_set, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(no_targets_apart_need_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(an_empty_set_has_the_type_of_its_views, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(an_empty_set_beside_another_adds_nothing, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
