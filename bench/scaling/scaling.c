@@ -15,6 +15,7 @@ struct scaling_case {
     double factor; /* of particles: the label is their number */
     struct cloud_setting cloud;
     int32_t threads;
+    bool keeps_weights;
     struct samples time[WORKS];
     int32_t count;
     double pairs, bytes; /* a particle */
@@ -50,6 +51,8 @@ static const struct scaling_case all_cases[] = {
     {.group = "cloud", .label = "thin sheets", .cloud = {.shape = CLOUD_SHEETS}},
     {.group = "cloud", .label = "spray", .cloud = {.shape = CLOUD_SPRAY}},
     {.group = "cloud", .label = "jittered, far away", .cloud = {.shape = CLOUD_FAR}},
+    {.group = "weights", .label = "formed each time"},
+    {.group = "weights", .label = "kept, which matrices write", .keeps_weights = true},
     {.group = "radii",
      .label = "largest / smallest 1",
      .cloud = {.shape = CLOUD_GRADED, .ratio = 1}},
@@ -114,6 +117,8 @@ static struct scene open_scene(const struct scaling_case *one)
         scene_open(library_open(one->threads), &scheme, cloud.positions, cloud.volumes);
     if (cloud.radii.count)
         scene.geometry.source_support = numbers_view(&cloud.radii);
+    scene.geometry.keep_weights = one->keeps_weights;
+    scene.same_volumes = one->keeps_weights;
     return scene;
 }
 
