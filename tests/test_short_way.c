@@ -503,6 +503,27 @@ static void the_direct_form_does_not_look_at_the_target(const test_case *test)
         TEST_REQUIRE(isfinite(setup_get(&got.result, odd, c)), "number %d is not", c);
 }
 
+/* By whichever way the targets that have it as neighbour go: the number is named. */
+static void a_bad_volume_is_named(const test_case *test)
+{
+    static const int bad[] = {[MOST] = 5, [SOME] = 5, [FEW] = 6}; /* beside one that is selected */
+    const scene of = scene_on(test, setup_context(), 2, 0);
+    const outcome to = nothing_yet(&of, &(wish){"", 0, SPHG_VECTOR, SPHG_DIFFERENCE, 0, 0});
+    for (int k = 0; k < 3 * SHARES; ++k) {
+        const int share = k % SHARES, way = k / SHARES;
+        const sphg_subset some = share_of(&of, share);
+        const double good = setup_get(&of.volume, bad[share], 0);
+        const sphg_sources sources = {.neighbors = supply(&of, way),
+                                      .volume = setup_view(&of.volume)};
+        setup_put(&of.volume, bad[share], -1);
+        TEST_REQUIRE(sphg_jacobian(of.context, &of.scheme, &sources, &some, setup_view(&of.vector),
+                                   setup_view(&to.result)) == SPHG_ERROR_VOLUME &&
+                         strstr(sphg_last_message(of.context), "-1"),
+                     "share %d, %s: %s", share, supply_names[way], sphg_last_message(of.context));
+        setup_put(&of.volume, bad[share], good);
+    }
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(the_bits_are_those_of_the_long_way, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
@@ -517,6 +538,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(order_2_goes_it, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(every_kernel_of_order_2_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
+    TEST_ENTRY(a_bad_volume_is_named, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM) | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(the_direct_form_does_not_look_at_the_target, TEST_SINGLE_AND_DOUBLE,
                TEST_BOTH_DIMENSIONS, TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_PLAIN), 0),
 };
