@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What the two-sided forms conserve and what they do not (docs/theory.md, forms). Sums are taken
  * in double over forces that the library stored, relative to the sum of their sizes. */
+#include "support/graded.h"
 #include "support/incomplete_lists.h"
 
 /* A sum that should vanish, beside the sum of the sizes of its terms. */
@@ -354,23 +355,22 @@ static void one_sided_lists_conserve_nothing(const test_case *test)
 }
 
 /* Particles with radii of their own, twice as large at the far end: each half of a pair has its
- * own. */
+ * own. Lists may hold more than those pairs; what goes around has no angular momentum. */
 static void radii_keep_what_one_radius_keeps(const test_case *test)
 {
-    random_state random = random_seeded(34);
-    const int d = test->dimension;
-    cloud points = cloud_jittered(d, d == 2 ? 8 : 5, .25, .15, &random);
-    double *radii = test_memory((size_t)points.count * sizeof *radii);
-    for (int i = 0; i < points.count; ++i)
-        radii[i] = .75 * (1 + points.x[i * d] / (.25 * (d == 2 ? 8 : 5)));
-    const comparison on = comparison_of_radii(test, "radii", points, radii, 1);
-    TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_SCALAR) / on.scene.unit, "scalar, radii");
-    TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_TENSOR) / on.scene.unit, "tensor, radii");
-    require_linear(&on, SPHG_TENSOR, SPHG_ADJOINT, "radii");
-    require_angular(&on, SPHG_SCALAR, SPHG_ADJOINT, "radii");
-    if (test->method != SPHG_PLAIN)
-        require_angular(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, "radii, symmetric tensor");
-    require_angular_lost(&on, SPHG_TENSOR, SPHG_ADJOINT);
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const comparison on = graded_stage_of(test, 2, 3, (graded_way)way);
+        TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_SCALAR) / on.scene.unit, on.name);
+        TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_TENSOR) / on.scene.unit, on.name);
+        require_linear(&on, SPHG_TENSOR, SPHG_ADJOINT, "adjoint");
+        require_linear(&on, SPHG_SYM_TENSOR, SPHG_SYMMETRIC, "symmetric");
+        if (way & GRADED_AROUND)
+            continue;
+        require_angular(&on, SPHG_SCALAR, SPHG_ADJOINT, "scalar");
+        if (test->method != SPHG_PLAIN)
+            require_angular(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric tensor");
+        require_angular_lost(&on, SPHG_TENSOR, SPHG_ADJOINT);
+    }
 }
 
 static const test_entry entries[] = {

@@ -2,7 +2,7 @@
 /* A support radius per particle: the pairs of brute force, results against the oracle, and the same
  * bits as with one radius where all are the same. */
 #include "support/brute_force.h"
-#include "support/comparison.h"
+#include "support/graded.h"
 #include <math.h>
 #include <string.h>
 
@@ -153,30 +153,6 @@ static void tiny_particles_near_the_ends_of_a_period_are_found_once(const test_c
     assert_true(pairs > 2000);
 }
 
-/* ---- Clouds ---------------------------------------------------------------------------------- */
-
-typedef struct graded {
-    cloud points;
-    double *radii;
-} graded;
-
-/* A jittered block that is `ratio` times as coarse at its far end. */
-static graded graded_block(int d, double ratio, double support)
-{
-    random_state random = random_seeded(5);
-    const int per_axis = d == 2 ? 9 : 5;
-    graded made = {.points = cloud_jittered(d, per_axis, .125, .2, &random)};
-    made.radii = test_memory((size_t)made.points.count * sizeof *made.radii);
-    for (int i = 0; i < made.points.count; ++i) {
-        double *x = made.points.x + i * d;
-        const double wide = exp(log(ratio) * x[0] / (.125 * (per_axis - 1)));
-        made.radii[i] = support * made.points.spacing * wide;
-        for (int a = 0; a < d; ++a)
-            x[a] = (x[a] + .5) * wide;
-    }
-    return made;
-}
-
 /* ---- The oracle ------------------------------------------------------------------------------ */
 
 static void compare(const comparison *on, sphg_shape shape, sphg_form form,
@@ -201,45 +177,6 @@ static void operators_match_the_oracle(const test_case *test)
         compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table);
         compare(&on, SPHG_VECTOR, SPHG_DIRECT, NULL);
         compare(&on, SPHG_TENSOR, SPHG_DIFFERENCE, NULL);
-    }
-}
-
-/* Pairs that only the source's radius reaches count, too. */
-static void both_sides_match_the_oracle(const test_case *test)
-{
-    static const double ratios[] = {1.5, 8, 64};
-    for (int k = 0; k < 3; ++k) {
-        graded block = graded_block(test->dimension, ratios[k], 2.5);
-        comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 1);
-        setup_array table = comparison_table(&on);
-        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
-            for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape)
-                if (shape - 1 == k || k == 1)
-                    compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
-    }
-}
-
-static void two_sided_forms_conserve_momentum(const test_case *test)
-{
-    graded block = graded_block(test->dimension, 8, 2.5);
-    comparison on = comparison_of_radii(test, "graded block", block.points, block.radii, 1);
-    const int d = test->dimension;
-    setup_array table = comparison_table(&on);
-    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
-        comparison_field field = {SPHG_SYM_TENSOR, (sphg_form)form,
-                                  comparison_random_field(&on, SPHG_SYM_TENSOR, 5)};
-        comparison_result found = comparison_apply(&on, &field, &table);
-        double sum[3] = {0}, size = 0;
-        for (int i = 0; i < on.points.count; ++i)
-            for (int a = 0; a < d; ++a) {
-                const double f = setup_get(&found.divergence, i, a) *
-                                 (form == SPHG_SYMMETRIC ? on.scene.volume[i] : 1);
-                sum[a] += f;
-                size += fabs(f);
-            }
-        for (int a = 0; a < d; ++a)
-            TEST_WITHIN(linear_momentum, fabs(sum[a]) / size / test_unit_roundoff(test),
-                        test_text("form %d", form));
     }
 }
 
@@ -428,68 +365,6 @@ static void masks_give_the_same_bits(const test_case *test)
                                  "form %d, particle %d", form, i);
         }
     }
-}
-
-enum { MIXED = 5 };
-
-/* What a solver may ask for in one call: each on its own, and all of them together. */
-static void require_alone_as_together(const comparison *on, const sphg_sources *sources,
-                                      const char *where)
-{
-    static const comparison_field kinds[MIXED] = {{SPHG_VECTOR, SPHG_DIFFERENCE, NULL},
-                                                  {SPHG_SYM_TENSOR, SPHG_ADJOINT, NULL},
-                                                  {SPHG_VECTOR, SPHG_ADJOINT, NULL},
-                                                  {SPHG_SCALAR, SPHG_SYMMETRIC, NULL},
-                                                  {SPHG_SCALAR, SPHG_ADJOINT, NULL}};
-    comparison_result alone[MIXED], together[MIXED];
-    sphg_field asked[MIXED] = {{0}};
-    setup_array numbers[MIXED];
-    sphg_view views[MIXED];
-    sphg_request request = {.sources = sources, .set_count = 1, .field_count = 1};
-    for (int k = 0; k < MIXED; ++k) {
-        comparison_field field = kinds[k];
-        field.numbers = comparison_random_field(on, field.shape, 20);
-        alone[k] = comparison_outputs(on, &field, on->points.count);
-        together[k] = comparison_outputs(on, &field, on->points.count);
-        numbers[k] = setup_numbers(test_field_type(on->test), on->points.count,
-                                   setup_width(field.shape, on->points.dimension), field.numbers);
-        views[k] = setup_view(&numbers[k]);
-        asked[k].shape = field.shape;
-        asked[k].form = field.form;
-        asked[k].at_sources = &views[k];
-        comparison_ask_for(&alone[k], &asked[k]);
-        request.fields = &asked[k];
-        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-        comparison_ask_for(&together[k], &asked[k]);
-    }
-    request.fields = asked;
-    request.field_count = MIXED;
-    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
-    for (int k = 0; k < MIXED; ++k)
-        TEST_REQUIRE(comparison_results_have_same_bits(&alone[k], &together[k]), "field %d, %s", k,
-                     where);
-}
-
-/* Pairs may be weighed with both radii at once, or one after the other, with a guard or without. */
-static void forces_alone_have_the_bits_of_those_among_others(const test_case *test)
-{
-    comparison on = graded_stage(test, 1);
-    const setup_array table = comparison_table(&on), x = setup_positions(test, &on.points);
-    const setup_array h =
-        setup_numbers(test_position_type(test), on.points.count, 1, on.scene.support);
-    sphg_geometry geometry = setup_geometry(test, &on.points, &x);
-    geometry.source_support = setup_view(&h);
-    geometry.mutual = 1;
-    sphg_sources sources = comparison_sources(&on);
-    if (test->method != SPHG_PLAIN)
-        sources.correction = comparison_table_view(&on, &table);
-    require_alone_as_together(&on, &sources, "open");
-    for (int a = 0; a < test->dimension; ++a)
-        geometry.period[a] = 64;
-    sources.neighbors = setup_search(on.context, &on.scheme, &geometry);
-    require_alone_as_together(&on, &sources, "in a box");
-    sources.volume.stride = 0;
-    require_alone_as_together(&on, &sources, "in a box, one volume");
 }
 
 /* What is farther than H_i does not count, whatever it is. */
@@ -836,62 +711,6 @@ static void what_has_one_radius_says_so(const test_case *test)
                     "one radius for all");
 }
 
-/* Of ghosts, whose volumes a force alone reads as sources'. */
-static void bad_volumes_of_forces_are_refused(const test_case *test)
-{
-    static const double bad[] = {-1, NAN, INFINITY};
-    comparison on = graded_stage(test, 1);
-    const int n = on.points.count;
-    const setup_array table = comparison_table(&on), x = setup_positions(test, &on.points);
-    const setup_array h = setup_numbers(test_position_type(test), n, 1, on.scene.support);
-    const setup_array a =
-        setup_numbers(test_field_type(test), n, 1, comparison_random_field(&on, SPHG_SCALAR, 7));
-    const setup_array out = setup_output(test_field_type(test), n, test->dimension);
-    sphg_geometry geometry = sphg_own_and_ghosts(setup_view(&x), n / 2, n - n / 2);
-    geometry.precision = test_field_type(test);
-    geometry.source_support = setup_view(&h);
-    geometry.mutual = 1;
-    sphg_neighbors *const neighbors = setup_search(on.context, &on.scheme, &geometry);
-    double *volume = test_memory((size_t)n * sizeof *volume);
-    for (int k = 0; k < 3; ++k) {
-        memcpy(volume, on.scene.volume, (size_t)n * sizeof *volume);
-        volume[n - 3] = bad[k];
-        const setup_array volumes = setup_numbers(test_field_type(test), n, 1, volume);
-        sphg_sources sources = comparison_sources(&on);
-        sources.neighbors = neighbors;
-        sources.volume = setup_view(&volumes);
-        sources.correction = comparison_table_view(&on, &table);
-        require_refused(&on,
-                        sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR,
-                                   setup_view(&a), setup_view(&out)),
-                        SPHG_ERROR_VOLUME, "volume");
-    }
-}
-
-/* Lists of a skin cannot tell the pairs of both radii: forces are refused, derivatives are not. */
-static void mutual_lists_with_a_skin_say_so(const test_case *test)
-{
-    const comparison on = graded_stage(test, 1);
-    const int n = on.points.count;
-    const setup_array x = setup_positions(test, (cloud *)(uintptr_t)&on.points);
-    const setup_array h = setup_numbers(test_position_type(test), n, 1, on.scene.support),
-                      a = setup_numbers(test_field_type(test), n, 1,
-                                        comparison_random_field(&on, SPHG_SCALAR, 7)),
-                      out = setup_output(test_field_type(test), n, test->dimension);
-    sphg_geometry geometry = setup_geometry(test, &on.points, &x);
-    geometry.source_support = setup_view(&h);
-    geometry.mutual = 1;
-    geometry.skin = .1;
-    sphg_sources sources = comparison_sources(&on);
-    sources.neighbors = setup_search(on.context, &on.scheme, &geometry);
-    require_refused(&on,
-                    sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR, setup_view(&a),
-                               setup_view(&out)),
-                    SPHG_ERROR_UNSUPPORTED, "neighbors have radii and a skin");
-    SETUP_OK(on.context, sphg_gradient(on.context, &on.scheme, &sources, NULL, setup_view(&a),
-                                       setup_view(&out)));
-}
-
 static void half_given_radii_are_refused(const test_case *test)
 {
     const comparison on = graded_stage(test, 0);
@@ -930,10 +749,6 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(operators_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
-    TEST_ENTRY(both_sides_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
-               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
-    TEST_ENTRY(two_sided_forms_conserve_momentum, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
-               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(errors_and_pairs_of_rings_are_known, TEST_BIT(TEST_F64), TEST_2D, 0, 0),
     TEST_ENTRY(same_radii_give_the_bits_of_one, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
@@ -943,8 +758,6 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(masks_give_the_same_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
-    TEST_ENTRY(forces_alone_have_the_bits_of_those_among_others, TEST_ALL_PRECISIONS,
-               TEST_BOTH_DIMENSIONS, TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(nothing_comes_from_beyond_the_targets_radius, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(skins_in_proportion_miss_no_pair, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
@@ -957,8 +770,6 @@ static const test_entry entries[] = {
     TEST_ENTRY(moments_hold_the_grad_h_term, 0, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(halves_add_up, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(what_has_one_radius_says_so, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
-    TEST_ENTRY(bad_volumes_of_forces_are_refused, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
-    TEST_ENTRY(mutual_lists_with_a_skin_say_so, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
     TEST_ENTRY(half_given_radii_are_refused, TEST_ALL_PRECISIONS, 0, 0, 0),
 };
 TEST_MAIN(entries)

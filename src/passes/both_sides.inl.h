@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Pairs whose two ends have radii of their own, where nothing but sums over both is wanted of them:
- * a value of the kernel with either radius, in one loop with the distances where no pair needs a
- * guard. The rows of the sources hold H_j. Whatever else belongs to a source, V_j first of all, is
- * multiplied into what the sums read of it (folded.inl.h), once a particle. */
+ * a value of the kernel with either radius, in one loop with the distances on open axes. The rows
+ * of the sources hold H_j. Whatever else belongs to a source, V_j first of all, is multiplied into
+ * what the sums read of it (folded.inl.h), once a particle. */
 
 /* w(q) or w'(q) / q with q = r / H_j, which counts up to 1: all kernels end there. */
 SPHGI_TEMPLATE vec seen_from_source(vec r, vec radius, sphg_kernel kernel, bool slope)
@@ -12,14 +12,11 @@ SPHGI_TEMPLATE vec seen_from_source(vec r, vec radius, sphg_kernel kernel, bool 
     return slope ? kernel_d(kernel, at) : kernel_w(kernel, at);
 }
 
-/* s_ij without V_j; and what s_ji is of the source's numbers. */
-SPHGI_TEMPLATE void put_both(real *at, vec r, vec radius, vec scale, vec inverse_h,
-                             sphg_kernel kernel, bool slope)
+/* s_ij without V_j. */
+SPHGI_TEMPLATE vec seen_from_target(vec r, vec scale, vec inverse_h, sphg_kernel kernel, bool slope)
 {
     const struct ratio own = ratio_of(r, inverse_h);
-    store(at + SPHGI_S * SPHGI_TILE,
-          scale * (slope ? kernel_d(kernel, own) : kernel_w(kernel, own)));
-    store(at + SPHGI_D * SPHGI_TILE, seen_from_source(r, radius, kernel, slope));
+    return scale * (slope ? kernel_d(kernel, own) : kernel_w(kernel, own));
 }
 
 SPHGI_TEMPLATE vec own_scale(const struct sphgi_shape *shape, bool slope)
@@ -27,41 +24,71 @@ SPHGI_TEMPLATE vec own_scale(const struct sphgi_shape *shape, bool slope)
     return factor_scale(shape, slope ? SPHG_KGC : SPHG_RKPM);
 }
 
+/* masked: pairs are tested; of what neither radius reaches nothing enters a sum. */
 SPHGI_TEMPLATE void both_of_pairs(const struct sphgi_gather *g, const struct sphgi_shape *shape,
                                   const int32_t *targets, struct sphgi_tile *tile,
-                                  sphg_kernel kernel, bool slope, bool three)
+                                  sphg_kernel kernel, bool slope, bool three, bool masked)
 {
     const struct four own = target_rows(g, targets);
     const vec scale = own_scale(shape, slope), inverse_h = inverse_radius(shape);
+    const vec reach = own.w * own.w;
     const real *rows = g->rows;
     const uint32_t *ids = tile->ids;
     const int32_t steps = tile->steps;
     const ptrdiff_t stride = tile->id_stride;
     const ptrdiff_t ahead = ids == tile->own_ids ? 0 : AHEAD * stride;
+    uint32_t *kept = tile->own_ids;
     real *at = tile->arrays;
-    for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride) {
+    for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride, kept += LANES) {
         __builtin_prefetch(ids + ahead);
         const struct four row = gather_rows(rows, ids);
-        const vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
+        vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         vec square = plus(dx * dx, dy, dy);
         if (three)
             square = plus(square, dz, dz);
+        const vec r = vsqrt(square);
+        vec ours = seen_from_target(r, scale, inverse_h, kernel, slope);
+        vec theirs = seen_from_source(r, row.w, kernel, slope);
+        if (masked) {
+            const mask inside = less(square_distance(dx, dy, dz), vmax(reach, row.w * row.w));
+            keep_ids(inside, g->dummy, ids, kept);
+            dx = where(inside, dx);
+            dy = where(inside, dy);
+            dz = where(inside, dz);
+            ours = where(inside, ours);
+            theirs = where(inside, theirs);
+        }
         store(at + SPHGI_X * SPHGI_TILE, dx);
         store(at + SPHGI_Y * SPHGI_TILE, dy);
         if (three)
             store(at + SPHGI_Z * SPHGI_TILE, dz);
-        put_both(at, vsqrt(square), row.w, scale, inverse_h, kernel, slope);
+        store(at + SPHGI_S * SPHGI_TILE, ours);
+        store(at + SPHGI_D * SPHGI_TILE, theirs);
+    }
+    if (masked) {
+        tile->ids = tile->own_ids;
+        tile->id_stride = LANES;
     }
 }
 
-/* The same of pairs that were gathered with a guard: H_j stands where volumes do. */
+/* The same of pairs that were gathered before: H_j stands where volumes do. */
 SPHGI_TEMPLATE void both_of_tile(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
                                  sphg_kernel kernel, bool slope)
 {
     const vec scale = own_scale(shape, slope), inverse_h = inverse_radius(shape);
-    for (int32_t k = 0; k < places_of(tile); k += LANES)
-        put_both((real *)tile->arrays + k, from(tile, SPHGI_R, k), from(tile, SPHGI_V, k), scale,
-                 inverse_h, kernel, slope);
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const vec r = from(tile, SPHGI_R, k), radius = from(tile, SPHGI_V, k);
+        store(array_of(tile->arrays, SPHGI_S) + k,
+              seen_from_target(r, scale, inverse_h, kernel, slope));
+        store(array_of(tile->arrays, SPHGI_D) + k, seen_from_source(r, radius, kernel, slope));
+    }
+}
+
+SPHGI_TEMPLATE void both_by_mask(const struct sphgi_gather *g, const struct sphgi_shape *shape,
+                                 const int32_t *targets, struct sphgi_tile *tile,
+                                 sphg_kernel kernel, bool slope, bool three)
+{
+    WITH(masked, g->masked, both_of_pairs(g, shape, targets, tile, kernel, slope, three, masked));
 }
 
 SPHGI_TEMPLATE void both_by_method(const struct sphgi_gather *g, const struct sphgi_shape *shape,
@@ -70,7 +97,7 @@ SPHGI_TEMPLATE void both_by_method(const struct sphgi_gather *g, const struct sp
 {
     const bool slope = shape->method == SPHG_KGC;
     WITH(three, g->dimension == 3,
-         WITH(by_slope, slope, both_of_pairs(g, shape, targets, tile, kernel, by_slope, three)));
+         WITH(by_slope, slope, both_by_mask(g, shape, targets, tile, kernel, by_slope, three)));
 }
 
 SPHGI_TEMPLATE void both_of_tile_by_method(const struct sphgi_shape *shape,

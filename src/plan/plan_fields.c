@@ -45,11 +45,6 @@ static sphg_result check_both_sides(struct sphgi_plan_builder *builder, int32_t 
             SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
                          "%s: fields[%d].form is %s, but sources[%d].neighbors are not mutual", f,
                          (int)k, form, (int)s);
-        if (n->graded && n->skin > 0)
-            SPHGI_REFUSE(
-                SPHG_ERROR_UNSUPPORTED,
-                "%s: fields[%d].form is %s, but sources[%d].neighbors have radii and a skin", f,
-                (int)k, form, (int)s);
     }
     return SPHG_OK;
 }

@@ -58,10 +58,13 @@ bool sphgi_weighs_near_at_once(const struct sphgi_sweep *sweep)
 bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
+    if (sweep->plan->both_sides)
+        return sphgi_is_superset(sweep) && !sweep->plan->both_first;
     return sweep->pairs && sweep->plan->graded && n->mutual && n->skin > 0;
 }
 
 bool sphgi_weighs_both_at_once(const struct sphgi_sweep *sweep)
 {
-    return !sphgi_is_masked(sweep) && sweep->set->neighbors->position_type == sweep->plan->type;
+    const sphg_neighbors *n = sweep->set->neighbors;
+    return !n->periodic && n->position_type == sweep->plan->type;
 }

@@ -95,8 +95,8 @@ bool sphgi_weighs_both_at_once(const struct sphgi_sweep *sweep);
 /* Those within the target's own radius, which are sorted out afterwards, are. */
 bool sphgi_weighs_near_at_once(const struct sphgi_sweep *sweep);
 
-/* Pairs that are wanted one by one, of lists that hold those of a skin beside those that the radius
- * of either end reaches. */
+/* Lists hold more, those of a skin, beside the pairs that the radius of either end reaches: these
+ * are sorted out before anything else is done with them, where that does not come by the way. */
 bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep);
 
 /* Lists may hold pairs with r >= H: these are cut. */

@@ -50,8 +50,8 @@ static void use_packed_rows(struct sphgi_worker *w)
         w->rows.at[k] = sweep->packed_rows ? sweep->packed_rows + (size_t)k * rows * size : NULL;
     w->both = w->gather; /* rows as the search left them hold the radii of the sources */
     w->both.rows = n->sources.rows.data;
-    w->both.either = sphgi_sorts_out_pairs(sweep);
-    w->both.volumes = !w->both.either;
+    w->both.either = sphgi_is_superset(sweep);
+    w->both.volumes = true;
     w->near = w->gather;
     w->near.all = false;
     w->near.masked = true;

@@ -81,6 +81,15 @@ static void narrow(struct sphgi_worker *w)
     sphgi_weigh_tile(w);
 }
 
+/* From what a list holds to r < max(H_i, H_j): the others' ids become the dummy's. */
+static void sort_out(struct sphgi_worker *w)
+{
+    struct sphgi_gather either = w->both;
+    either.volumes = false; /* those of the tile stay */
+    w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](&either, sphgi_places(w),
+                                                                        w->passes->lanes, &w->tile);
+}
+
 void sphgi_sum_tile(struct sphgi_worker *w)
 {
     if (w->sweep->plan->narrows && (w->batch.summing & SPHGI_SUM_FIELDS)) {
@@ -108,9 +117,8 @@ void sphgi_run_tile(struct sphgi_worker *w, const struct sphgi_lane_lists *lists
         sphgi_clean_lists(w, lists, begin);
     else
         w->passes->interleave(lists, begin, w->gather.dummy, &w->tile);
-    if (sphgi_sorts_out_pairs(w->sweep)) /* the others' ids become the dummy's */
-        w->sweep->position_passes->gather[w->sweep->plan->type == SPHG_F64](
-            &w->both, sphgi_places(w), w->passes->lanes, &w->tile);
+    if (sphgi_sorts_out_pairs(w->sweep))
+        sort_out(w);
     if (w->factors_at_once)
         gather_factors(w, begin);
     else if (!w->sweep->plan->both_first)

@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+/* Adjoint and symmetric forms with a support radius per particle: G_ij has that of i, G_ji that of
+ * j, over lists that hold the pairs of now or, with a skin, more than these. */
+#include "support/graded.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- The oracle ------------------------------------------------------------------------------ */
+
+static void compare(const comparison *on, sphg_shape shape, sphg_form form,
+                    const setup_array *table)
+{
+    comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
+    comparison_result found = comparison_apply(on, &field, table);
+    for (int i = 0; i < on->points.count; i += on->points.count / 7)
+        comparison_compare(on, &field, &found, i);
+}
+
+/* Pairs that only the source's radius reaches count, too. Each way has the forms of every shape,
+ * with one ratio of radii or another. */
+static void both_sides_match_the_oracle(const test_case *test)
+{
+    static const double ratios[] = {1.5, 8, 64};
+    for (int k = 0; k < 3; ++k)
+        for (int way = 0; way < GRADED_WAYS; ++way) {
+            const comparison on = graded_stage_of(test, ratios[k], 2.5, (graded_way)way);
+            const setup_array table = comparison_table(&on);
+            for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
+                for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape)
+                    if ((shape + way) % 3 == k || (k == 1 && !way))
+                        compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
+        }
+}
+
+/* In f32 powers of a ratio of radii are far from 1. */
+static void radii_far_apart_match_the_oracle(const test_case *test)
+{
+    const comparison on = graded_stage_of(test, 0x1p12, 2.5, GRADED_AT_ONCE);
+    const setup_array table = comparison_table(&on);
+    for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
+        for (int shape = SPHG_SCALAR; shape <= SPHG_VECTOR; ++shape)
+            compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
+}
+
+/* ---- The same bits --------------------------------------------------------------------------- */
+
+enum { MIXED = 5 };
+
+/* What a solver may ask for in one call: each on its own, and all of them together. */
+static void require_alone_as_together(const comparison *on, const sphg_sources *sources,
+                                      const char *where)
+{
+    static const comparison_field kinds[MIXED] = {{SPHG_VECTOR, SPHG_DIFFERENCE, NULL},
+                                                  {SPHG_SYM_TENSOR, SPHG_ADJOINT, NULL},
+                                                  {SPHG_VECTOR, SPHG_ADJOINT, NULL},
+                                                  {SPHG_SCALAR, SPHG_SYMMETRIC, NULL},
+                                                  {SPHG_SCALAR, SPHG_ADJOINT, NULL}};
+    comparison_result alone[MIXED], together[MIXED];
+    sphg_field asked[MIXED] = {{0}};
+    setup_array numbers[MIXED];
+    sphg_view views[MIXED];
+    sphg_request request = {.sources = sources, .set_count = 1, .field_count = 1};
+    for (int k = 0; k < MIXED; ++k) {
+        comparison_field field = kinds[k];
+        field.numbers = comparison_random_field(on, field.shape, 20);
+        alone[k] = comparison_outputs(on, &field, on->points.count);
+        together[k] = comparison_outputs(on, &field, on->points.count);
+        numbers[k] = setup_numbers(test_field_type(on->test), on->points.count,
+                                   setup_width(field.shape, on->points.dimension), field.numbers);
+        views[k] = setup_view(&numbers[k]);
+        asked[k].shape = field.shape;
+        asked[k].form = field.form;
+        asked[k].at_sources = &views[k];
+        comparison_ask_for(&alone[k], &asked[k]);
+        request.fields = &asked[k];
+        SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+        comparison_ask_for(&together[k], &asked[k]);
+    }
+    request.fields = asked;
+    request.field_count = MIXED;
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    for (int k = 0; k < MIXED; ++k)
+        TEST_REQUIRE(comparison_results_have_same_bits(&alone[k], &together[k]), "field %d, %s", k,
+                     where);
+}
+
+/* Pairs may be weighed with both radii at once, or one after the other, with a guard or without. */
+static void forces_alone_have_the_bits_of_those_among_others(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const comparison on = graded_stage_of(test, 8, 2.2, (graded_way)way);
+        const setup_array table = comparison_table(&on);
+        sphg_sources sources = comparison_sources(&on);
+        if (test->method != SPHG_PLAIN)
+            sources.correction = comparison_table_view(&on, &table);
+        require_alone_as_together(&on, &sources, on.name);
+        sources.volume.stride = 0;
+        require_alone_as_together(&on, &sources, test_text("%s, one volume", on.name));
+    }
+}
+
+/* ---- Targets apart ----------------------------------------------------------------------------
+ */
+
+enum { SETS = 2 };
+
+/* The particles as targets, and halves of them as sources. */
+typedef struct halves {
+    sphg_sources sets[SETS];
+    sphg_view numbers[SETS], at_targets;
+    int first[SETS];
+} halves;
+
+static sphg_view half_of(const halves *of, int s, const setup_array *array)
+{
+    sphg_view view = setup_view(array);
+    view.x = (const char *)view.x + of->first[s] * view.stride;
+    return view;
+}
+
+static void search_half(const comparison *on, const graded *at, const halves *of, int s,
+                        double skin, sphg_neighbors **neighbors)
+{
+    const int n = at->points.count, count = s ? n - of->first[1] : of->first[1];
+    const setup_array x = setup_positions(on->test, (cloud *)(uintptr_t)&at->points);
+    const setup_array h = setup_numbers(test_position_type(on->test), n, 1, at->radii);
+    sphg_geometry geometry = sphg_targets_apart(setup_view(&x), n, half_of(of, s, &x), count);
+    geometry.source_support = half_of(of, s, &h);
+    geometry.target_support = setup_view(&h);
+    geometry.precision = test_field_type(on->test);
+    geometry.mutual = 1;
+    geometry.skin = skin;
+    for (int a = 0; a < at->points.dimension; ++a)
+        geometry.period[a] = on->scene.period[a];
+    if (*neighbors)
+        SETUP_OK(on->context,
+                 sphg_neighbors_search(on->context, *neighbors, &on->scheme, &geometry));
+    else
+        *neighbors = setup_search(on->context, &on->scheme, &geometry);
+}
+
+static halves halves_of(const comparison *on, double ratio, double support, graded_way way,
+                        const setup_array *table, const setup_array *numbers)
+{
+    halves made = {.first = {0, on->points.count / 2}, .at_targets = setup_view(numbers)};
+    const graded now = {on->points, (double *)(uintptr_t)on->scene.support};
+    const graded before = graded_before(on->points.dimension, ratio, support);
+    for (int s = 0; s < SETS; ++s) {
+        sphg_neighbors *neighbors = NULL;
+        if (way & GRADED_MOVED)
+            search_half(on, &before, &made, s, graded_skin(&before), &neighbors);
+        search_half(on, &now, &made, s, way & GRADED_MOVED ? graded_skin(&before) : 0, &neighbors);
+        made.sets[s].neighbors = neighbors;
+        made.sets[s].volume = half_of(&made, s, &on->volume);
+        made.sets[s].density = half_of(&made, s, &on->density);
+        if (on->scheme.method != SPHG_PLAIN)
+            made.sets[s].correction = half_of(&made, s, table);
+        made.numbers[s] = half_of(&made, s, numbers);
+    }
+    return made;
+}
+
+/* given: the targets have a table, too; else theirs comes in the same sweep. */
+static comparison_result evaluate_halves(const comparison *on, const halves *of,
+                                         const comparison_field *field, const setup_array *table,
+                                         int given)
+{
+    sphg_field asked = {.shape = field->shape,
+                        .form = field->form,
+                        .at_sources = of->numbers,
+                        .at_targets = of->at_targets};
+    comparison_result found = comparison_outputs(on, field, on->points.count);
+    sphg_request request = {
+        .sources = of->sets, .fields = &asked, .set_count = SETS, .field_count = 1};
+    comparison_ask_for(&found, &asked);
+    request.target_volume = setup_view(&on->volume);
+    request.target_density = setup_view(&on->density);
+    if (given)
+        request.target_correction = comparison_table_view(on, table);
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return found;
+}
+
+static void halves_apart_match_the_oracle(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const comparison on = graded_stage_of(test, 8, 2.2, (graded_way)way);
+        const setup_array table = comparison_table(&on);
+        for (int k = 0; k < 4; ++k) {
+            const sphg_shape shape = k & 1 ? SPHG_SYM_TENSOR : way & 1 ? SPHG_SCALAR : SPHG_VECTOR;
+            const comparison_field field = {shape, k & 2 ? SPHG_SYMMETRIC : SPHG_ADJOINT,
+                                            comparison_random_field(&on, shape, 8)};
+            const setup_array numbers =
+                setup_numbers(test_field_type(test), on.points.count,
+                              setup_width(shape, test->dimension), field.numbers);
+            const halves of = halves_of(&on, 8, 2.2, (graded_way)way, &table, &numbers);
+            for (int given = 0; given < 2; ++given) {
+                const comparison_result found = evaluate_halves(&on, &of, &field, &table, given);
+                for (int i = 0; i < on.points.count; i += on.points.count / 5)
+                    comparison_compare(&on, &field, &found, i);
+            }
+        }
+    }
+}
+
+/* ---- What is not finite ------------------------------------------------------------------------
+ */
+
+/* Does either radius reach, as the library decides it? */
+static int are_near(const comparison *on, int i, int j, double slack)
+{
+    const int d = on->points.dimension;
+    double square = 0;
+    for (int a = 0; a < d; ++a) {
+        double x = on->points.x[i * d + a] - on->points.x[j * d + a];
+        if (on->scene.period[a] > 0)
+            x = remainder(x, on->scene.period[a]);
+        square += x * x;
+    }
+    return sqrt(square) < fmax(on->scene.support[i], on->scene.support[j]) * (1 + slack);
+}
+
+/* A value that is not finite reaches those near it and nobody else, whatever lists hold beside. */
+static void nothing_comes_from_beyond_both_radii(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const comparison on = graded_stage_of(test, 8, 2.2, (graded_way)way);
+        const setup_array table = comparison_table(&on);
+        const int n = on.points.count;
+        for (int k = 0; k < 6; ++k) {
+            const int bad = k * (n - 1) / 5;
+            const sphg_shape shape = k % 3 == 0   ? SPHG_SCALAR
+                                     : k % 3 == 1 ? SPHG_VECTOR
+                                                  : SPHG_TENSOR;
+            const int width = setup_width(shape, test->dimension);
+            double *numbers = comparison_random_field(&on, shape, 5);
+            numbers[bad * width] = k & 1 ? (double)NAN : (double)INFINITY;
+            const comparison_field field = {shape, k < 3 ? SPHG_SYMMETRIC : SPHG_ADJOINT, numbers};
+            const comparison_result found = comparison_apply(&on, &field, &table);
+            const setup_array *result = shape == SPHG_SCALAR ? &found.gradient : &found.divergence;
+            int far = 0;
+            for (int i = 0; i < n; ++i) {
+                const int near = i == bad || are_near(&on, i, bad, 1e-6);
+                far += !near;
+                for (int c = 0; c < result->width; ++c)
+                    TEST_REQUIRE(near || isfinite(setup_get(result, i, c)), "%s: %d from %d",
+                                 on.name, i, bad);
+            }
+            assert_true(far > 0);
+        }
+    }
+}
+
+/* ---- What is refused ---------------------------------------------------------------------- */
+
+static void require_refused(const comparison *on, sphg_result found, sphg_result expected,
+                            const char *words)
+{
+    const char *message = sphg_last_message(on->context);
+    TEST_REQUIRE(found == expected && strstr(message, words), "%s: %s", sphg_result_string(found),
+                 message);
+}
+
+/* Of ghosts, whose volumes a force alone reads as sources'. */
+static void bad_volumes_of_forces_are_refused(const test_case *test)
+{
+    static const double bad[] = {-1, NAN, INFINITY};
+    const comparison on = graded_stage_of(test, 8, 2.2, GRADED_AT_ONCE);
+    const int n = on.points.count;
+    const setup_array table = comparison_table(&on),
+                      x = setup_positions(test, (cloud *)(uintptr_t)&on.points);
+    const setup_array h = setup_numbers(test_position_type(test), n, 1, on.scene.support);
+    const setup_array a =
+        setup_numbers(test_field_type(test), n, 1, comparison_random_field(&on, SPHG_SCALAR, 7));
+    const setup_array out = setup_output(test_field_type(test), n, test->dimension);
+    sphg_geometry geometry = sphg_own_and_ghosts(setup_view(&x), n / 2, n - n / 2);
+    geometry.precision = test_field_type(test);
+    geometry.source_support = setup_view(&h);
+    geometry.mutual = 1;
+    sphg_neighbors *const neighbors = setup_search(on.context, &on.scheme, &geometry);
+    double *volume = test_memory((size_t)n * sizeof *volume);
+    for (int k = 0; k < 3; ++k) {
+        memcpy(volume, on.scene.volume, (size_t)n * sizeof *volume);
+        volume[n - 3] = bad[k];
+        const setup_array volumes = setup_numbers(test_field_type(test), n, 1, volume);
+        sphg_sources sources = comparison_sources(&on);
+        sources.neighbors = neighbors;
+        sources.volume = setup_view(&volumes);
+        sources.correction = comparison_table_view(&on, &table);
+        require_refused(&on,
+                        sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR,
+                                   setup_view(&a), setup_view(&out)),
+                        SPHG_ERROR_VOLUME, "volume");
+    }
+}
+
+static const test_entry entries[] = {
+    TEST_ENTRY(both_sides_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(radii_far_apart_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(forces_alone_have_the_bits_of_those_among_others, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(halves_apart_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(nothing_comes_from_beyond_both_radii, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+    TEST_ENTRY(bad_volumes_of_forces_are_refused, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
+};
+TEST_MAIN(entries)
