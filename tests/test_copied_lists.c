@@ -8,7 +8,7 @@
 enum { COUNT = 420, BIG = 270, OWN = 390, CHANCES = 2 };
 /* A list of BIG takes more than one piece, and one of more than a chunk keeps its gaps. */
 
-enum { WHOLE, OWN_AND_GHOSTS, APART, PERIODIC, SCENES };
+enum { WHOLE, OWN_AND_GHOSTS, APART, PERIODIC, RADII, RADII_APART, SCENES };
 enum { CSR, ROWS, FUNCTION, SUPPLIES };
 
 typedef struct world {
@@ -47,9 +47,20 @@ static cloud crowds(int dimension, random_state *random)
     return made;
 }
 
+/* Between an eighth and 1, any number of eighths; whose lists those of the largest hold, too. */
+static double *radii_of_all(random_state *random)
+{
+    double *radii = test_memory(COUNT * sizeof *radii);
+    for (int i = 0; i < COUNT; ++i)
+        radii[i] = (1 + random_index(random, 8)) / 8.;
+    return radii;
+}
+
 static void list_pairs(world *own, random_state *random)
 {
-    const rows near = rows_by_brute_force(&own->particles, 1.3);
+    scene wide = own->particles;
+    wide.support = wide.target_support = NULL;
+    const rows near = rows_by_brute_force(&wide, 1.3);
     const int count = own->particles.target_count;
     int64_t next = 0;
     own->offsets = test_memory(((size_t)count + 1) * sizeof *own->offsets);
@@ -116,14 +127,19 @@ static world world_of(const test_case *test, sphg_isa isa, int kind)
     own.particles = scene_of_cloud(test, &points);
     if (kind == OWN_AND_GHOSTS)
         own.particles.target_count = OWN;
-    if (kind == APART) {
+    if (kind == APART || kind == RADII_APART) {
         cloud others = cloud_copy(&points);
         for (int k = 0; k < COUNT * d; ++k)
             others.x[k] += random_between(&random, -.3, .3);
         own.particles.targets = scene_of_cloud(test, &others).sources;
     }
-    for (int axis = 0; axis < d && kind == PERIODIC; ++axis)
+    for (int axis = 0; axis < d && (kind == PERIODIC || kind == RADII_APART); ++axis)
         own.particles.period[axis] = 9;
+    if (kind == RADII || kind == RADII_APART)
+        own.particles.support = radii_of_all(&random);
+    if (kind == RADII_APART)
+        own.particles.target_support = radii_of_all(&random);
+    own.particles.mutual = kind == RADII || test->method % 2;
     own.geometry = scene_geometry(&own.particles);
     if (test->precision == TEST_MIXED)
         own.geometry.precision = SPHG_F32;
@@ -211,6 +227,9 @@ static results evaluate(const world *own, const sphg_neighbors *const *neighbors
                                   .at_targets = vector,
                                   .divergence = setup_view(&of[SYMMETRIC])}};
     const setup_array table = setup_output(own->volume.type, COUNT, of[CORRECTION].width);
+    if (own->particles.support && (!own->particles.mutual || own->scheme.method == SPHG_CMLS ||
+                                   own->scheme.method == SPHG_CRKPM))
+        return found;                             /* G_ji is not among these pairs */
     for (int k = 0; k < COUNT * table.width; ++k) /* any: only bits are compared */
         setup_put(&table, k, .5 + .01 * (k % 17));
     request.fields = forces;

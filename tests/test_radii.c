@@ -732,11 +732,6 @@ static void half_given_radii_are_refused(const test_case *test)
     geometry.period[0] = 1e-3;
     require_refused(&on, sphg_neighbors_search(on.context, on.neighbors, &on.scheme, &geometry),
                     SPHG_ERROR_ARGUMENT, "geometry.period[0]");
-    sphg_lists lists = {.offsets = NULL};
-    geometry.period[0] = 0;
-    require_refused(
-        &on, sphg_neighbors_use_lists(on.context, on.neighbors, &on.scheme, &geometry, &lists),
-        SPHG_ERROR_UNSUPPORTED, "source_support");
 }
 
 static const test_entry entries[] = {

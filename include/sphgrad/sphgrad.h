@@ -301,9 +301,9 @@ typedef struct sphg_geometry {
                             of fl(fl(x_i - x_j) + k period) the smallest counts, where fmod(x, period)
                             stands for x if |x| is beyond a period and 2^16 H (f64: 2^45 H). Skins
                             measure moves to the nearest image */
-    sphg_view source_support; /* H_j [L] > 0, search only, of the positions' type; absent: all have the
-                                 scheme's radius, which is not read otherwise. H above is then the
-                                 largest; other skins are in proportion, growth of H counts as a move */
+    sphg_view source_support; /* H_j [L] > 0, of the positions' type; absent: all have the scheme's
+                                 radius, which is not read otherwise. H above is then the largest;
+                                 other skins are in proportion, growth of H counts as a move */
     sphg_view target_support; /* H_i of targets apart: there if the other is */
     int32_t mutual;           /* 1: j is a neighbour of i where r < max(H_i, H_j), as SYMMETRIC and ADJOINT
                                  need it; 0: where r < H_i. G_ij and units of i have H_i either way */
@@ -341,8 +341,8 @@ static inline sphg_geometry sphg_own_and_ghosts(sphg_view positions, int32_t own
     return sphg_targets_apart(sphg_absent(), own, positions, own + ghosts);
 }
 
-/* Your own lists: complete (each pair from both ends), any superset of r < H, any order, no
- * duplicates; i itself is skipped. Set one of the three groups.
+/* Your own lists: complete (each pair from both ends), any superset of the neighbours (of r < H, or
+ * what `mutual` says), any order, no duplicates; i itself is skipped. Set one of the three groups.
  * Lists that lack pairs are summed as they are: sphg_neighbors_check finds them. DIFFERENCE and
  * classic DIRECT, with C of the same lists, stay exact on linear fields where rank = d, which fewer
  * targets reach. ADJOINT and SYMMETRIC keep what they conserve only if pairs lack at both ends:
@@ -390,7 +390,7 @@ SPHG_API sphg_result sphg_neighbors_would_rebuild(sphg_context *context, const s
                                                   const sphg_geometry *geometry, int32_t *rebuild);
 
 /* Copies the positions and borrows your lists: leave them unchanged until the next build or
- * destroy. Pairs with r >= H add nothing. Indices are checked as operators read them.
+ * destroy. Pairs that are none add nothing. Indices are checked as operators read them.
  * With lists.copy they are checked and copied now, in about the time of a sweep, and take 4 bytes a
  * pair and some 50 a target. Each later sweep saves a tenth to a fifth of its time. row is asked
  * several times a target.

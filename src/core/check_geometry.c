@@ -90,7 +90,7 @@ static sphg_result check_support(struct sphgi_checker checker, const sphg_view *
 
 /* Radii of their own: of everybody or of nobody. */
 static sphg_result check_supports(struct sphgi_checker checker, const sphg_geometry *geometry,
-                                  sphg_type type, bool searched)
+                                  sphg_type type)
 {
     const char *f = checker.function;
     const bool apart = geometry->targets.x || !geometry->target_count;
@@ -102,9 +102,6 @@ static sphg_result check_supports(struct sphgi_checker checker, const sphg_geome
                                geometry->target_count);
     if (result)
         return result;
-    if ((sources || targets) && !searched)
-        REFUSE(SPHG_ERROR_UNSUPPORTED, "%s: geometry.%s is set, but radii are for searches only", f,
-               sources ? "source_support" : "target_support");
     if (targets && !apart)
         REFUSE(SPHG_ERROR_ARGUMENT,
                "%s: geometry.target_support is set, but the targets are part of the sources", f);
@@ -159,7 +156,7 @@ sphg_result sphgi_check_geometry(struct sphgi_checker checker, const sphg_geomet
         REFUSE(SPHG_ERROR_ARGUMENT, "%s: geometry.list_free is %d, it is for searches only", f,
                (int)geometry->list_free);
     result = check_skin(checker, geometry);
-    return result ? result : check_supports(checker, geometry, type, searched);
+    return result ? result : check_supports(checker, geometry, type);
 }
 
 sphg_result sphgi_check_extent(struct sphgi_checker checker, const sphg_geometry *geometry,

@@ -2,9 +2,10 @@
 /* Which of a list's ids are neighbours, by the same test as a search: for lists of the host that
  * are copied. */
 
-/* A bit for each of TESTED ids. */
+/* A bit for each of TESTED ids. mutual: the radii of sources count, too. */
 SPHGI_TEMPLATE uint16_t bits_near(const struct sphgi_find *find, const uint32_t *ids, const vec *x,
-                                  vec square_reach, const struct wraps *w, bool periodic)
+                                  vec square_reach, const struct wraps *w, bool periodic,
+                                  bool mutual)
 {
     mask within[TESTED / LANES];
     for (int l = 0; l < TESTED; l += LANES) {
@@ -15,23 +16,28 @@ SPHGI_TEMPLATE uint16_t bits_near(const struct sphgi_find *find, const uint32_t 
             dy = wrapped(dy, w->axis[1]);
             dz = wrapped(dz, w->axis[2]);
         }
-        within[l / LANES] = less(square_distance(dx, dy, dz), square_reach);
+        vec limit = square_reach;
+        if (mutual)
+            limit = vmax(limit, square_of_radius(row.w, splat(R(find->stretch))));
+        within[l / LANES] = less(square_distance(dx, dy, dz), limit);
     }
     return bits_of_tested(within);
 }
 
 /* What has moved to the front lies before what is read next. */
 SPHGI_TEMPLATE int32_t keep_as(const struct sphgi_find *find, const real *target, uint32_t *ids,
-                               int32_t count, bool pack, bool periodic)
+                               int32_t count, bool pack, bool periodic, bool mutual)
 {
     const struct wraps w = wraps_of(find->period);
     const vec x[3] = {splat(target[0]), splat(target[1]), splat(target[2])};
-    const vec square_reach = square_of(find->reach);
+    const vec square_reach = find->radii
+                                 ? square_of_radius(splat(target[3]), splat(R(find->stretch)))
+                                 : square_of(find->reach);
     uint32_t *to = ids;
     for (int32_t l = 0; l < TESTED; ++l)
         ids[count + l] = find->dummy;
     for (int32_t k = 0; k < count; k += TESTED) {
-        const uint16_t bits = bits_near(find, ids + k, x, square_reach, &w, periodic);
+        const uint16_t bits = bits_near(find, ids + k, x, square_reach, &w, periodic, mutual);
         if (pack)
             to = pack_tested(find, to, ids + k, bits);
         else
@@ -48,6 +54,9 @@ SPHGI_TEMPLATE int32_t keep_as(const struct sphgi_find *find, const real *target
 static int32_t keep_near(const struct sphgi_find *find, const void *target, uint32_t *ids,
                          int32_t count, bool pack)
 {
-    return find->periodic ? keep_as(find, target, ids, count, pack, true)
-                          : keep_as(find, target, ids, count, pack, false);
+    int32_t kept = 0;
+    WITH(mutual, find->mutual,
+         WITH(periodic, find->periodic,
+              kept = keep_as(find, target, ids, count, pack, periodic, mutual)));
+    return kept;
 }

@@ -52,7 +52,8 @@ struct sphgi_packed {
 struct sphgi_find {
     const void *rows; /* x y z of the sources; SPHGI_LANES_MOST - 1 rows past each run are read */
     double reach;
-    double stretch;        /* what radii are multiplied with, where particles have their own */
+    bool radii;            /* particles have their own, in the 4th numbers of rows */
+    double stretch;        /* what these are multiplied with */
     bool mutual;           /* the larger one of a pair counts */
     const int32_t *selves; /* row of each target, if they are sources in another order; or NULL */
     double slack;          /* rounding of differences between images far apart [L] */

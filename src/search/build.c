@@ -206,7 +206,7 @@ static void adopt(sphg_neighbors *n, const struct sphgi_geometry *g, const sphg_
     memset(&n->lists, 0, sizeof n->lists);
 }
 
-/* What the search is about. scheme: its radius becomes the largest there is. */
+/* What is to be built. scheme: its radius becomes the largest there is. */
 static sphg_result read_question(struct sphgi_checker checker, const sphg_geometry *given,
                                  struct sphgi_scheme *scheme, struct sphgi_geometry *g)
 {
@@ -322,14 +322,15 @@ static sphg_result copy_lists(struct sphgi_checker checker, sphg_neighbors *n,
 }
 
 sphg_result sphgi_build_on_lists(struct sphgi_checker checker, sphg_neighbors *n,
-                                 const struct sphgi_scheme *scheme, const sphg_geometry *given,
+                                 const struct sphgi_scheme *checked, const sphg_geometry *given,
                                  const sphg_lists *lists)
 {
-    struct sphgi_geometry g = geometry_of(given, scheme);
-    sphg_result result = read_geometry(checker, given, scheme, &g);
+    struct sphgi_scheme own = *checked;
+    struct sphgi_geometry g;
+    sphg_result result = read_question(checker, given, &own, &g);
     if (result)
         return result;
-    adopt(n, &g, given, scheme->radius);
+    adopt(n, &g, given, own.radius);
     n->same = n->part_of;
     if (!copy_rows(n, &g))
         return sphgi_fail_memory(checker.context, checker.function);

@@ -64,6 +64,7 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
     finder->passes = sphgi_passes_of(context, neighbors->position_type);
     finder->find = (struct sphgi_find){.rows = neighbors->sources.rows.data,
                                        .reach = neighbors->radius + neighbors->skin,
+                                       .radii = neighbors->graded,
                                        .stretch = neighbors->stretch,
                                        .mutual = sphgi_lists_are_mutual(neighbors),
                                        .slack = neighbors->sources.raster.slack,

@@ -60,7 +60,7 @@ bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep)
     const sphg_neighbors *n = sweep->set->neighbors;
     if (sweep->plan->both_sides)
         return sphgi_is_superset(sweep) && !sweep->plan->both_first;
-    return sweep->pairs && sweep->plan->graded && n->mutual && n->skin > 0;
+    return sweep->pairs && sweep->plan->graded && n->mutual && sphgi_is_superset(sweep);
 }
 
 bool sphgi_weighs_both_at_once(const struct sphgi_sweep *sweep)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Lists of the host, right and wrong: refused, found wrong by the operators, or summed; never read
- * beyond their ends. Offsets decide how long the indices must be: a copy of just that size. */
+ * beyond their ends, and the same numbers come of them if they are copied. Offsets decide how long
+ * the indices must be: a copy of just that size. */
 #include "fuzz.h"
 
 enum { MOST = 24, INDICES = 400 };
@@ -9,7 +10,7 @@ typedef struct host {
     const fuzz_instance *instance;
     sphg_type type;
     int dimension, count, shape;
-    double x[MOST * 3], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 45];
+    double x[MOST * 3], radii[MOST], volume[MOST], density[MOST], field[MOST * 9], table[MOST * 45];
     double lent[MOST * 55], coefficient[MOST], weight[MOST], tensor[MOST * 9];
     double results[7][MOST * 55];
     int64_t offsets[MOST + 1];
@@ -68,6 +69,17 @@ static int32_t *moved_to_the_end(host *on, sphg_lists *lists)
     memcpy(copy, on->indices, (size_t)used * sizeof *copy);
     lists->indices = copy;
     return copy;
+}
+
+/* Octaves apart, now and then anything at all. */
+static void take_radii(fuzz_bytes *from, host *on, sphg_geometry *geometry)
+{
+    for (int k = 0; k < on->count; ++k) {
+        const int kind = fuzz_byte(from);
+        fuzz_put(on->type, on->radii, k,
+                 kind == 255 ? fuzz_real(from) : ldexp(1 + kind % 16 / 16., -(kind / 32)));
+    }
+    geometry->source_support = fuzz_view(on->type, on->radii, 1);
 }
 
 /* Views of source sets that a field may have beside its values. */
@@ -149,14 +161,47 @@ static sphg_result evaluate(fuzz_bytes *from, host *on)
     return sphg_evaluate(on->instance->context, &on->scheme, &request);
 }
 
+/* From borrowed lists, or copied ones; no result: FUZZ_REQUIRE knows which there may be. */
+static sphg_result results_of(fuzz_bytes from, host *on, const sphg_geometry *geometry,
+                              sphg_lists lists, int copy)
+{
+    sphg_context *context = on->instance->context;
+    lists.copy = copy;
+    memset(on->results, 0, sizeof on->results);
+    sphg_result result =
+        sphg_neighbors_use_lists(context, on->instance->neighbors, &on->scheme, geometry, &lists);
+    FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
+                     result == SPHG_ERROR_NOT_FINITE || (copy && result == SPHG_ERROR_INDEX),
+                 "%s", sphg_last_message(context));
+    if (!result)
+        result = evaluate(&from, on);
+    FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
+                     result == SPHG_ERROR_NOT_FINITE || result == SPHG_ERROR_INDEX ||
+                     result == SPHG_ERROR_VOLUME || result == SPHG_ERROR_UNSUPPORTED,
+                 "%s", sphg_last_message(context));
+    return result;
+}
+
+/* The same bits, but of what is no number, and of signs of 0: a list of the target alone, or of
+ * what is far away, may be one of nobody. */
+static void require_same_results(const host *on, const void *before)
+{
+    const int count = (int)(sizeof on->results / (on->type == SPHG_F64 ? 8 : 4));
+    for (int k = 0; k < count; ++k) {
+        const double x = fuzz_get(on->type, before, k), y = fuzz_get(on->type, on->results, k);
+        FUZZ_REQUIRE(x == y || isnan(x) || isnan(y),
+                     "result %d is %.17g of borrowed lists, %.17g of copied ones", k, x, y);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static host on;
+    static double before[sizeof on.results / sizeof(double)];
     fuzz_bytes from = {data, size};
     sphg_lists lists = {0};
     memset(&on, 0, sizeof on);
     on.instance = fuzz_instance_for(size);
-    sphg_context *context = on.instance->context;
     const int flags = fuzz_byte(&from);
     on.type = flags & 1 ? SPHG_F64 : SPHG_F32;
     on.dimension = flags & 2 ? 3 : 2;
@@ -167,22 +212,21 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     on.scheme.kernel = (sphg_kernel)(fuzz_byte(&from) % 7);
     on.scheme.policy = (sphg_policy)(fuzz_byte(&from) % 4);
     on.scheme.support_radius = (1 + fuzz_byte(&from)) / 16.;
-    const sphg_geometry geometry = {.sources = numbers(&from, &on, on.x, on.dimension, flags & 4),
-                                    .source_count = on.count,
-                                    .target_count = on.count};
+    sphg_geometry geometry = {.sources = numbers(&from, &on, on.x, on.dimension, flags & 4),
+                              .source_count = on.count,
+                              .target_count = on.count,
+                              .mutual = flags >> 5 & 1};
+    if (flags & 16)
+        take_radii(&from, &on, &geometry);
     take_lists(&from, &on, &lists);
     int32_t *copy = moved_to_the_end(&on, &lists);
-    sphg_result result =
-        sphg_neighbors_use_lists(context, on.instance->neighbors, &on.scheme, &geometry, &lists);
-    FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
-                     result == SPHG_ERROR_NOT_FINITE,
-                 "%s", sphg_last_message(context));
-    if (!result)
-        result = evaluate(&from, &on);
-    FUZZ_REQUIRE(result == SPHG_OK || result == SPHG_ERROR_ARGUMENT ||
-                     result == SPHG_ERROR_NOT_FINITE || result == SPHG_ERROR_INDEX ||
-                     result == SPHG_ERROR_VOLUME || result == SPHG_ERROR_UNSUPPORTED,
-                 "%s", sphg_last_message(context));
+    const sphg_result borrowed = results_of(from, &on, &geometry, lists, 0);
+    memcpy(before, on.results, sizeof before);
+    const sphg_result copied = results_of(from, &on, &geometry, lists, 1);
+    FUZZ_REQUIRE(borrowed == copied || copied == SPHG_ERROR_INDEX,
+                 "%d of borrowed lists, %d of copied ones", (int)borrowed, (int)copied);
+    if (!borrowed && !copied)
+        require_same_results(&on, before);
     free(copy);
     return 0;
 }

@@ -249,6 +249,7 @@ static const argument of_use_lists[] = {CONTEXT,
                                         FREE("lists.copy")};
 static const probe probes_sphg_neighbors_use_lists[] = {
     PROBE(NULL, call_use_lists, of_use_lists),
+    PROBE(prepare_with_radii, call_use_lists, of_radii), /* later calls want one radius for all */
     PROBE(prepare_with_targets, call_use_lists, of_use_lists)};
 
 static const argument of_get_info[] = {CONTEXT, ROW("neighbors", POINTER, neighbors),
