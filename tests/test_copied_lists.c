@@ -227,8 +227,7 @@ static results evaluate(const world *own, const sphg_neighbors *const *neighbors
                                   .at_targets = vector,
                                   .divergence = setup_view(&of[SYMMETRIC])}};
     const setup_array table = setup_output(own->volume.type, COUNT, of[CORRECTION].width);
-    if (own->particles.support && (!own->particles.mutual || own->scheme.method == SPHG_CMLS ||
-                                   own->scheme.method == SPHG_CRKPM))
+    if (own->particles.support && !own->particles.mutual)
         return found;                             /* G_ji is not among these pairs */
     for (int k = 0; k < COUNT * table.width; ++k) /* any: only bits are compared */
         setup_put(&table, k, .5 + .01 * (k % 17));

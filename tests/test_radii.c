@@ -349,8 +349,6 @@ static void masks_give_the_same_bits(const test_case *test)
     const setup_array table = comparison_table(&on);
     uint8_t *mask = test_memory((size_t)n);
     for (int form = SPHG_DIFFERENCE; form <= SPHG_ADJOINT; ++form) {
-        if (form >= SPHG_SYMMETRIC && test_is_classic(test))
-            continue;
         comparison_field field = {SPHG_VECTOR, (sphg_form)form,
                                   comparison_random_field(&on, SPHG_VECTOR, 4)};
         const comparison_result all = comparison_apply(&on, &field, &table);
@@ -693,14 +691,6 @@ static void what_has_one_radius_says_so(const test_case *test)
     require_refused(
         &on, sphg_gradient(on.context, &second, &sources, NULL, setup_view(&a), setup_view(&out)),
         SPHG_ERROR_UNSUPPORTED, "scheme.order");
-    const comparison both = graded_stage(test, 1);
-    const sphg_sources mutual = comparison_sources(&both);
-    sphg_scheme classic = both.scheme;
-    classic.method = SPHG_CMLS;
-    require_refused(&both,
-                    sphg_force(both.context, &classic, &mutual, NULL, SPHG_SCALAR, setup_view(&a),
-                               setup_view(&out)),
-                    SPHG_ERROR_UNSUPPORTED, "which classic methods have for one radius");
     const comparison one = comparison_of(test, "block", cloud_copy(&on.points), .25);
     sphg_sources sets[2] = {sources, comparison_sources(&one)};
     sphg_view at_sources[2] = {setup_view(&a), setup_view(&a)};

@@ -296,15 +296,15 @@ static void bad_volumes_of_forces_are_refused(const test_case *test)
 
 static const test_entry entries[] = {
     TEST_ENTRY(both_sides_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
-               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(radii_far_apart_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
-               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(forces_alone_have_the_bits_of_those_among_others, TEST_ALL_PRECISIONS,
-               TEST_BOTH_DIMENSIONS, TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(halves_apart_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
-               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(nothing_comes_from_beyond_both_radii, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
-               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
+               TEST_ALL_METHODS, 0),
     TEST_ENTRY(bad_volumes_of_forces_are_refused, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, 0, 0),
 };
 TEST_MAIN(entries)

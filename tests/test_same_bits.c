@@ -65,17 +65,19 @@ static scene scene_on(const test_case *test, sphg_isa isa)
     return of;
 }
 
-typedef enum domain { OPEN, PERIODIC, OWN_RADII } domain;
+typedef enum domain { OPEN, PERIODIC, OWN_RADII, RADII_AROUND, RADII_WITH_SKIN } domain;
 
 static void search(scene *of, domain in)
 {
     sphg_geometry geometry = setup_geometry(of->test, &of->points, &of->position);
-    if (in == PERIODIC)
+    if (in == PERIODIC || in == RADII_AROUND)
         geometry.period[0] = geometry.period[1] = 15;
-    if (in == OWN_RADII) {
+    if (in >= OWN_RADII) {
         geometry.source_support = setup_view(&of->radius);
         geometry.mutual = 1;
     }
+    if (in == RADII_WITH_SKIN)
+        geometry.skin = .5;
     of->sources.neighbors = setup_search(of->context, &of->scheme, &geometry);
 }
 
@@ -291,6 +293,19 @@ static void every_domain(scene *of)
     }
 }
 
+/* What both radii of a pair take part in. */
+static void every_radius(scene *of)
+{
+    for (domain in = OWN_RADII; in <= RADII_WITH_SKIN; ++in) {
+        search(of, in);
+        for (int method = SPHG_KGC; method <= SPHG_PLAIN; ++method) {
+            of->scheme.method = (sphg_method)method;
+            of->scheme.kernel = (sphg_kernel)((method + (int)in) % (SPHG_SPIKY + 1));
+            every_form(of);
+        }
+    }
+}
+
 static void every_order(scene *of)
 {
     search(of, OPEN);
@@ -369,6 +384,18 @@ static void domains_and_radii_have_one_hash_a_kind_of_path(const test_case *test
     require_pinned(every_domain, &pinned);
 }
 
+static void both_radii_have_one_hash_a_kind_of_path(const test_case *test)
+{
+    (void)test;
+    static const pins pinned = {{{UINT64_C(0xf8f9626443069498), UINT64_C(0xec7d9f3a3080f156)},
+                                 {UINT64_C(0x800be5020b89d1c4), UINT64_C(0xe581cc0ad310ef39)},
+                                 {UINT64_C(0xb73c0dd5dabc67ea), UINT64_C(0xd519382919a3529c)}},
+                                {{UINT64_C(0x904c25e174be0223), UINT64_C(0x5a02311298812b4f)},
+                                 {UINT64_C(0x77a348edac16eae1), UINT64_C(0x2fd339bae66d20ca)},
+                                 {UINT64_C(0xd76828e156a5e39f), UINT64_C(0xa783fc7ec465a0cb)}}};
+    require_pinned(every_radius, &pinned);
+}
+
 static void order_2_has_one_hash_a_kind_of_path(const test_case *test)
 {
     (void)test;
@@ -396,6 +423,7 @@ static void small_matrices_have_one_hash_a_kind_of_path(const test_case *test)
 static const test_entry entries[] = {TEST_ONCE(methods_and_forms_have_one_hash_a_kind_of_path),
                                      TEST_ONCE(kernels_have_one_hash_a_kind_of_path),
                                      TEST_ONCE(domains_and_radii_have_one_hash_a_kind_of_path),
+                                     TEST_ONCE(both_radii_have_one_hash_a_kind_of_path),
                                      TEST_ONCE(order_2_has_one_hash_a_kind_of_path),
                                      TEST_ONCE(small_matrices_have_one_hash_a_kind_of_path)};
 #else

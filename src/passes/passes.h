@@ -178,6 +178,12 @@ struct sphgi_passes {
                                const void *target_volume, const void *density,
                                enum sphgi_weight kind);
 
+    /* The same where sources have radii of their own. */
+    void (*transposed_classic_other)(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
+                                     const struct sphgi_classic_other *of);
+    /* Rows times a number each, and before that, unless it is NULL, times another. */
+    void (*scale_rows)(int32_t count, const void *first, const void *second, void *rows);
+
     /* rows: P and Q of the sources; between: what Q is multiplied with to have the unit of P. */
     void (*transposed_quadratic)(const struct sphgi_tile *tile, int32_t dimension,
                                  const void *const *rows, double between, const void *density,

@@ -62,6 +62,7 @@
 #include "record_sums.inl.h"
 #endif
 #include "classic.inl.h"
+#include "classic_other_side.inl.h"
 #include "quadratic_sums.inl.h"
 #include "quadratic_groups.inl.h"
 #include "diffusion.inl.h"
@@ -133,6 +134,8 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .pair_laplacian = pair_laplacian,
     .pair_laplacian_plain = pair_laplacian_plain,
     .transposed_classic = transposed_classic,
+    .transposed_classic_other = transposed_classic_other,
+    .scale_rows = scale_rows,
     .transposed_quadratic = transposed_quadratic,
     .sum_moments = sum_moments,
     .sum_classic = sum_classic,

@@ -230,6 +230,12 @@ struct sphgi_lane_units {
     bool with_volume; /* s_ij holds V_j */
 };
 
+/* What the classic methods read of sources that have radii of their own: coefficients, 1 / H_j in
+ * the second number of `radii`, rho_j or NULL; and a number per lane, H_i. */
+struct sphgi_classic_other {
+    const void *table[4], *radii, *density, *own_radius;
+};
+
 /* The second block of order 2 (theory.md, section 9). */
 struct sphgi_second {
     sphg_policy policy;

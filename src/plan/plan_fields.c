@@ -35,10 +35,6 @@ static sphg_result check_both_sides(struct sphgi_plan_builder *builder, int32_t 
     const char *f = builder->checker.function;
     const struct sphgi_plan *plan = builder->plan;
     const char *form = builder->request->fields[k].form == SPHG_ADJOINT ? "adjoint" : "symmetric";
-    if (plan->classic)
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
-                     "%s: fields[%d].form is %s, which classic methods have for one radius", f,
-                     (int)k, form);
     for (int32_t s = 0; s < plan->set_count; ++s) {
         const sphg_neighbors *n = plan->sets[s].neighbors;
         if (n->graded && !n->mutual)

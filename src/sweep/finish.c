@@ -72,12 +72,14 @@ struct sides {
 };
 
 /* adjoint: f = (1/H) (V_i A_i G + H^d sum V_j A_j T), with H^d V_i = V_i H^-d H^d; KGC and
- * RKPM have V_i inside T, too. symmetric: f = (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
+ * RKPM have V_i inside T, too, and CRKPM where sources have radii of their own. symmetric: f =
+ * (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
 static struct sides sides_of(struct sphgi_worker *w, bool symmetric)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     const struct sphgi_passes *p = w->passes;
-    const bool volume_inside = plan->scheme.method != SPHG_MLS && !plan->classic;
+    const bool volume_inside =
+        plan->classic ? plan->weighted && plan->both_sides : plan->scheme.method != SPHG_MLS;
     const bool ours = plan->classic || plan->scheme.method == SPHG_PLAIN;
     struct sides sides = {.table = ours ? 1 : 1 / sphgi_table_scales(&plan->scheme).value};
     if (symmetric) {

@@ -41,6 +41,16 @@ static void radii_at(const sphg_neighbors *n, const int32_t *places, int32_t cou
         radius[l] = sphgi_radius_in(rows, type, places[l]);
 }
 
+static void put_own(struct sphgi_worker *w, const double *radius)
+{
+    char *to = sphgi_lane(w, w->radii.own, 0);
+    for (int32_t l = 0; l < w->batch.width; ++l)
+        if (w->sweep->plan->type == SPHG_F64)
+            ((double *)(void *)to)[l] = radius[l];
+        else
+            ((float *)(void *)to)[l] = (float)radius[l];
+}
+
 static void read_radii(struct sphgi_worker *w, const int32_t *places)
 {
     const int32_t width = w->batch.width;
@@ -50,7 +60,9 @@ static void read_radii(struct sphgi_worker *w, const int32_t *places)
     put_units(w, radius);
     if (units)
         put_shares(w, radius);
-    if (!w->sweep->plan->classic) {
+    if (w->sweep->plan->classic) {
+        put_own(w, radius);
+    } else {
         w->shape.inverse_lanes = sphgi_lane(w, w->radii.inverse, 0);
         w->shape.factor_lanes = sphgi_lane(w, w->radii.factor, 0);
     }

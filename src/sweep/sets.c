@@ -67,8 +67,9 @@ static sphg_result sweep_by_steps(struct sphgi_task *task, struct sphgi_selectio
     return result;
 }
 
-static sphg_result sweep_diffusion_sets(struct sphgi_task *task, struct sphgi_selection *selection,
-                                        unsigned steps, struct sphgi_tally *tally)
+/* All targets through all sets, step by step. */
+static sphg_result sweep_over_table(struct sphgi_task *task, struct sphgi_selection *selection,
+                                    unsigned steps, struct sphgi_tally *tally)
 {
     struct sphgi_sweep *sweep = &task->sweep;
     struct sphgi_columns table;
@@ -94,8 +95,8 @@ static bool see_who_waits(struct sphgi_sweep *sweep)
 }
 
 /* Targets far from all other sets are done by a single sweep, in rounds. Weights are not negative:
- * whoever has no moments in a set has nothing there. Every sweep runs, also where nobody has a
- * turn: what memory they need depends on counts alone. */
+ * whoever has no moments in a set has nothing there, unless radii of sources count, too. Every
+ * sweep runs, also where nobody has a turn: what memory they need depends on counts alone. */
 static sphg_result sweep_classic_sets(struct sphgi_task *task, struct sphgi_selection *selection,
                                       unsigned steps, struct sphgi_tally *tally)
 {
@@ -153,10 +154,11 @@ sphg_result sphgi_sweep_sets(struct sphgi_task *task, struct sphgi_selection *se
     if (!open_put_away(sweep))
         return SPHG_ERROR_MEMORY;
     const bool several = plan->set_count > 1;
-    const sphg_result result = several && slopes ? sweep_classic_sets(task, selection, steps, tally)
-                               : several && plan->diffuses && moments && fields
-                                   ? sweep_diffusion_sets(task, selection, steps, tally)
-                                   : sweep_sets(task, selection, steps, tally);
+    const bool table = plan->both_sides ? slopes || plan->diffuses : plan->diffuses;
+    const sphg_result result =
+        several && table && moments && fields ? sweep_over_table(task, selection, steps, tally)
+        : several && slopes                   ? sweep_classic_sets(task, selection, steps, tally)
+                                              : sweep_sets(task, selection, steps, tally);
     close_put_away(sweep, result || tally->bad_target >= 0);
     return result;
 }

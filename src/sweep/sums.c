@@ -10,6 +10,7 @@
 #include "quadratic.h"
 #include "values.h"
 #include "core/view.h"
+#include <string.h>
 
 /* Classic gradients are whole; those of the linearised methods still lack C_i. */
 static enum sphgi_vectors vectors_of(const struct sphgi_worker *w)
@@ -61,6 +62,17 @@ static void sum_one_sided(struct sphgi_worker *w, const struct sphgi_field_plan 
                                sphgi_lane(w, w->reduced, field->square_sum));
 }
 
+/* ... where sources have radii of their own. */
+static void form_transposed_other(struct sphgi_worker *w, const void *const *table,
+                                  const void *density)
+{
+    struct sphgi_classic_other of = {.radii = w->rows.at[w->sweep->plan->radius_row],
+                                     .density = density,
+                                     .own_radius = sphgi_lane(w, w->radii.own, 0)};
+    memcpy(of.table, table, sizeof of.table);
+    w->passes->transposed_classic_other(&w->shape, &w->tile, &of);
+}
+
 /* T, the other half of what a pair is multiplied with. */
 static void form_transposed(struct sphgi_worker *w, bool symmetric)
 {
@@ -75,7 +87,9 @@ static void form_transposed(struct sphgi_worker *w, bool symmetric)
     }
     for (int32_t k = 0; k < rows; ++k)
         table[k] = w->rows.at[plan->correction_row + k];
-    if (plan->classic) {
+    if (plan->classic && plan->both_sides) {
+        form_transposed_other(w, table, symmetric ? density : NULL);
+    } else if (plan->classic) {
         const struct sphgi_scales units = sphgi_table_scales(&plan->scheme);
         w->passes->transposed_classic(&w->tile, plan->dimension, table, &units,
                                       plan->weighted ? sphgi_lane(w, w->own.volume, 0) : NULL,
@@ -116,13 +130,25 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
         sum_own_vectors(w, symmetric);
 }
 
-/* Where G_ji has a radius of its own, all that has ours comes first. */
+static void form_classic_vectors(struct sphgi_worker *w)
+{
+    const struct sphgi_plan *plan = w->sweep->plan;
+    w->passes->classic_vectors(&w->tile, plan->dimension, plan->weighted,
+                               sphgi_lane(w, w->coefficients, 0));
+}
+
+/* Where G_ji has a radius of its own, all that has ours comes first. Classic G_ji leave the weights
+ * of our side alone; where these pairs come before all others, nobody has formed G_ij yet. */
 static void turn_to_other_side(struct sphgi_worker *w)
 {
+    const struct sphgi_plan *plan = w->sweep->plan;
+    if (plan->classic && plan->narrows)
+        form_classic_vectors(w);
     for (int symmetric = 0; symmetric < 2; ++symmetric)
-        if (w->sweep->plan->sums_transposed[symmetric])
+        if (plan->sums_transposed[symmetric])
             sum_own_vectors(w, symmetric);
-    sphgi_weigh_other_side(w);
+    if (!plan->classic)
+        sphgi_weigh_other_side(w);
 }
 
 void sphgi_sum_over_both_ends(struct sphgi_worker *w)
@@ -164,8 +190,7 @@ static void sum_fields(struct sphgi_worker *w)
         return;
     }
     if (plan->classic && plan->corrects)
-        w->passes->classic_vectors(&w->tile, plan->dimension, plan->weighted,
-                                   sphgi_lane(w, w->coefficients, 0));
+        form_classic_vectors(w);
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates && field->one_sided)

@@ -78,6 +78,7 @@ static void narrow(struct sphgi_worker *w)
     }
     w->sweep->position_passes->gather[plan->type == SPHG_F64](&w->near, sphgi_places(w),
                                                               w->passes->lanes, &w->tile);
+    sphgi_scale_volumes(w);
     sphgi_weigh_tile(w);
 }
 

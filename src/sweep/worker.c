@@ -84,6 +84,7 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(radii.inverse, plan->graded ? SPHGI_WIDTH : 0, size);
     CARVE(radii.inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
     CARVE(radii.factor, plan->graded ? SPHGI_WIDTH : 0, size);
+    CARVE(radii.own, plan->graded && plan->classic ? SPHGI_WIDTH : 0, size);
     CARVE(radii.shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
     CARVE(curvature.share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
     CARVE(curvature.hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
