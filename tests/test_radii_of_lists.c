@@ -132,6 +132,40 @@ static void lists_of_a_search_give_its_bits(const test_case *test)
     }
 }
 
+static setup_array heat_of(const comparison *on, const setup_array *table)
+{
+    const int n = on->points.count;
+    const setup_array field = setup_numbers(test_field_type(on->test), n, 1,
+                                            comparison_random_field(on, SPHG_SCALAR, 11)),
+                      out = setup_output(test_field_type(on->test), n, 1);
+    const sphg_view values = setup_view(&field);
+    sphg_sources sources = comparison_sources(on);
+    sources.correction = comparison_table_view(on, table);
+    const sphg_field asked = {.shape = SPHG_SCALAR,
+                              .form = SPHG_ADJOINT,
+                              .at_sources = &values,
+                              .laplacian = setup_view(&out)};
+    const sphg_request request = {
+        .sources = &sources, .fields = &asked, .set_count = 1, .field_count = 1};
+    SETUP_OK(on->context, sphg_evaluate(on->context, &on->scheme, &request));
+    return out;
+}
+
+/* Diffusion, over the lists of a search and over wider ones. */
+static void heat_flows_as_over_a_search(const test_case *test)
+{
+    for (int copy = 0; copy < 2; ++copy) {
+        const comparison on = stage(test, 8, 1);
+        const setup_array table = comparison_table(&on), expected = heat_of(&on, &table);
+        const sphg_lists same = lists_of_search(&on), wide = wide_lists(&on);
+        const comparison listed = over_lists(&on, &same, copy),
+                         wider = over_lists(&on, &wide, copy);
+        const setup_array found = heat_of(&listed, &table), close = heat_of(&wider, &table);
+        TEST_REQUIRE(setup_same_bits(&found, &expected), "copy %d", copy);
+        setup_require_close(&close, &expected, test_text("copy %d", copy));
+    }
+}
+
 /* Targets apart with their own radii, and sources of two sets, by a search and by lists. */
 static void sets_of_lists_and_searches_add_up(const test_case *test)
 {
@@ -342,6 +376,8 @@ static const test_entry entries[] = {
                0),
     TEST_ENTRY(lists_of_a_search_give_its_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(heat_flows_as_over_a_search, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(sets_of_lists_and_searches_add_up, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(nothing_comes_from_beyond_the_radii, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
