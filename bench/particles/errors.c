@@ -48,7 +48,7 @@ double linear_field_worst(const struct numbers *jacobians, const uint8_t *ranks)
     const int32_t full = jacobians->width == 9 ? 3 : 2;
     double most = -1;
     for (int32_t i = 0; i < jacobians->count; ++i)
-        if (!ranks || ranks[i] == full)
+        if (!ranks || ranks[i] >= full)
             most = numbers_larger(most, linear_field_error(jacobians, i));
     return most < 0 ? (double)NAN : most;
 }

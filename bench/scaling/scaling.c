@@ -16,6 +16,8 @@ struct scaling_case {
     struct cloud_setting cloud;
     int32_t threads;
     bool keeps_weights;
+    sphg_method method;
+    int32_t order;
     struct samples time[WORKS];
     int32_t count;
     double pairs, bytes; /* a particle */
@@ -51,20 +53,16 @@ static const struct scaling_case all_cases[] = {
     {.group = "cloud", .label = "thin sheets", .cloud = {.shape = CLOUD_SHEETS}},
     {.group = "cloud", .label = "spray", .cloud = {.shape = CLOUD_SPRAY}},
     {.group = "cloud", .label = "jittered, far away", .cloud = {.shape = CLOUD_FAR}},
+    {.group = "method", .label = "KGC"},
+    {.group = "method", .label = "KGC, order 2", .order = 2},
+    {.group = "method", .label = "CMLS", .method = SPHG_CMLS},
+    {.group = "method", .label = "CRKPM", .method = SPHG_CRKPM},
     {.group = "weights", .label = "formed each time"},
     {.group = "weights", .label = "kept, which matrices write", .keeps_weights = true},
-    {.group = "radii",
-     .label = "largest / smallest 1",
-     .cloud = {.shape = CLOUD_GRADED, .ratio = 1}},
-    {.group = "radii",
-     .label = "largest / smallest 2",
-     .cloud = {.shape = CLOUD_GRADED, .ratio = 2}},
-    {.group = "radii",
-     .label = "largest / smallest 8",
-     .cloud = {.shape = CLOUD_GRADED, .ratio = 8}},
-    {.group = "radii",
-     .label = "largest / smallest 64",
-     .cloud = {.shape = CLOUD_GRADED, .ratio = 64}}};
+    {.group = "radii", .label = "ratio 1", .cloud = {.shape = CLOUD_GRADED, .ratio = 1}},
+    {.group = "radii", .label = "ratio 2", .cloud = {.shape = CLOUD_GRADED, .ratio = 2}},
+    {.group = "radii", .label = "ratio 8", .cloud = {.shape = CLOUD_GRADED, .ratio = 8}},
+    {.group = "radii", .label = "ratio 64", .cloud = {.shape = CLOUD_GRADED, .ratio = 64}}};
 enum { CASES = sizeof all_cases / sizeof all_cases[0], POWERS_OF_TWO = 32 };
 
 struct scaling {
@@ -112,6 +110,8 @@ static struct scene open_scene(const struct scaling_case *one)
 {
     const struct cloud cloud = cloud_create(&one->cloud);
     const sphg_scheme scheme = {.dimension = one->cloud.dimension,
+                                .method = one->method,
+                                .order = one->order,
                                 .support_radius = cloud.support_radius};
     struct scene scene =
         scene_open(library_open(one->threads), &scheme, cloud.positions, cloud.volumes);
@@ -219,8 +219,8 @@ int command_scaling(int argc, char **argv)
         {0}};
     settings_read(&scaling.settings, TAKES_LATTICE | TAKES_RUN, options,
                   "Times search, matrices, gradient and both in one call for a tenth to ten times "
-                  "the particles, for threads, neighbour counts, orders in memory and shapes of "
-                  "the cloud.",
+                  "the particles, for threads, neighbour counts, orders in memory, shapes of the "
+                  "cloud, methods and radii.",
                   argc, argv);
     create_cases(&scaling);
     measure(&scaling);

@@ -100,9 +100,10 @@ case $command in
             scaling/threads/1/ case_threads 1 1 scaling/threads/2/ case_threads 2 2 \
             'scaling/cloud/thin sheets' deficient_share 0.5 1 \
             'scaling/radii/' error_max 1e-9 1e-5 'scaling/radii/' pairs_per_particle 10 60 \
+            'scaling/method/' error_max 1e-9 1e-3 \
             'scaling/weights/' error_max 1e-9 1e-5 'scaling/weights/kept' bytes_per_particle 150 600 \
             scaling/cloud/spray deficient_share 0.9 1 scaling/cloud/spray pairs_per_particle 1 3
-        [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 29 ]
+        [ "$(grep -c '^[a-z]' "$work/scaling/scaling.csv")" -eq 33 ]
         ! grep -q 'scaling.png' "$work/output" || [ -s "$work/scaling/scaling.png" ]
         ;;
     solver)
