@@ -203,6 +203,153 @@ static void halves_apart_match_the_oracle(const test_case *test)
     }
 }
 
+/* ---- Crowds ------------------------------------------------------------------------------------
+ */
+
+enum { CROWD = 1200 };
+
+/* Lists of one chunk and of many, more than stay between rounds over the pairs; with radii that
+ * grow from 1 to 4 and few large particles among them. */
+typedef struct crowd {
+    setup_array x, h, volume, density, numbers, table;
+    sphg_geometry geometry;
+    sphg_scheme scheme;
+    const test_case *test;
+} crowd;
+
+static crowd crowd_of(const test_case *test, graded_way way)
+{
+    random_state random = random_seeded(91);
+    const int d = test->dimension;
+    const double side = d == 2 ? 9 : 6;
+    cloud points = cloud_random(d, CROWD, side, &random);
+    crowd made = {.test = test, .scheme = setup_scheme(test, 0)};
+    double *radii = test_memory(CROWD * sizeof *radii);
+    for (int i = 0; i < CROWD; ++i)
+        radii[i] = i % 97 ? .5 + points.x[i * d] / 12 : side / 2.1;
+    made.x = setup_positions(test, &points);
+    made.h = setup_numbers(test_position_type(test), CROWD, 1, radii);
+    const sphg_type type = test_field_type(test);
+    made.volume = setup_numbers(type, CROWD, 1, cloud_volumes(&points, .2, &random));
+    made.density = setup_numbers(type, CROWD, 1, cloud_numbers(&points, .5, 1.5, &random));
+    const int width = d * (d + 1) / 2;
+    double *numbers = test_memory((size_t)(CROWD * width) * sizeof *numbers);
+    for (int k = 0; k < CROWD * width; ++k)
+        numbers[k] = random_between(&random, -1, 1);
+    made.numbers = setup_numbers(type, CROWD, width, numbers);
+    made.geometry = setup_geometry(test, &points, &made.x);
+    made.geometry.source_support = setup_view(&made.h);
+    made.geometry.mutual = 1;
+    made.geometry.skin = way & GRADED_MOVED ? .1 : 0;
+    for (int a = 0; way & GRADED_AROUND && a < d; ++a)
+        made.geometry.period[a] = side;
+    return made;
+}
+
+typedef struct pushed {
+    setup_array force, table;
+} pushed;
+
+/* What acts on the selected ones; table NULL: corrections of the targets, which stand apart, come
+ * in the same sweep and are handed out. */
+static pushed push(const crowd *of, sphg_context *context, sphg_neighbors *neighbors,
+                   sphg_form form, const setup_array *sources_table, const setup_array *table,
+                   const sphg_subset *subset)
+{
+    const int width = sphg_correction_width(&of->scheme);
+    const int computes = !table && width;
+    pushed made = {setup_output(test_field_type(of->test), CROWD, of->test->dimension),
+                   setup_output(test_field_type(of->test), CROWD, computes ? width : 1)};
+    const sphg_view at_sources = setup_view(&of->numbers);
+    const sphg_sources sources = {.neighbors = neighbors,
+                                  .volume = setup_view(&of->volume),
+                                  .density = setup_view(&of->density),
+                                  .correction = width ? setup_view(sources_table) : sphg_absent()};
+    const sphg_field field = {.shape = SPHG_SYM_TENSOR,
+                              .form = form,
+                              .at_sources = &at_sources,
+                              .at_targets = at_sources,
+                              .divergence = setup_view(&made.force)};
+    sphg_request request = {.sources = &sources,
+                            .fields = &field,
+                            .set_count = 1,
+                            .field_count = 1,
+                            .subset = subset,
+                            .target_volume = sources.volume,
+                            .target_density = sources.density};
+    if (table && width)
+        request.target_correction = setup_view(table);
+    if (computes)
+        request.correction = setup_view(&made.table);
+    SETUP_OK(context, sphg_evaluate(context, &of->scheme, &request));
+    return made;
+}
+
+static setup_array table_of(const crowd *of, sphg_context *context, sphg_neighbors *neighbors)
+{
+    const int width = sphg_correction_width(&of->scheme);
+    const setup_array table = setup_output(test_field_type(of->test), CROWD, width ? width : 1);
+    const sphg_sources sources = {.neighbors = neighbors, .volume = setup_view(&of->volume)};
+    if (width)
+        SETUP_OK(context, sphg_correction(context, &of->scheme, &sources, NULL, setup_view(&table),
+                                          sphg_absent()));
+    return table;
+}
+
+static void corrections_on_the_way_give_the_bits_of_a_table(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const crowd of = crowd_of(test, (graded_way)way);
+        sphg_context *context = setup_context();
+        sphg_geometry apart = of.geometry;
+        apart.targets = apart.sources;
+        apart.target_support = apart.source_support;
+        sphg_neighbors *const own = setup_search(context, &of.scheme, &of.geometry);
+        sphg_neighbors *const neighbors = setup_search(context, &of.scheme, &apart);
+        const setup_array table = table_of(&of, context, own);
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form) {
+            const pushed fused = push(&of, context, neighbors, (sphg_form)form, &table, NULL, NULL);
+            const pushed given =
+                push(&of, context, neighbors, (sphg_form)form, &table, &fused.table, NULL);
+            TEST_REQUIRE(setup_same_bits(&fused.force, &given.force), "%s, form %d",
+                         graded_way_name((graded_way)way), form);
+        }
+    }
+}
+
+/* Threads, pairs that are found on the spot, and which targets are asked for. */
+static void no_way_of_summing_changes_a_bit(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const crowd of = crowd_of(test, (graded_way)way);
+        sphg_context *context = setup_context_of(1);
+        sphg_neighbors *const alone = setup_search(context, &of.scheme, &of.geometry);
+        const setup_array table = table_of(&of, context, alone);
+        const pushed expected = push(&of, context, alone, SPHG_ADJOINT, &table, &table, NULL);
+        for (int other = 0; other < 3; ++other) {
+            sphg_geometry geometry = of.geometry;
+            geometry.list_free = other == 2 && !(way & GRADED_MOVED); /* a skin keeps pairs */
+            sphg_context *several = setup_context_of(2 + other);
+            sphg_neighbors *const neighbors = setup_search(several, &of.scheme, &geometry);
+            const pushed found = push(&of, several, neighbors, SPHG_ADJOINT, &table, &table, NULL);
+            TEST_REQUIRE(setup_same_bits(&expected.force, &found.force), "%s, way %d",
+                         graded_way_name((graded_way)way), other);
+        }
+        uint8_t *mask = test_memory(CROWD);
+        for (int every = 2; every < 60; every *= 5) {
+            for (int i = 0; i < CROWD; ++i)
+                mask[i] = every == 2 ? i % 3 != 0 : i % every == 0;
+            const sphg_subset some = sphg_masked(mask, CROWD);
+            const pushed found = push(&of, context, alone, SPHG_ADJOINT, &table, &table, &some);
+            for (int i = 0; i < CROWD; ++i)
+                for (int a = 0; mask[i] && a < test->dimension; ++a)
+                    TEST_REQUIRE(setup_get(&found.force, i, a) == setup_get(&expected.force, i, a),
+                                 "%s, target %d of every %d", graded_way_name((graded_way)way), i,
+                                 every);
+        }
+    }
+}
+
 /* ---- What is not finite ------------------------------------------------------------------------
  */
 
@@ -302,6 +449,10 @@ static const test_entry entries[] = {
     TEST_ENTRY(forces_alone_have_the_bits_of_those_among_others, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
     TEST_ENTRY(halves_apart_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_ALL_METHODS, 0),
+    TEST_ENTRY(corrections_on_the_way_give_the_bits_of_a_table, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS, 0),
+    TEST_ENTRY(no_way_of_summing_changes_a_bit, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(nothing_comes_from_beyond_both_radii, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
