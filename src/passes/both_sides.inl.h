@@ -37,10 +37,17 @@ SPHGI_TEMPLATE void both_of_pairs(const struct sphgi_gather *g, const struct sph
     const int32_t steps = tile->steps;
     const ptrdiff_t stride = tile->id_stride;
     const ptrdiff_t ahead = ids == tile->own_ids ? 0 : AHEAD * stride;
+    const uint32_t *to_come = ids_ahead(tile);
+    const real *also = tile->also ? tile->also : rows;
     uint32_t *kept = tile->own_ids;
     real *at = tile->arrays;
     for (int32_t k = 0; k < steps; ++k, at += LANES, ids += stride, kept += LANES) {
         __builtin_prefetch(ids + ahead);
+        if (!masked) {
+            ask_for_rows(rows, also, to_come, tile->scattered);
+            ask_for_more_rows(tile, to_come);
+        }
+        to_come += stride;
         const struct four row = gather_rows(rows, ids);
         vec dx = own.x - row.x, dy = own.y - row.y, dz = own.z - row.z;
         vec square = plus(dx * dx, dy, dy);
