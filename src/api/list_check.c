@@ -264,7 +264,7 @@ static sphg_result report(const struct list_check *check, const sphg_list_fault 
     sphg_context *context = check->checker.context;
     const char *f = check->checker.function;
     const int target = (int)fault->target, source = (int)fault->source;
-    switch (fault->kind) {
+    switch (fault->kind) { /* NOLINT(bugprone-branch-clone): the messages differ */
     case SPHG_FAULT_NONE:
         return SPHG_OK;
     case SPHG_FAULT_LENGTH:

@@ -62,13 +62,19 @@ static sphg_result check_set(struct sphgi_plan_builder *builder, int32_t s)
     return SPHG_OK;
 }
 
+static bool have_same_periods(const sphg_neighbors *a, const sphg_neighbors *b)
+{
+    return a->period[0] == b->period[0] && a->period[1] == b->period[1] &&
+           a->period[2] == b->period[2];
+}
+
 /* Sums of all sets are added target by target: each must mean the same ones. In other types, or
  * with other periods, the same place may be another number. */
 static sphg_result check_same_targets(struct sphgi_plan_builder *builder, int32_t s)
 {
     const sphg_neighbors *a = builder->plan->sets[0].neighbors,
                          *b = builder->plan->sets[s].neighbors;
-    if (a->position_type != b->position_type || memcmp(a->period, b->period, sizeof a->period) != 0)
+    if (a->position_type != b->position_type || !have_same_periods(a, b))
         return SPHG_OK;
     const int32_t target = sphgi_first_elsewhere(builder->checker.context, a, b);
     if (target >= 0)

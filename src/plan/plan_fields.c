@@ -99,6 +99,7 @@ static sphg_result take_hessian(struct sphgi_plan_builder *builder, int32_t k)
                      builder->checker.function, (int)k);
     for (int32_t c = 0; c < (given->shape == SPHG_VECTOR ? d : 1); ++c) {
         sphg_view one = *view;
+        /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): c < d, which is at most 3 */
         one.x = split ? start[c] : (const char *)view->x + (size_t)c * bytes;
         one.y = one.z = NULL;
         const char *name = sphgi_name_view(builder, "fields[%d].hessian, component %d", k, c);

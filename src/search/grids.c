@@ -28,8 +28,8 @@ static void compare_task(void *data, int32_t begin, int32_t end, int32_t worker)
     for (int32_t k = begin; k < end; ++k) {
         const char *then = (const char *)grid->rows.data + (size_t)k * size;
         const char *now = comparison->rows + (size_t)order[k] * size;
-        if (f64 ? memcmp(then, now, SPHGI_ROW * sizeof(double))
-                : memcmp(then, now, SPHGI_ROW * sizeof(float))) {
+        if (f64 ? memcmp(then, now, SPHGI_ROW * sizeof(double)) != 0
+                : memcmp(then, now, SPHGI_ROW * sizeof(float)) != 0) {
             atomic_store(&comparison->moved, true);
             return;
         }

@@ -333,7 +333,7 @@ static bool guess(struct build *build)
     const int32_t step = sphgi_min32(SAMPLE, sphgi_max32(1, groups / SAMPLE));
     n->found.room = 0; /* only count */
     find_groups(build, step);
-    const double sampled = (groups + step - 1) / step;
+    const int32_t sampled = (groups + step - 1) / step;
     const double each = groups ? (double)n->found.ids_used / sampled : 0;
     int64_t ids = (int64_t)(each * groups);
     if (build->lists) {

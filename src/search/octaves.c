@@ -28,8 +28,10 @@ int32_t sphgi_octaves_for(const struct sphgi_raster *raster, double least, const
         double cells = axis->cells ? (double)axis->cells
                                    : largest_x[sphgi_number_of_axis(raster, a)] * axis->inverse;
         cells *= (double)((int64_t)1 << (octaves - 1));
-        for (; octaves > 1 && !(cells < 0x1p36); cells /= 2)
+        while (octaves > 1 && !(cells < 0x1p36)) {
+            cells /= 2;
             --octaves;
+        }
     }
     return octaves;
 }

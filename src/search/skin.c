@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "skin.h"
 #include "core/parallel.h"
+#include "extremes.h"
 #include <math.h>
 #include <string.h>
 
@@ -111,7 +112,7 @@ struct shares {
     const struct sphgi_periods *periods;
     const void *then, *now;
     sphg_type type;
-    atomic_int_least64_t largest; /* bits: those of numbers >= 0 rise as these do */
+    sphgi_extreme largest;
 };
 
 static double number_of(const struct shares *shares, const void *rows, int32_t k, int32_t number)
@@ -142,16 +143,12 @@ static void share_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     struct shares *shares = data;
     double largest = 0;
-    int64_t bits;
     (void)worker;
     for (int32_t k = begin; k < end; ++k) {
         const double share = share_of(shares, k);
         largest = share > largest ? share : largest;
     }
-    memcpy(&bits, &largest, sizeof bits);
-    int_least64_t seen = atomic_load(&shares->largest);
-    while (seen < bits && !atomic_compare_exchange_weak(&shares->largest, &seen, bits))
-        ;
+    sphgi_raise(&shares->largest, largest);
 }
 
 static double largest_share(sphg_context *context, const struct sphgi_geometry *g, const void *then,
@@ -159,12 +156,9 @@ static double largest_share(sphg_context *context, const struct sphgi_geometry *
 {
     struct shares shares = {
         .periods = &g->periods, .then = then, .now = now, .type = g->position_type};
-    atomic_store(&shares.largest, 0);
+    sphgi_extreme_set(&shares.largest, 0);
     sphgi_parallel_for(context, share_task, &shares, count, GRAIN);
-    const int64_t bits = atomic_load(&shares.largest);
-    double largest;
-    memcpy(&largest, &bits, sizeof largest);
-    return largest;
+    return sphgi_extreme_get(&shares.largest);
 }
 
 /* As skin_reserve, of the smallest radius. */

@@ -27,7 +27,7 @@ enum sphgi_weight sphgi_source_weight(const struct sphgi_plan *plan, bool symmet
     return volume ? SPHGI_WEIGHT_V : SPHGI_WEIGHT_ONE;
 }
 
-static char *number(const struct folding *f, double *lanes, int32_t n)
+static char *number(const struct folding *f, void *lanes, int32_t n)
 {
     return (char *)lanes + (size_t)n * SPHGI_WIDTH * sphgi_size_of_type(f->sweep->plan->type);
 }
@@ -122,7 +122,8 @@ static const double *product(struct folding *f)
     if (plan->correction_stream < 0)
         return f->a;
     load(f, &f->sweep->set->streams[plan->correction_stream].columns, numbers, f->raw);
-    sphgi_take_from_table(p, f->share, f->width, plan->type, (char *)f->raw, (char *)f->correction);
+    sphgi_take_from_table(p, f->share, f->width, plan->type, number(f, f->raw, 0),
+                          number(f, f->correction, 0));
     if (f->field->shape == SPHG_SYM_TENSOR)
         make_whole(f);
     if (f->field->shape == SPHG_SCALAR)

@@ -34,7 +34,8 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
             *(type *)(void *)z = number[SPHGI_GZ * SPHGI_TILE];                                    \
     }
 
-/* The same into blocks, as far as each of them goes. */
+/* The same into blocks, as far as each of them goes. A type takes no parentheses.
+ * NOLINTBEGIN(bugprone-macro-parentheses) */
 #define COPY_TO_BLOCKS(type)                                                                       \
     for (int32_t k = 0, end; k < count; k = end) {                                                 \
         type *x = (type *)(void *)sphgi_pair_number(to, 0, place + k);                             \
@@ -47,6 +48,7 @@ static int32_t pairs_of_lane(const struct sphgi_worker *w, int32_t lane, int32_t
                 x[2 * block] = number[SPHGI_GZ * SPHGI_TILE];                                      \
         }                                                                                          \
     }
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 static void copy_to_blocks(const struct sphgi_worker *w, const int32_t *at, int32_t count,
                            int64_t place)
@@ -92,12 +94,14 @@ void sphgi_write_lane(struct sphgi_worker *w, int32_t lane, int32_t of)
         return;
     int32_t *to = pairs->indices + place;
     const int32_t *items = w->rows.items;
+    /* NOLINTBEGIN(clang-analyzer-core.UndefinedBinaryOperatorResult): there are `count` ids */
     if (items)
         for (int32_t k = 0; k < count; ++k)
             to[k] = items[ids[k] / SPHGI_ID_STEP];
     else
         for (int32_t k = 0; k < count; ++k)
             to[k] = (int32_t)(ids[k] / SPHGI_ID_STEP);
+    /* NOLINTEND(clang-analyzer-core.UndefinedBinaryOperatorResult) */
     if (pairs->gradient.block)
         copy_to_blocks(w, at, count, place);
     else if (pairs->gradient.columns.count)

@@ -144,7 +144,7 @@ size_t sphgi_record_bytes(const struct sphgi_sweep *sweep)
 bool sphgi_fill_records(const struct sphgi_sweep *sweep, const int32_t *order, int64_t begin,
                         int64_t end, char *to)
 {
-    const struct sphgi_field_plan *field = field_of(sweep);
+    const struct sphgi_field_plan *field = sweep->plan->fields; /* there is one */
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t size = sphgi_size_of_type(sweep->plan->type);
     const int32_t axes = axes_of(sweep), width = width_of(sweep);

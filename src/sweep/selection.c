@@ -101,6 +101,7 @@ static void mark_masked_task(void *data, int32_t begin, int32_t end, int32_t wor
         const int32_t count = selected_from(selection->subset->mask, first + k,
                                             first + sphgi_min32(end, k + STRETCH), targets);
         for (int32_t l = 0; l < count; ++l) {
+            /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript): l < count */
             const int32_t place = masked->place[targets[l]];
             __atomic_fetch_or(&selection->active[place / SPHGI_GROUP],
                               (uint16_t)(1u << place % SPHGI_GROUP), __ATOMIC_RELAXED);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Put in front of every file by tests/run --analyse: what an analyser that sees one file at a time
  * cannot know of the others. Nothing that fails returns SPHG_OK; what was reserved is there. */
-#include "check.h"
-#include "context.h"
+#include "core/check.h"
+#include "core/context.h"
 
 #define sphgi_fail(context, result, ...)                                                           \
     ((void)(sphgi_fail)(context, result, __VA_ARGS__), (result))
