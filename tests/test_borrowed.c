@@ -36,7 +36,7 @@ static void compare_offer(const comparison *on, const second_order *found, const
     const int width = found->curvature.width;
     quad exact = offer.confidence, blur = offer.blur;
     if (lent) {
-        exact = oracle_confidence_lent(&on->scene, point, exact, lent, width);
+        exact = oracle_confidence_lent(point, exact, lent, width);
         blur += 256 * on->scene.unit;
     }
     const double off = setup_get(&found->curvature, i, 0) - (double)exact;

@@ -360,18 +360,46 @@ static void radii_keep_what_one_radius_keeps(const test_case *test)
 {
     for (int way = 0; way < GRADED_WAYS; ++way) {
         const comparison on = graded_stage_of(test, 2, 3.5, (graded_way)way);
+        const int full = test->method == SPHG_PLAIN || has_full_rank(&on);
+        assert_true(full || way || random_chosen());
         TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_SCALAR) / on.scene.unit, on.name);
         TEST_WITHIN(adjointness, work_imbalance(&on, SPHG_TENSOR) / on.scene.unit, on.name);
         require_linear(&on, SPHG_TENSOR, SPHG_ADJOINT, "adjoint");
         require_linear(&on, SPHG_SYM_TENSOR, SPHG_SYMMETRIC, "symmetric");
-        const int full = test->method == SPHG_PLAIN || has_full_rank(&on);
-        assert_true(full || way || random_chosen());
         if (way & GRADED_AROUND)
             continue;
         if (full || !test_is_classic(test))
             require_angular(&on, SPHG_SCALAR, SPHG_ADJOINT, "scalar");
         if (full && test->method != SPHG_PLAIN)
             require_angular(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT, "symmetric tensor");
+        require_angular_lost(&on, SPHG_TENSOR, SPHG_ADJOINT);
+    }
+}
+
+static void require_small(const comparison *on, double imbalance, const char *what)
+{
+    TEST_WITHIN(second_over_radii, imbalance / on->scene.unit, test_text("%s, %s", what, on->name));
+}
+
+static void radii_keep_what_order_2_keeps(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        comparison on = graded_stage_of(test, 2, 3.5, (graded_way)way);
+        const int full = has_full_rank(&on);
+        on.scheme.order = 2;
+        require_small(&on, work_imbalance(&on, SPHG_SCALAR), "work");
+        require_small(&on, work_imbalance(&on, SPHG_TENSOR), "work of a tensor");
+        for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
+            require_small(&on, linear_imbalance(&on, forces_of(&on, SPHG_TENSOR, (sphg_form)form)),
+                          "linear momentum");
+        if (way & GRADED_AROUND)
+            continue;
+        require_small(&on, angular_imbalance(&on, forces_of(&on, SPHG_SCALAR, SPHG_ADJOINT)),
+                      "angular momentum");
+        if (full)
+            require_small(&on,
+                          angular_imbalance(&on, forces_of(&on, SPHG_SYM_TENSOR, SPHG_ADJOINT)),
+                          "angular momentum of a symmetric tensor");
         require_angular_lost(&on, SPHG_TENSOR, SPHG_ADJOINT);
     }
 }
@@ -405,6 +433,8 @@ static const test_entry entries[] = {
                TEST_LINEARISED, 0),
     TEST_ENTRY(radii_keep_what_one_radius_keeps, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
+    TEST_ENTRY(radii_keep_what_order_2_keeps, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
     TEST_ENTRY(lists_cut_at_both_ends_conserve, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(one_sided_lists_conserve_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,

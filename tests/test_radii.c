@@ -682,15 +682,10 @@ static void what_has_one_radius_says_so(const test_case *test)
         setup_numbers(test_field_type(test), n, 1, comparison_random_field(&on, SPHG_SCALAR, 7));
     const setup_array out = setup_output(test_field_type(test), n, test->dimension);
     sphg_sources sources = comparison_sources(&on);
-    sphg_scheme second = on.scheme;
-    second.order = 2;
     require_refused(&on,
                     sphg_force(on.context, &on.scheme, &sources, NULL, SPHG_SCALAR, setup_view(&a),
                                setup_view(&out)),
                     SPHG_ERROR_UNSUPPORTED, "not mutual");
-    require_refused(
-        &on, sphg_gradient(on.context, &second, &sources, NULL, setup_view(&a), setup_view(&out)),
-        SPHG_ERROR_UNSUPPORTED, "scheme.order");
     const comparison one = comparison_of(test, "block", cloud_copy(&on.points), .25);
     sphg_sources sets[2] = {sources, comparison_sources(&one)};
     sphg_view at_sources[2] = {setup_view(&a), setup_view(&a)};

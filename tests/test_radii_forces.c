@@ -42,6 +42,12 @@ static void radii_far_apart_match_the_oracle(const test_case *test)
             compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
 }
 
+/* Orders that a method has. */
+static int orders_of(const test_case *test)
+{
+    return test_is_classic(test) || test->method == SPHG_PLAIN ? 1 : 2;
+}
+
 /* ---- The same bits --------------------------------------------------------------------------- */
 
 enum { MIXED = 5 };
@@ -87,8 +93,9 @@ static void require_alone_as_together(const comparison *on, const sphg_sources *
 /* Pairs may be weighed with both radii at once, or one after the other, with a guard or without. */
 static void forces_alone_have_the_bits_of_those_among_others(const test_case *test)
 {
-    for (int way = 0; way < GRADED_WAYS; ++way) {
-        const comparison on = graded_stage_of(test, 8, 2.2, (graded_way)way);
+    for (int k = 0; k < GRADED_WAYS * orders_of(test); ++k) {
+        comparison on = graded_stage_of(test, 8, 2.2, (graded_way)(k % GRADED_WAYS));
+        on.scheme.order = 1 + k / GRADED_WAYS;
         const setup_array table = comparison_table(&on);
         sphg_sources sources = comparison_sources(&on);
         if (test->method != SPHG_PLAIN)
@@ -217,13 +224,14 @@ typedef struct crowd {
     const test_case *test;
 } crowd;
 
-static crowd crowd_of(const test_case *test, graded_way way)
+static crowd crowd_of(const test_case *test, int order, graded_way way)
 {
     random_state random = random_seeded(91);
     const int d = test->dimension;
     const double side = d == 2 ? 9 : 6;
     cloud points = cloud_random(d, CROWD, side, &random);
     crowd made = {.test = test, .scheme = setup_scheme(test, 0)};
+    made.scheme.order = order;
     double *radii = test_memory(CROWD * sizeof *radii);
     for (int i = 0; i < CROWD; ++i)
         radii[i] = i % 97 ? .5 + points.x[i * d] / 12 : side / 2.1;
@@ -298,8 +306,9 @@ static setup_array table_of(const crowd *of, sphg_context *context, sphg_neighbo
 
 static void corrections_on_the_way_give_the_bits_of_a_table(const test_case *test)
 {
-    for (int way = 0; way < GRADED_WAYS; ++way) {
-        const crowd of = crowd_of(test, (graded_way)way);
+    for (int k = 0; k < GRADED_WAYS * orders_of(test); ++k) {
+        const int way = k % GRADED_WAYS;
+        const crowd of = crowd_of(test, 1 + k / GRADED_WAYS, (graded_way)way);
         sphg_context *context = setup_context();
         sphg_geometry apart = of.geometry;
         apart.targets = apart.sources;
@@ -320,8 +329,9 @@ static void corrections_on_the_way_give_the_bits_of_a_table(const test_case *tes
 /* Threads, pairs that are found on the spot, and which targets are asked for. */
 static void no_way_of_summing_changes_a_bit(const test_case *test)
 {
-    for (int way = 0; way < GRADED_WAYS; ++way) {
-        const crowd of = crowd_of(test, (graded_way)way);
+    for (int k = 0; k < GRADED_WAYS * orders_of(test); ++k) {
+        const int way = k % GRADED_WAYS;
+        const crowd of = crowd_of(test, 1 + k / GRADED_WAYS, (graded_way)way);
         sphg_context *context = setup_context_of(1);
         sphg_neighbors *const alone = setup_search(context, &of.scheme, &of.geometry);
         const setup_array table = table_of(&of, context, alone);
@@ -370,8 +380,9 @@ static int are_near(const comparison *on, int i, int j, double slack)
 /* A value that is not finite reaches those near it and nobody else, whatever lists hold beside. */
 static void nothing_comes_from_beyond_both_radii(const test_case *test)
 {
-    for (int way = 0; way < GRADED_WAYS; ++way) {
-        const comparison on = graded_stage_of(test, 8, 2.2, (graded_way)way);
+    for (int way = 0; way < GRADED_WAYS * orders_of(test); ++way) {
+        comparison on = graded_stage_of(test, 8, 2.2, (graded_way)(way % GRADED_WAYS));
+        on.scheme.order = 1 + way / GRADED_WAYS;
         const setup_array table = comparison_table(&on);
         const int n = on.points.count;
         for (int k = 0; k < 6; ++k) {

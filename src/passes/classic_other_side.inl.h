@@ -3,20 +3,19 @@
  * polynomials of offsets in units of it. Rows hold the coefficients of j, taken to these units and
  * times all that G_ji has of j besides, V_j and powers of H_j (tables_by_radius.c). */
 
-/* T = - weight G_ji without V_i, in units of the plan's H. Offsets stand in units of H_i. The
- * dummy's 1 / H_j and coefficients are 0. */
+/* T = - weight G_ji without V_i, in units of the plan's H. The dummy's 1 / H_j and
+ * coefficients are 0. */
 SPHGI_TEMPLATE void classic_other_as(const struct sphgi_tile *tile,
-                                     const struct sphgi_classic_other *of, sphg_kernel kernel,
+                                     const struct sphgi_other_side *of, sphg_kernel kernel,
                                      bool three, bool dense)
 {
     const int32_t d = three ? 3 : 2;
-    const vec own_radius = load(of->own_radius);
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
-        const vec unit = own_radius * gather_rows(of->radii, ids_at(tile, k)).y;
-        const struct ratio at = ratio_of(from(tile, SPHGI_R, k), unit);
+        const vec unit = gather_rows(of->radii, ids_at(tile, k)).y;
+        const struct ratio at = ratio_of(from(tile, SPHGI_UR, k), unit);
         vec x[3], polynomial[4];
         for (int32_t a = 0; a < d; ++a)
-            x[a] = unit * from(tile, (enum sphgi_array)(SPHGI_X + a), k);
+            x[a] = unit * from(tile, (enum sphgi_array)(SPHGI_UX + a), k);
         for (int32_t m = 0; m <= d; ++m) {
             const struct four c = gather_rows(of->table[m], ids_at(tile, k));
             polynomial[m] = plus(plus(c.x, c.y, x[0]), c.z, x[1]);
@@ -37,7 +36,7 @@ SPHGI_TEMPLATE void classic_other_as(const struct sphgi_tile *tile,
 }
 
 SPHGI_TEMPLATE void classic_other_of(const struct sphgi_tile *tile,
-                                     const struct sphgi_classic_other *of, sphg_kernel kernel,
+                                     const struct sphgi_other_side *of, sphg_kernel kernel,
                                      bool three)
 {
     WITH(dense, of->density, classic_other_as(tile, of, kernel, three, dense));
@@ -46,7 +45,7 @@ SPHGI_TEMPLATE void classic_other_of(const struct sphgi_tile *tile,
 #define BY_KERNEL transposed_classic_other
 #define PARAMETERS                                                                                 \
     (const struct sphgi_shape *shape, const struct sphgi_tile *tile,                               \
-     const struct sphgi_classic_other *of)
+     const struct sphgi_other_side *of)
 #define ARGUMENTS    (shape, tile, of)
 #define CALL(kernel) WITH(three, shape->dimension == 3, classic_other_of(tile, of, kernel, three))
 #include "by_kernel.inl.h"

@@ -135,6 +135,14 @@ SPHGI_TEMPLATE struct four target_rows(const struct sphgi_gather *g, const int32
     return transpose(row);
 }
 
+/* What offsets are multiplied with, where radii of their own stand in the rows of the targets. */
+SPHGI_TEMPLATE vec unit_of_offsets(const struct sphgi_gather *g, vec radius)
+{
+    if (g->radii)
+        return R(1) / radius;
+    return splat(R(g->unit));
+}
+
 /* Of loops that gather pairs and weigh them (by_kernel.inl.h). */
 #define GATHER_PARAMETERS                                                                          \
     (const struct sphgi_gather *gather, const struct sphgi_shape *shape, const int32_t *targets,   \

@@ -68,6 +68,12 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
         vec r = vsqrt(square);
         if (how.masked)
             r = select(inside, r, far);
+        if (how.scaled && g->keeps) {
+            OUT_NAME(put)(at, SPHGI_UX, dx);
+            OUT_NAME(put)(at, SPHGI_UY, dy);
+            OUT_NAME(put)(at, SPHGI_UZ, dz);
+            OUT_NAME(put)(at, SPHGI_UR, r);
+        }
         if (how.scaled) {
             dx *= unit;
             dy *= unit;

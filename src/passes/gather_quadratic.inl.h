@@ -11,7 +11,7 @@ SPHGI_TEMPLATE void quadratic_of_pairs(const struct sphgi_gather *g,
     const sphg_method method = slope ? SPHG_KGC : SPHG_RKPM;
     const struct four own = target_rows(g, targets);
     const vec scale = factor_scale(shape, method), inverse_h = inverse_radius(shape);
-    const vec volume = splat(R(g->volume)), unit = splat(R(g->unit)), one = splat(R(1));
+    const vec volume = splat(R(g->volume)), unit = unit_of_offsets(g, own.w), one = splat(R(1));
     const mask in_rows = first_lanes(g->volumes ? LANES : 0);
     const mask weighed = first_lanes(shape->method == SPHG_MLS ? 0 : LANES);
     const uint32_t *ids = tile->ids;

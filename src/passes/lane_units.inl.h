@@ -28,6 +28,8 @@ static void lane_units(int32_t width, const struct sphgi_lane_units *units, cons
             all *= one;
         const radius_vec reciprocal = 1.0 / h, square = reciprocal * reciprocal;
         radius_vec weight = units->factor_of_h / h;
+        if (units->in_radii)
+            weight = units->factor_of_h - 0 * h;
         if (units->with_volume)
             weight *= all;
         put_rounded(&all, ratio, l);

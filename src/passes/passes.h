@@ -180,7 +180,7 @@ struct sphgi_passes {
 
     /* The same where sources have radii of their own. */
     void (*transposed_classic_other)(const struct sphgi_shape *shape, const struct sphgi_tile *tile,
-                                     const struct sphgi_classic_other *of);
+                                     const struct sphgi_other_side *of);
     /* Rows times a number each, and before that, unless it is NULL, times another. */
     void (*scale_rows)(int32_t count, const void *first, const void *second, void *rows);
 
@@ -188,6 +188,10 @@ struct sphgi_passes {
     void (*transposed_quadratic)(const struct sphgi_tile *tile, int32_t dimension,
                                  const void *const *rows, double between, const void *density,
                                  enum sphgi_weight kind);
+    /* The same where sources have radii of their own. */
+    void (*transposed_quadratic_other)(const struct sphgi_shape *shape,
+                                       const struct sphgi_tile *tile,
+                                       const struct sphgi_other_side *of);
 
     /* Sums: [sum][SPHGI_WIDTH]. */
     void (*sum_moments)(const struct sphgi_tile *tile, int32_t dimension, void *sums);

@@ -137,6 +137,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .transposed_classic_other = transposed_classic_other,
     .scale_rows = scale_rows,
     .transposed_quadratic = transposed_quadratic,
+    .transposed_quadratic_other = transposed_quadratic_other,
     .sum_moments = sum_moments,
     .sum_classic = sum_classic,
     .sum_classic_slopes = sum_classic_slopes,

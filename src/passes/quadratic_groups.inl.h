@@ -15,7 +15,7 @@ SPHGI_TEMPLATE void sums_as_read(const struct sphgi_group_sums *of, const struct
     const struct sphgi_group_field *field = of->field;
     const struct four target = target_rows(g, lists->places);
     const vec scale = factor_scale(shape, SPHG_KGC), inverse_h = inverse_radius(shape);
-    const vec volume = splat(R(g->volume)), unit = splat(R(g->unit));
+    const vec volume = splat(R(g->volume)), unit = unit_of_offsets(g, target.w);
     const mask in_rows = first_lanes(g->volumes ? LANES : 0);
     const real *rows = g->rows;
     vec moment[6], sum[9], own[SPHGI_ROW];

@@ -149,6 +149,55 @@ static void transposed_quadratic(const struct sphgi_tile *tile, int32_t dimensio
          transposed_quadratic_as(tile, rows, R(between), density, kind, three));
 }
 
+/* The same where sources have radii of their own: s_ji with H_j, without V_i, and offsets in units
+ * of it. The second to fourth numbers of `radii` are 1 / H_j, H_j, and what s_ji has besides the
+ * kernel, times H / H_j; those of the dummy are 0. */
+SPHGI_TEMPLATE void quadratic_other_as(const struct sphgi_shape *shape,
+                                       const struct sphgi_tile *tile,
+                                       const struct sphgi_other_side *of, sphg_kernel kernel,
+                                       bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3, streams = three ? 6 : 3;
+    const bool slope = shape->method == SPHG_KGC;
+    for (int32_t k = 0; k < places_of(tile); k += LANES) {
+        const struct four radius = gather_rows(of->radii, ids_at(tile, k));
+        const struct ratio at = ratio_of(from(tile, SPHGI_UR, k), radius.y);
+        const vec value = slope ? kernel_d(kernel, at) : kernel_w(kernel, at);
+        const vec s = weight_of(tile, k, of->density, of->weight) * radius.w * value;
+        vec x[3], g[3], p[PAIRS_MOST], c[24];
+        for (int a = 0; a < d; ++a) {
+            x[a] = radius.y * from(tile, (enum sphgi_array)(SPHGI_UX + a), k);
+            g[a] = s * x[a];
+        }
+        pair_products(g, x, three, p);
+        for (int r = 0; r < streams; ++r) {
+            const struct four row = gather_rows(of->table[r], ids_at(tile, k));
+            c[4 * r] = row.x;
+            c[4 * r + 1] = row.y;
+            c[4 * r + 2] = row.z;
+            c[4 * r + 3] = row.w;
+        }
+        for (int a = 0; a < d; ++a) {
+            vec sum = splat(R(0));
+            for (int m = 0; m < n; ++m)
+                sum = plus(sum, c[n + a * n + m], (is_square(m, three) ? R(.5) : R(1)) * p[m]);
+            sum *= radius.z;
+            for (int b = 0; b < d; ++b)
+                sum = plus(sum, c[sphgi_pair_index(a, b, d)], g[b]);
+            store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
+        }
+    }
+}
+
+#define BY_KERNEL transposed_quadratic_other
+#define PARAMETERS                                                                                 \
+    (const struct sphgi_shape *shape, const struct sphgi_tile *tile,                               \
+     const struct sphgi_other_side *of)
+#define ARGUMENTS (shape, tile, of)
+#define CALL(kernel)                                                                               \
+    WITH(three, shape->dimension == 3, quadratic_other_as(shape, tile, of, kernel, three))
+#include "by_kernel.inl.h"
+
 /* ---- Results -------------------------------------------------------------------------------- */
 
 /* (g, h) = [P Q; Q^T R] (b1, b2), b2 over x_a x_a halved. */

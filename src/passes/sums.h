@@ -53,7 +53,11 @@ enum sphgi_array {
     SPHGI_TZ,
     SPHGI_PHI, /* weight of the value: V_j W, classic Phi_j */
     SPHGI_P,   /* order 2: products s_ij x_a x_b of all pairs of axes, up to six arrays */
-    SPHGI_ARRAYS = SPHGI_P + 6,
+    SPHGI_UX = SPHGI_P + 6, /* x_ij itself, where it is to be scaled by the radius of j, too */
+    SPHGI_UY,
+    SPHGI_UZ,
+    SPHGI_UR, /* |x_ij| */
+    SPHGI_ARRAYS,
     SPHGI_L = SPHGI_GX, /* L_ij of diffusion, which no G_ij stand beside */
     SPHGI_W = SPHGI_D   /* W of linearised methods, where fields have volumes of their own */
 };
@@ -105,6 +109,7 @@ struct sphgi_gather {
     bool radii;    /* cutoff and unit are those of the targets: the 4th number of theirs */
     bool all;      /* ... but everybody in the list counts */
     bool either;   /* ... or whom either radius reaches: rows hold those of the sources */
+    bool keeps;    /* what is scaled stays beside it as it was */
     double volume; /* V_j otherwise */
     int32_t dimension;
     uint32_t dummy; /* id of the row that a pair beyond the cutoff is sent to */
@@ -228,12 +233,7 @@ struct sphgi_lane_units {
     double factor_of_h; /* w_scale times H */
     int32_t dimension;
     bool with_volume; /* s_ij holds V_j */
-};
-
-/* What the classic methods read of sources that have radii of their own: coefficients, 1 / H_j in
- * the second number of `radii`, rho_j or NULL; and a number per lane, H_i. */
-struct sphgi_classic_other {
-    const void *table[4], *radii, *density, *own_radius;
+    bool in_radii;    /* offsets are in units of the target's radius: no 1 / H is left in s_ij */
 };
 
 /* The second block of order 2 (theory.md, section 9). */
@@ -261,6 +261,13 @@ enum sphgi_weight {
     SPHGI_WEIGHT_V,
     SPHGI_WEIGHT_PER_DENSITY,
     SPHGI_WEIGHT_V_PER_DENSITY
+};
+
+/* What the classic methods and order 2 read of sources that have radii of their own: coefficients;
+ * H / H_j, 1 / H_j, H_j and, of order 2, a factor behind them in `radii`; rho_j or NULL. */
+struct sphgi_other_side {
+    const void *table[6], *radii, *density;
+    enum sphgi_weight weight; /* of order 2 */
 };
 
 /* Numbers of b_j. */

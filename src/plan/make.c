@@ -244,10 +244,6 @@ static sphg_result check_radii(struct sphgi_plan_builder *builder)
     const sphg_result result = sphgi_check_range(builder->checker, &plan->scheme, plan->type);
     if (result || !plan->graded)
         return result;
-    if (plan->quadratic)
-        SPHGI_REFUSE(SPHG_ERROR_UNSUPPORTED,
-                     "%s: scheme.order is 2, but the neighbours have a radius per particle",
-                     builder->checker.function);
     return sphgi_check_range(builder->checker, &smallest, plan->type);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "borrow.h"
 #include "core/view.h"
+#include "lane_radii.h"
 #include "table.h"
 
 static int32_t pairs_of(const struct sphgi_plan *plan)
@@ -69,8 +70,8 @@ void sphgi_add_borrowed(struct sphgi_worker *w, const struct sphgi_field_plan *f
 {
     const struct sphgi_borrowing borrowing = borrowing_of(w, field);
     w->passes->add_borrowed(w->batch.width, w->sweep->plan->dimension, field->components,
-                            &w->second, &borrowing, w->inverse_h, w->jacobian, w->curvature.hessian,
-                            laplacian);
+                            &w->second, &borrowing, sphgi_common(w, w->inverse_h), w->jacobian,
+                            w->curvature.hessian, laplacian);
 }
 
 void sphgi_store_lent(struct sphgi_worker *w, const struct sphgi_field_plan *field)

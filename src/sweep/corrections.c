@@ -19,7 +19,7 @@ static void invert_linearised(struct sphgi_worker *w, struct sphgi_verdict *verd
         scale = w->extra;
     }
     const void *moments = sphgi_lane(w, w->reduced, plan->moment_sum);
-    if (plan->graded)
+    if (plan->graded && !plan->quadratic)
         w->threshold.unit_lanes = sphgi_lane(w, w->radii.inverse, 0);
     void *correction = sphgi_lane(w, w->coefficients, 0);
     void *lambda_min = plan->lambda_min.count ? w->lambda_min : NULL;

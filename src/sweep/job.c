@@ -52,8 +52,8 @@ bool sphgi_weighs_near_at_once(const struct sphgi_sweep *sweep)
 {
     const struct sphgi_plan *plan = sweep->plan;
     const sphg_neighbors *n = sweep->set->neighbors;
-    return plan->narrows && !plan->classic && !n->periodic && !plan->wants_value &&
-           n->position_type == plan->type;
+    return plan->narrows && !plan->classic && !plan->quadratic && !n->periodic &&
+           !plan->wants_value && n->position_type == plan->type;
 }
 
 bool sphgi_sorts_out_pairs(const struct sphgi_sweep *sweep)

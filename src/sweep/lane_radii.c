@@ -16,19 +16,30 @@ static void put_units(struct sphgi_worker *w, const double *radius)
     const struct sphgi_lane_units units = {.largest = plan->scheme.radius,
                                            .factor_of_h = w->factor_of_h,
                                            .dimension = plan->dimension,
-                                           .with_volume = plan->scheme.method != SPHG_MLS};
+                                           .with_volume = plan->scheme.method != SPHG_MLS,
+                                           .in_radii = plan->quadratic};
     w->passes->lane_units(w->batch.width, &units, radius, sphgi_lane(w, w->radii.ratio, 0),
                           sphgi_lane(w, w->radii.inverse, 0),
                           sphgi_lane(w, w->radii.inverse_square, 0),
                           sphgi_lane(w, w->radii.factor, 0));
 }
 
+/* Numbers of order 2 have units in any table. */
+static bool has_units(const struct sphgi_worker *w)
+{
+    return w->sweep->plan->quadratic || sphgi_has_units(&w->sweep->plan->scheme);
+}
+
 /* A table's units, as sphgi_shares_of has them, lane by lane: mantissa and two powers of each. */
 static void put_shares(struct sphgi_worker *w, const double *radius)
 {
-    double factor[2][SPHGI_WIDTH];
+    double factor[SPHGI_SHARES][SPHGI_WIDTH];
     sphgi_table_scales_at(&w->sweep->plan->scheme, w->batch.width, radius, factor[0], factor[1]);
-    for (int32_t k = 0; k < 2 && w->share[k].count; ++k)
+    for (int32_t l = 0; w->sweep->plan->quadratic && l < w->batch.width; ++l) {
+        factor[1][l] = factor[0][l] / radius[l];
+        factor[2][l] = factor[1][l] / radius[l];
+    }
+    for (int32_t k = 0; k < SPHGI_SHARES && w->share[k].count; ++k)
         w->passes->lane_shares(w->batch.width, factor[k], share_lanes(w, k, 0),
                                share_lanes(w, k, 1), share_lanes(w, k, 2));
 }
@@ -41,31 +52,19 @@ static void radii_at(const sphg_neighbors *n, const int32_t *places, int32_t cou
         radius[l] = sphgi_radius_in(rows, type, places[l]);
 }
 
-static void put_own(struct sphgi_worker *w, const double *radius)
-{
-    char *to = sphgi_lane(w, w->radii.own, 0);
-    for (int32_t l = 0; l < w->batch.width; ++l)
-        if (w->sweep->plan->type == SPHG_F64)
-            ((double *)(void *)to)[l] = radius[l];
-        else
-            ((float *)(void *)to)[l] = (float)radius[l];
-}
-
 static void read_radii(struct sphgi_worker *w, const int32_t *places)
 {
     const int32_t width = w->batch.width;
-    const bool units = sphgi_has_units(&w->sweep->plan->scheme);
+    const bool units = has_units(w);
     double radius[SPHGI_WIDTH];
     radii_at(w->sweep->set->neighbors, places, width, radius);
     put_units(w, radius);
     if (units)
         put_shares(w, radius);
-    if (w->sweep->plan->classic) {
-        put_own(w, radius);
-    } else {
+    if (w->gather.unit == 1) /* else offsets are in units of it */
         w->shape.inverse_lanes = sphgi_lane(w, w->radii.inverse, 0);
+    if (!w->sweep->plan->classic)
         w->shape.factor_lanes = sphgi_lane(w, w->radii.factor, 0);
-    }
 }
 
 void sphgi_read_lane_radii(struct sphgi_worker *w)
@@ -82,7 +81,7 @@ void sphgi_keep_lane_radii(struct sphgi_worker *w, uint32_t kept)
         return;
     for (int32_t k = 0; k < 4; ++k)
         w->passes->pack_lanes(kept, 1, sphgi_lane(w, each[k], 0));
-    if (sphgi_has_units(&w->sweep->plan->scheme))
+    if (has_units(w))
         w->passes->pack_lanes(kept, 3 * SPHGI_SHARES, sphgi_lane(w, w->radii.shares, 0));
 }
 
@@ -114,25 +113,26 @@ void sphgi_weigh_other_side(struct sphgi_worker *w)
 
 /* ---- Tables --------------------------------------------------------------------------------- */
 
-static void divide(struct sphgi_worker *w, const struct sphgi_share *share, int32_t k)
+static void divide(struct sphgi_worker *w, const struct sphgi_share *share, int32_t k,
+                   char *coefficients)
 {
     for (int32_t c = share->first; c < share->first + share->count; ++c)
         w->passes->quotient(w->batch.width, sphgi_lane(w, w->raw, c), share_lanes(w, k, 0),
-                            sphgi_lane(w, w->coefficients, c));
+                            sphgi_lane(w, coefficients, c));
 }
 
-void sphgi_round_by_radius(struct sphgi_worker *w, bool wanted)
+void sphgi_round_by_radius(struct sphgi_worker *w, char *coefficients, bool wanted)
 {
-    const bool units = sphgi_has_units(&w->sweep->plan->scheme);
+    const bool units = has_units(w);
     for (int32_t k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
-        char *ours = sphgi_lane(w, w->coefficients, share->first);
+        char *ours = sphgi_lane(w, coefficients, share->first);
         char *raw = sphgi_lane(w, w->raw, share->first);
         if (units || wanted)
             w->passes->scale(w->batch.width, share->count, ours, 1,
                              units ? share_lanes(w, k, 0) : NULL, raw);
         if (units)
-            divide(w, share, k);
+            divide(w, share, k, coefficients);
         for (int32_t p = 1; units && wanted && p < 3; ++p)
             w->passes->scale(w->batch.width, share->count, raw, 1, share_lanes(w, k, p), raw);
     }
@@ -140,7 +140,7 @@ void sphgi_round_by_radius(struct sphgi_worker *w, bool wanted)
 
 void sphgi_take_by_radius(struct sphgi_worker *w)
 {
-    const bool units = sphgi_has_units(&w->sweep->plan->scheme);
+    const bool units = has_units(w);
     for (int32_t k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
         const struct sphgi_share *share = &w->share[k];
         char *raw = sphgi_lane(w, w->raw, share->first);
@@ -149,7 +149,7 @@ void sphgi_take_by_radius(struct sphgi_worker *w)
             w->passes->scale(w->batch.width, share->count, raw, 1, w->extra, raw);
         }
         if (units)
-            divide(w, share, k);
+            divide(w, share, k, w->coefficients);
         else
             w->passes->scale(w->batch.width, share->count, raw, 1, NULL,
                              sphgi_lane(w, w->coefficients, share->first));

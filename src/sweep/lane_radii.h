@@ -29,7 +29,7 @@ void sphgi_weigh_other_side(struct sphgi_worker *worker);
 
 /* As for one radius: coefficients rounded like those of a table, in `raw` if one is wanted; and
  * back. */
-void sphgi_round_by_radius(struct sphgi_worker *worker, bool wanted);
+void sphgi_round_by_radius(struct sphgi_worker *worker, char *coefficients, bool wanted);
 void sphgi_take_by_radius(struct sphgi_worker *worker);
 
 #endif

@@ -114,24 +114,6 @@ bool sphgi_fill_rows(const struct sphgi_sweep *sweep, const int32_t *order, int6
     return good;
 }
 
-/* H of the plan over that of each source, and 1 / H_j behind it; the dummy's are 0. */
-static void fill_radii(const struct sphgi_sweep *sweep, int32_t begin, int32_t end, char *to)
-{
-    const sphg_neighbors *n = sweep->set->neighbors;
-    const double largest = sweep->plan->scheme.radius;
-    for (int32_t k = begin; k < end; ++k, to += row_size(sweep->plan->type)) {
-        const double radius = sphgi_row_radius(n, n->sources.rows.data, k),
-                     ratio = largest / radius;
-        if (sweep->plan->type == SPHG_F64) {
-            ((double *)(void *)to)[0] = ratio;
-            ((double *)(void *)to)[1] = 1 / radius;
-        } else {
-            ((float *)(void *)to)[0] = (float)ratio;
-            ((float *)(void *)to)[1] = (float)(1 / radius);
-        }
-    }
-}
-
 /* ---- Packing -------------------------------------------------------------------------------- */
 
 struct packing {
@@ -158,8 +140,9 @@ static void pack_task(void *data, int32_t begin, int32_t end, int32_t worker)
                          rows * size))
         atomic_store(&packing->bad_volume, true);
     if (!sweep->reads_records && sphgi_rows_read(sweep) && sweep->plan->radius_row >= 0)
-        fill_radii(sweep, begin, end,
-                   packing->rows + ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);
+        sphgi_fill_radii(sweep, packing->order, begin, end,
+                         packing->rows +
+                             ((size_t)sweep->plan->radius_row * rows + (size_t)begin) * size);
     if (sphgi_rows_read(sweep) && sweep->plan->classic && sweep->plan->both_sides)
         sphgi_scale_tables(sweep, packing->order, begin, end,
                            packing->rows +

@@ -66,10 +66,9 @@ static void sum_one_sided(struct sphgi_worker *w, const struct sphgi_field_plan 
 static void form_transposed_other(struct sphgi_worker *w, const void *const *table,
                                   const void *density)
 {
-    struct sphgi_classic_other of = {.radii = w->rows.at[w->sweep->plan->radius_row],
-                                     .density = density,
-                                     .own_radius = sphgi_lane(w, w->radii.own, 0)};
-    memcpy(of.table, table, sizeof of.table);
+    struct sphgi_other_side of = {.radii = w->rows.at[w->sweep->plan->radius_row],
+                                  .density = density};
+    memcpy(of.table, table, 4 * sizeof *table);
     w->passes->transposed_classic_other(&w->shape, &w->tile, &of);
 }
 
@@ -137,17 +136,20 @@ static void form_classic_vectors(struct sphgi_worker *w)
                                sphgi_lane(w, w->coefficients, 0));
 }
 
-/* Where G_ji has a radius of its own, all that has ours comes first. Classic G_ji leave the weights
- * of our side alone; where these pairs come before all others, nobody has formed G_ij yet. */
+/* Where G_ji has a radius of its own, all that has ours comes first. G_ji of the classic methods
+ * and of order 2 leave the weights of our side alone; where these pairs come before all others,
+ * nobody has formed yet what ours are made of. */
 static void turn_to_other_side(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
     if (plan->classic && plan->narrows)
         form_classic_vectors(w);
+    if (plan->quadratic && plan->narrows)
+        w->passes->shape_products(&w->tile, plan->dimension);
     for (int symmetric = 0; symmetric < 2; ++symmetric)
         if (plan->sums_transposed[symmetric])
             sum_own_vectors(w, symmetric);
-    if (!plan->classic)
+    if (!plan->classic && !plan->quadratic)
         sphgi_weigh_other_side(w);
 }
 
@@ -211,7 +213,7 @@ static void write_pairs(struct sphgi_worker *w)
     const struct sphgi_plan *plan = w->sweep->plan;
     if (w->sweep->pairs->gradient.columns.count && plan->quadratic)
         w->passes->quadratic_gradients(&w->tile, plan->dimension, sphgi_lane(w, w->coefficients, 0),
-                                       w->inverse_h);
+                                       sphgi_common(w, w->inverse_h));
     else if (w->sweep->pairs->gradient.columns.count)
         w->passes->pair_gradients(
             &w->tile, plan->dimension, vectors_of(w),

@@ -14,7 +14,7 @@ static int shares_in_use(const struct sphgi_worker *w)
 void sphgi_round_as_table(struct sphgi_worker *w, char *coefficients, bool wanted)
 {
     if (w->sweep->plan->graded) {
-        sphgi_round_by_radius(w, wanted);
+        sphgi_round_by_radius(w, coefficients, wanted);
         return;
     }
     for (int k = 0; k < shares_in_use(w) && w->share[k].count; ++k) {

@@ -84,7 +84,6 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     CARVE(radii.inverse, plan->graded ? SPHGI_WIDTH : 0, size);
     CARVE(radii.inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
     CARVE(radii.factor, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(radii.own, plan->graded && plan->classic ? SPHGI_WIDTH : 0, size);
     CARVE(radii.shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
     CARVE(curvature.share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
     CARVE(curvature.hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
@@ -138,6 +137,7 @@ static void open_scheme(struct sphgi_worker *w)
     w->gather.all = n->mutual && (w->sweep->pairs || plan->both_sides);
     if (plan->graded && scaled)
         w->gather.unit = 0;
+    w->gather.keeps = scaled && plan->both_sides;
     w->gather.superset = sphgi_is_superset(w->sweep);
     w->gather.masked = sphgi_is_masked(w->sweep);
     w->shape =

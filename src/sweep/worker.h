@@ -129,7 +129,6 @@ struct sphgi_own {
  * has a radius of its own. */
 struct sphgi_lane_radii {
     char *ratio, *inverse, *inverse_square, *factor, *shares;
-    char *own; /* H_i itself, where classic sums need it */
 };
 
 /* Of order 2. */

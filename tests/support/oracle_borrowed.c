@@ -49,10 +49,9 @@ typedef struct loan {
     quad mean[oracle_pairs], mean_off[oracle_pairs]; /* of H^2 hess A, and how far it may be off */
 } loan;
 
-static loan loan_of(const oracle_scene *scene, const oracle_point *point, int n, int component,
-                    const double *lent, int width)
+static loan loan_of(const oracle_point *point, int n, int component, const double *lent, int width)
 {
-    const quad unit = oracle_weight_unit(scene, point), h = scene->scheme.support_radius;
+    const quad unit = oracle_weight_unit(point), h = point->support;
     loan made = {.sum = 0};
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
@@ -72,11 +71,10 @@ static loan loan_of(const oracle_scene *scene, const oracle_point *point, int n,
     return made;
 }
 
-quad oracle_confidence_lent(const oracle_scene *scene, const oracle_point *point, quad own,
-                            const double *lent, int width)
+quad oracle_confidence_lent(const oracle_point *point, quad own, const double *lent, int width)
 {
     quad slope;
-    const loan made = loan_of(scene, point, 0, 0, lent, width);
+    const loan made = loan_of(point, 0, 0, lent, width);
     return own + (1 - own) * oracle_smooth(made.sum, (quad).0625, (quad).25, &slope);
 }
 
@@ -185,7 +183,7 @@ static void borrow_component(const oracle_scene *scene, const oracle_basis *of,
                              const oracle_change *sums, const loan *made, quad *g, quad *hessian,
                              oracle_curved *found)
 {
-    const quad over = 1 / (quad)scene->scheme.support_radius;
+    const quad over = 1 / (quad)point->support;
     const borrower b = borrower_of(scene, of, point, second, made);
     const quad slope = second->kept > 0 ? oracle_slope_norm(of, point, sums) : 0;
     const curvature h = curve(of, second, &b, sums, made, slope);
@@ -222,8 +220,8 @@ oracle_curved oracle_apply_borrowed(oracle *reference, const oracle_field *field
                            .touched = !second.full};
     quad gradient[9][3], hessian[oracle_pairs];
     for (int c = 0; c < width; ++c) {
-        const oracle_change sums = oracle_sum_changes(scene, &of, point, field, i, c, width);
-        const loan made = loan_of(scene, point, of.n, c, lent, 1 + width * of.n);
+        const oracle_change sums = oracle_sum_changes(&of, point, field, i, c, width);
+        const loan made = loan_of(point, of.n, c, lent, 1 + width * of.n);
         borrow_component(scene, &of, point, &second, &sums, &made, gradient[c], hessian, &found);
         for (int m = 0; m < of.n; ++m) {
             if (field->shape < SPHG_SYM_TENSOR)

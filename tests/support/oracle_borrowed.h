@@ -17,7 +17,6 @@ oracle_offer oracle_offer_of(const oracle_scene *scene, const oracle_point *poin
 oracle_curved oracle_apply_borrowed(oracle *reference, const oracle_field *field,
                                     const double *lent, int i);
 /* c of a target that was lent something. */
-quad oracle_confidence_lent(const oracle_scene *scene, const oracle_point *point, quad own,
-                            const double *lent, int width);
+quad oracle_confidence_lent(const oracle_point *point, quad own, const double *lent, int width);
 
 #endif

@@ -79,20 +79,20 @@ void oracle_whitened(const oracle_basis *of, const quad *pairs, quad *q)
                                     : of->off * pairs[k];
 }
 
-void oracle_offsets_of(const oracle_scene *scene, const oracle_basis *of, const oracle_pair *pair,
+void oracle_offsets_of(const oracle_point *point, const oracle_basis *of, const oracle_pair *pair,
                        quad *e, quad *q)
 {
     quad products[oracle_pairs];
     for (int a = 0; a < of->d; ++a)
-        e[a] = -pair->x[a] / scene->scheme.support_radius;
+        e[a] = -pair->x[a] / point->support;
     for (int k = 0; k < of->n; ++k)
         products[k] = e[of->a[k]] * e[of->b[k]];
     oracle_whitened(of, products, q);
 }
 
-quad oracle_weight_unit(const oracle_scene *scene, const oracle_point *point)
+quad oracle_weight_unit(const oracle_point *point)
 {
-    const quad h = scene->scheme.support_radius;
+    const quad h = point->support;
     return h * h / point->scale;
 }
 
@@ -178,15 +178,14 @@ typedef struct moments {
     quad second_spread, third_spread, fourth_spread, trace2, trace4;
 } moments;
 
-static moments sum_moments(const oracle_scene *scene, const oracle_basis *of,
-                           const oracle_point *point)
+static moments sum_moments(const oracle_basis *of, const oracle_point *point)
 {
     moments sums = {.trace2 = 0};
-    const quad unit = oracle_weight_unit(scene, point);
+    const quad unit = oracle_weight_unit(point);
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs], w = -pair->s * unit, spread = pair->spread * unit;
-        oracle_offsets_of(scene, of, pair, e, q);
+        oracle_offsets_of(point, of, pair, e, q);
         for (int a = 0; a < of->d; ++a)
             for (int m = 0; m < of->n; ++m)
                 sums.third[a][m] += w * e[a] * q[m];
@@ -244,7 +243,7 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
 {
     const oracle_basis of = oracle_basis_of(scene);
     const sphg_policy policy = scene->scheme.policy;
-    moments sums = sum_moments(scene, &of, point);
+    moments sums = sum_moments(&of, point);
     *second = (oracle_second){.rank = point->rank, .undecided = point->undecided};
     for (int a = 0; a < of.d; ++a)
         for (int m = 0; m < of.n; ++m)
@@ -298,19 +297,18 @@ int oracle_second_rank_is_open(const oracle_scene *scene, const oracle_point *po
 /* ---- Fields
  * --------------------------------------------------------------------------------------- */
 
-oracle_change oracle_sum_changes(const oracle_scene *scene, const oracle_basis *of,
-                                 const oracle_point *point, const oracle_field *field, int i,
-                                 int component, int width)
+oracle_change oracle_sum_changes(const oracle_basis *of, const oracle_point *point,
+                                 const oracle_field *field, int i, int component, int width)
 {
     const double *targets = field->at_targets ? field->at_targets : field->at_sources;
     oracle_change sums = {.first_size = 0};
-    const quad unit = oracle_weight_unit(scene, point);
+    const quad unit = oracle_weight_unit(point);
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs];
         quad difference =
             (quad)field->at_sources[pair->j * width + component] - targets[i * width + component];
-        oracle_offsets_of(scene, of, pair, e, q);
+        oracle_offsets_of(point, of, pair, e, q);
         for (int a = 0; a < of->d; ++a)
             sums.first[a] -= pair->s * unit * e[a] * difference;
         for (int m = 0; m < of->n; ++m)
@@ -369,7 +367,7 @@ void oracle_curve_component(const oracle_scene *scene, const oracle_basis *of,
                             const oracle_point *point, const oracle_second *second,
                             const oracle_change *sums, quad *g, quad *hessian, oracle_curved *found)
 {
-    const quad over = 1 / (quad)scene->scheme.support_radius;
+    const quad over = 1 / (quad)point->support;
     quad h[oracle_pairs] = {0}, h_off = 0;
     if (second->kept > 0)
         h_off = solve_curvature(of, second, sums, oracle_slope_norm(of, point, sums), h);
@@ -426,7 +424,7 @@ oracle_curved oracle_apply_second(oracle *reference, const oracle_field *field, 
     oracle_curved found = {.undecided = second.undecided, .touched = !second.full};
     quad gradient[9][3], hessian[oracle_pairs];
     for (int c = 0; c < width; ++c) {
-        const oracle_change sums = oracle_sum_changes(scene, &of, point, field, i, c, width);
+        const oracle_change sums = oracle_sum_changes(&of, point, field, i, c, width);
         oracle_curve_component(scene, &of, point, &second, &sums, gradient[c], hessian, &found);
         for (int m = 0; m < of.n; ++m) {
             if (field->shape < SPHG_SYM_TENSOR)

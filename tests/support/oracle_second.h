@@ -11,9 +11,9 @@ typedef struct oracle_basis {
 
 oracle_basis oracle_basis_of(const oracle_scene *scene);
 void oracle_whitened(const oracle_basis *of, const quad *pairs, quad *q);
-void oracle_offsets_of(const oracle_scene *scene, const oracle_basis *of, const oracle_pair *pair,
+void oracle_offsets_of(const oracle_point *point, const oracle_basis *of, const oracle_pair *pair,
                        quad *e, quad *q);
-quad oracle_weight_unit(const oracle_scene *scene, const oracle_point *point);
+quad oracle_weight_unit(const oracle_point *point);
 int oracle_inverse_of(int n, oracle_block given, quad shift, oracle_block inverse);
 quad oracle_norm_of(int n, oracle_block a);
 quad oracle_smooth(quad x, quad low, quad high, quad *slope);
@@ -24,9 +24,8 @@ typedef struct oracle_change {
     quad first_size, second_size; /* sums of spread |dA| |e| and spread |dA| |q| */
 } oracle_change;
 
-oracle_change oracle_sum_changes(const oracle_scene *scene, const oracle_basis *of,
-                                 const oracle_point *point, const oracle_field *field, int i,
-                                 int component, int width);
+oracle_change oracle_sum_changes(const oracle_basis *of, const oracle_point *point,
+                                 const oracle_field *field, int i, int component, int width);
 /* |M2^-1 b1| */
 quad oracle_slope_norm(const oracle_basis *of, const oracle_point *point,
                        const oracle_change *sums);

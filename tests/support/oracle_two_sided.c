@@ -9,11 +9,11 @@ static quad gradient_of(const oracle_scene *scene, const oracle_basis *of,
                         const oracle_point *point, const oracle_second *second, oracle_pair *pair,
                         quad *g)
 {
-    const quad unit = oracle_weight_unit(scene, point);
+    const quad unit = oracle_weight_unit(point);
     quad e[3], q[oracle_pairs], hessian[oracle_pairs];
     oracle_change change = {.first_size = 0};
     oracle_curved bounds = {.gradient_bound = 0};
-    oracle_offsets_of(scene, of, pair, e, q);
+    oracle_offsets_of(point, of, pair, e, q);
     for (int a = 0; a < of->d; ++a)
         change.first[a] = -pair->s * unit * e[a];
     for (int m = 0; m < of->n; ++m)
@@ -24,13 +24,14 @@ static quad gradient_of(const oracle_scene *scene, const oracle_basis *of,
     return bounds.gradient_bound + oracle_gradient_of(scene, point, pair);
 }
 
-static oracle_pair seen_from_there(const oracle_scene *scene, const oracle_pair *pair, int i)
+static oracle_pair seen_from_there(const oracle_scene *scene, const oracle_point *there,
+                                   const oracle_pair *pair, int i)
 {
     oracle_pair back = *pair;
     back.j = i;
     for (int k = 0; k < scene->scheme.dimension; ++k)
         back.x[k] = -pair->x[k];
-    oracle_weigh(scene, scene->scheme.support_radius, scene->volume[i], &back);
+    oracle_weigh(scene, there->support, scene->volume[i], &back);
     return back;
 }
 
@@ -45,8 +46,9 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
     quad gradient[9][3] = {{0}};
     oracle_curved found = {.undecided = second->undecided, .touched = !second->full};
     for (int k = 0; k < point->pair_count; ++k) {
-        oracle_pair pair = point->pairs[k], back = seen_from_there(scene, &pair, i);
+        oracle_pair pair = point->pairs[k];
         const oracle_point *there = oracle_at(reference, pair.j);
+        oracle_pair back = seen_from_there(scene, there, &pair, i);
         const oracle_second *other = oracle_second_at(reference, pair.j);
         const double *away = field->at_sources + pair.j * width;
         quad here[3], back_there[3], weights[2] = {scene->volume[i], scene->volume[pair.j]};

@@ -44,6 +44,8 @@
     X(linear_with_lenders, 4096, 604, "rounding of b2 - K^T b1 over t, slopes around 3")           \
     X(linear_momentum, 8, 1.3, "random signs: a rounding per particle, relative to sum |f|")       \
     X(angular_momentum, 8, 0.7, "relative to sum |x| |f|; C M = 1 to the condition of M")          \
+    X(second_over_radii, 64, 21,                                                                   \
+      "order 2, the same three: P e and Q (e e) cancel where radii grow")                          \
     X(adjointness, 16, 4.8, "two sweeps rounded on their own, relative to the work of one")        \
     X(partition_of_unity, 32, 8, "classic: sum Phi - 1 cancels |y| |A|, the condition of A")       \
     X(gradients_of_unity, 512, 112, "classic: H sum grad Phi, terms as large as 8 each")           \
