@@ -155,15 +155,6 @@ static void tiny_particles_near_the_ends_of_a_period_are_found_once(const test_c
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
 
-static void compare(const comparison *on, sphg_shape shape, sphg_form form,
-                    const setup_array *table)
-{
-    comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
-    comparison_result found = comparison_apply(on, &field, table);
-    for (int i = 0; i < on->points.count; i += on->points.count / 7)
-        comparison_compare(on, &field, &found, i);
-}
-
 static void operators_match_the_oracle(const test_case *test)
 {
     static const double ratios[] = {1.5, 8, 64};
@@ -172,11 +163,11 @@ static void operators_match_the_oracle(const test_case *test)
         comparison on =
             comparison_of_radii(test, "graded block", block.points, block.radii, k == 1);
         setup_array table = comparison_table(&on);
-        compare(&on, SPHG_SCALAR, SPHG_DIFFERENCE, NULL);
-        compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table);
-        compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table);
-        compare(&on, SPHG_VECTOR, SPHG_DIRECT, NULL);
-        compare(&on, SPHG_TENSOR, SPHG_DIFFERENCE, NULL);
+        graded_compare(&on, SPHG_SCALAR, SPHG_DIFFERENCE, NULL);
+        graded_compare(&on, SPHG_SCALAR, SPHG_DIRECT, &table);
+        graded_compare(&on, SPHG_VECTOR, SPHG_DIFFERENCE, &table);
+        graded_compare(&on, SPHG_VECTOR, SPHG_DIRECT, NULL);
+        graded_compare(&on, SPHG_TENSOR, SPHG_DIFFERENCE, NULL);
     }
 }
 

@@ -7,15 +7,6 @@
 
 /* ---- The oracle ------------------------------------------------------------------------------ */
 
-static void compare(const comparison *on, sphg_shape shape, sphg_form form,
-                    const setup_array *table)
-{
-    comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
-    comparison_result found = comparison_apply(on, &field, table);
-    for (int i = 0; i < on->points.count; i += on->points.count / 7)
-        comparison_compare(on, &field, &found, i);
-}
-
 /* Pairs that only the source's radius reaches count, too. Each way has the forms of every shape,
  * with one ratio of radii or another. */
 static void both_sides_match_the_oracle(const test_case *test)
@@ -28,7 +19,7 @@ static void both_sides_match_the_oracle(const test_case *test)
             for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
                 for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; ++shape)
                     if ((shape + way) % 3 == k || (k == 1 && !way))
-                        compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
+                        graded_compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
         }
 }
 
@@ -39,7 +30,7 @@ static void radii_far_apart_match_the_oracle(const test_case *test)
     const setup_array table = comparison_table(&on);
     for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
         for (int shape = SPHG_SCALAR; shape <= SPHG_VECTOR; ++shape)
-            compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
+            graded_compare(&on, (sphg_shape)shape, (sphg_form)form, &table);
 }
 
 /* Orders that a method has. */

@@ -3,6 +3,7 @@
  * of a search where the lists are those of a search, and what lies beyond the radii, or lacks. */
 #include "support/brute_force.h"
 #include "support/graded.h"
+#include "support/second_order.h"
 #include <math.h>
 #include <string.h>
 
@@ -57,15 +58,6 @@ static comparison stage(const test_case *test, double ratio, int mutual)
 
 /* ---- The oracle ----------------------------------------------------------------------------- */
 
-static void compare(const comparison *on, sphg_shape shape, sphg_form form,
-                    const setup_array *table)
-{
-    const comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
-    const comparison_result found = comparison_apply(on, &field, table);
-    for (int i = 0; i < on->points.count; i += on->points.count / 7)
-        comparison_compare(on, &field, &found, i);
-}
-
 static void derivatives_match_the_oracle(const test_case *test)
 {
     for (int way = 0; way < 4; ++way) {
@@ -73,10 +65,10 @@ static void derivatives_match_the_oracle(const test_case *test)
         const sphg_lists lists = wide_lists(&on);
         const comparison listed = over_lists(&on, &lists, way == 1 || way == 2);
         const setup_array table = comparison_table(&listed);
-        compare(&listed, SPHG_SCALAR, SPHG_DIFFERENCE, NULL);
-        compare(&listed, SPHG_SCALAR, SPHG_DIRECT, &table);
-        compare(&listed, SPHG_VECTOR, SPHG_DIFFERENCE, &table);
-        compare(&listed, SPHG_TENSOR, SPHG_DIRECT, NULL);
+        graded_compare(&listed, SPHG_SCALAR, SPHG_DIFFERENCE, NULL);
+        graded_compare(&listed, SPHG_SCALAR, SPHG_DIRECT, &table);
+        graded_compare(&listed, SPHG_VECTOR, SPHG_DIFFERENCE, &table);
+        graded_compare(&listed, SPHG_TENSOR, SPHG_DIRECT, NULL);
     }
 }
 
@@ -90,7 +82,36 @@ static void forces_match_the_oracle(const test_case *test)
         const setup_array table = comparison_table(&listed);
         for (int form = SPHG_SYMMETRIC; form <= SPHG_ADJOINT; ++form)
             for (int shape = SPHG_SCALAR; shape <= SPHG_TENSOR; shape += 1 + copy)
-                compare(&listed, (sphg_shape)shape, (sphg_form)form, &table);
+                graded_compare(&listed, (sphg_shape)shape, (sphg_form)form, &table);
+    }
+}
+
+static void order_two_matches_the_oracle(const test_case *test)
+{
+    for (int copy = 0; copy < 2; ++copy) {
+        const comparison on = second_order_comparison(stage(test, 8, 1));
+        const sphg_lists lists = wide_lists(&on);
+        const comparison listed = over_lists(&on, &lists, copy);
+        const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 3);
+        const second_order found =
+            second_order_apply(&listed, SPHG_VECTOR, numbers, (second_order_how){0});
+        const oracle_field field = {SPHG_VECTOR, SPHG_DIFFERENCE, numbers, NULL};
+        const setup_array table = comparison_table(&listed);
+        const comparison_field force = {SPHG_VECTOR, SPHG_ADJOINT, numbers};
+        const comparison_result forces = comparison_apply(&listed, &force, &table);
+        const oracle_field asked = {SPHG_VECTOR, SPHG_ADJOINT, numbers, NULL};
+        for (int i = 0; i < on.points.count; i += on.points.count / 5) {
+            const oracle_curved exact = oracle_apply_second(on.reference, &field, i);
+            const oracle_curved push = oracle_apply_second_two_sided(on.reference, &asked, i);
+            second_order_compare(&listed, &found, &exact, i,
+                                 exact.touched ? TEST_TOLERANCE_quadratic_ratio_touched
+                                               : TEST_TOLERANCE_quadratic_ratio_full);
+            if (!push.undecided)
+                TEST_WITHIN(
+                    quadratic_two_sided,
+                    second_order_ratio(&forces.gradient, i, push.gradient, push.gradient_bound),
+                    test_text("particle %d, copy %d", i, copy));
+        }
     }
 }
 
@@ -112,22 +133,34 @@ static sphg_lists lists_of_search(const comparison *on)
     return (sphg_lists){.offsets = pairs.offsets, .indices = pairs.indices};
 }
 
+static void require_bits_of_search(const comparison *on, const comparison *listed, int mutual,
+                                   const char *where)
+{
+    const setup_array table = comparison_table(on), other = comparison_table(listed);
+    TEST_REQUIRE(setup_same_bits(&table, &other), "table, %s", where);
+    const int last = mutual ? SPHG_ADJOINT : SPHG_DIRECT;
+    for (int form = SPHG_DIFFERENCE; form <= last; ++form) {
+        if (form == SPHG_DIRECT && on->scheme.order == 2)
+            continue;
+        const comparison_field field = {SPHG_VECTOR, (sphg_form)form,
+                                        comparison_random_field(on, SPHG_VECTOR, 4)};
+        const comparison_result a = comparison_apply(on, &field, &table),
+                                b = comparison_apply(listed, &field, &table);
+        TEST_REQUIRE(comparison_results_have_same_bits(&a, &b), "form %d, %s", form, where);
+    }
+}
+
 static void lists_of_a_search_give_its_bits(const test_case *test)
 {
+    const int orders = test->method <= SPHG_RKPM ? 2 : 1;
     for (int way = 0; way < 4; ++way) {
-        const int mutual = way & 1;
-        const comparison on = stage(test, 8, mutual);
+        comparison on = stage(test, 8, way & 1);
         const sphg_lists lists = lists_of_search(&on);
-        const comparison listed = over_lists(&on, &lists, way >> 1);
-        const setup_array table = comparison_table(&on), other = comparison_table(&listed);
-        TEST_REQUIRE(setup_same_bits(&table, &other), "table, way %d", way);
-        const int last = mutual ? SPHG_ADJOINT : SPHG_DIRECT;
-        for (int form = SPHG_DIFFERENCE; form <= last; ++form) {
-            const comparison_field field = {SPHG_VECTOR, (sphg_form)form,
-                                            comparison_random_field(&on, SPHG_VECTOR, 4)};
-            const comparison_result a = comparison_apply(&on, &field, &table),
-                                    b = comparison_apply(&listed, &field, &table);
-            TEST_REQUIRE(comparison_results_have_same_bits(&a, &b), "form %d, way %d", form, way);
+        comparison listed = over_lists(&on, &lists, way >> 1);
+        for (int order = 1; order <= orders; ++order) {
+            on.scheme.order = listed.scheme.order = order;
+            require_bits_of_search(&on, &listed, way & 1,
+                                   test_text("order %d, way %d", order, way));
         }
     }
 }
@@ -374,6 +407,8 @@ static const test_entry entries[] = {
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(forces_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_ALL_METHODS,
                0),
+    TEST_ENTRY(order_two_matches_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
     TEST_ENTRY(lists_of_a_search_give_its_bits, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_ALL_METHODS, 0),
     TEST_ENTRY(heat_flows_as_over_a_search, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,

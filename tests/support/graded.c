@@ -113,3 +113,12 @@ comparison graded_stage_of(const test_case *test, double ratio, double support, 
                  (int)info.rebuilt);
     return comparison_with_volumes(&on, on.scene.volume);
 }
+
+void graded_compare(const comparison *on, sphg_shape shape, sphg_form form,
+                    const setup_array *table)
+{
+    const comparison_field field = {shape, form, comparison_random_field(on, shape, 3)};
+    const comparison_result found = comparison_apply(on, &field, table);
+    for (int i = 0; i < on->points.count; i += on->points.count / 7)
+        comparison_compare(on, &field, &found, i);
+}
