@@ -335,7 +335,7 @@ static void copies_give_the_bits_of_borrowed_lists(const test_case *test)
 {
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         const int turn = (int)isa + (int)test->method; /* every second scene */
-        for (int kind = turn % 2; kind < SCENES && setup_context_on(isa); kind += 2)
+        for (int kind = turn % 2; kind < SCENES && setup_watched_context_on(isa); kind += 2)
             try_scene(test, isa, kind, (kind + turn) % SUPPLIES);
     }
 }

@@ -142,7 +142,7 @@ static void arrays_rows_and_functions_give_the_same_bits(const test_case *test)
     for (int32_t i = 0; i < TARGETS; ++i)
         lengths[i] = i % 9 == 4 ? 0 : i * 73 % TARGETS;
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        if (!setup_context_on(isa))
+        if (!setup_watched_context_on(isa))
             continue;
         host own = host_of(test, isa, SOURCES, lengths, TARGETS);
         require_same_bits(&own, test_text("path %d", (int)isa));

@@ -107,7 +107,7 @@ static void require_fresh(const kept *on, sphg_view volume, int same_volumes, co
 static void bits_are_those_without(const test_case *test)
 {
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = setup_context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         if (!context)
             continue;
         const kept on = kept_on(test, context);

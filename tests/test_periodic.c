@@ -106,7 +106,7 @@ static void escapees_have_the_pairs_of_brute_force(const test_case *test)
 {
     static const sphg_isa sets[] = {SPHG_ISA_BASE, SPHG_ISA_X86_V3, SPHG_ISA_X86_V4};
     for (int k = 0; k < 3; ++k) {
-        sphg_context *context = setup_context_on(sets[k]);
+        sphg_context *context = setup_watched_context_on(sets[k]);
         for (int far = 0; far < FAR_COUNT && context; ++far) {
             check_escapees(test, context, far, 1 << far % test->dimension);
             check_escapees(test, context, far, (1 << test->dimension) - 1);

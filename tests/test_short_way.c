@@ -293,11 +293,11 @@ static void require_all(const scene *of, const char *how)
     }
 }
 
-/* Sanitizers watch the path that is asked for, if any is. NULL: not here. */
-static sphg_context *context_on(sphg_isa isa)
+/* Where the cases are shared, each takes one radius, field of radii or kernel of so many: others
+ * are of other dimensions and methods. */
+static int is_taken(const test_case *test, int k, int of)
 {
-    const sphg_isa wanted = TEST_SANITIZED ? test_isa() : SPHG_ISA_BEST;
-    return wanted != SPHG_ISA_BEST && isa != wanted ? NULL : setup_context_on(isa);
+    return !test_is_shared() || k % of == (test->dimension + (int)test->method) % of;
 }
 
 /* Lists of one chunk, of several, and of so many that rounding is carried along. */
@@ -305,8 +305,10 @@ static void the_bits_are_those_of_the_long_way(const test_case *test)
 {
     const double radius[] = {2, 3, 4.5};
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 3; ++k) {
+            if (!is_taken(test, k, 3))
+                continue;
             const scene of = scene_on(test, context, radius[k], 0);
             require_all(&of, test_text("path %d, H = %g", (int)isa, radius[k]));
         }
@@ -318,8 +320,10 @@ static void radii_of_their_own_go_it(const test_case *test)
 {
     const double radius[] = {2.2, 4.5};
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 2; ++k) {
+            if (!is_taken(test, k, 2))
+                continue;
             const scene of = scene_on(test, context, radius[k], 1);
             require_all(&of, test_text("path %d, radii up to %g", (int)isa, radius[k]));
         }
@@ -330,8 +334,10 @@ static void radii_of_their_own_go_it(const test_case *test)
 static void some_of_the_particles_go_it(const test_case *test)
 {
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int graded = 0; context && graded < 2; ++graded) {
+            if (!is_taken(test, graded, 2))
+                continue;
             scene of = scene_on(test, context, 3, graded);
             of.targets -= of.targets / 4;
             find_neighbors(&of);
@@ -437,8 +443,10 @@ static void several_fields_go_it(const test_case *test)
     const double radius[] = {2, 4.5};
     const int plain = test->method == SPHG_PLAIN;
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 3; ++k) {
+            if (!is_taken(test, k, 3))
+                continue;
             const scene of = scene_on(test, context, radius[k > 0], k == 1);
             const sphg_subset shares[] = {share_of(&of, MOST), share_of(&of, SOME),
                                           share_of(&of, FEW)};
@@ -458,6 +466,8 @@ static void every_kernel_goes_it(const test_case *test)
 {
     scene of = scene_on(test, setup_context(), 2, 0);
     for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
+        if (!is_taken(test, kernel, 3))
+            continue;
         of.scheme.kernel = (sphg_kernel)kernel;
         require_all(&of, test_text("kernel %d", kernel));
     }
@@ -468,8 +478,10 @@ static void order_2_goes_it(const test_case *test)
     static const char *const letters[] = {"vv", "vs", "sv", "ss", "vsvsssvv"};
     const double radius[] = {2, 4.5};
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 2; ++k) {
+            if (!is_taken(test, k, 2))
+                continue;
             scene of = scene_on(test, context, radius[k], 0);
             of.scheme.order = 2;
             const char *how = test_text("path %d, H = %g, order 2", (int)isa, radius[k]);
@@ -485,6 +497,8 @@ static void every_kernel_of_order_2_goes_it(const test_case *test)
     scene of = scene_on(test, setup_context(), 2, 0);
     of.scheme.order = 2;
     for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
+        if (!is_taken(test, kernel, 3))
+            continue;
         of.scheme.kernel = (sphg_kernel)kernel;
         require_all(&of, test_text("kernel %d, order 2", kernel));
     }

@@ -45,6 +45,12 @@ sphg_context *setup_context_on(sphg_isa isa)
     return context;
 }
 
+sphg_context *setup_watched_context_on(sphg_isa isa)
+{
+    const sphg_isa wanted = TEST_SANITIZED ? test_isa() : SPHG_ISA_BEST;
+    return wanted != SPHG_ISA_BEST && isa != wanted ? NULL : setup_context_on(isa);
+}
+
 sphg_context *setup_context(void)
 {
     return setup_context_of(2);

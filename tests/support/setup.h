@@ -17,6 +17,8 @@ sphg_context *setup_context(void);
 sphg_context *setup_context_of(int threads);
 /* On one instruction set; NULL where the machine or the build lacks it. */
 sphg_context *setup_context_on(sphg_isa isa);
+/* The same, but under sanitizers, which watch the path that is asked for, NULL for any other. */
+sphg_context *setup_watched_context_on(sphg_isa isa);
 sphg_context *setup_context_with(const sphg_config *config);
 /* A host to be named in such a config: opened, and closed after the context. */
 fake_host *setup_hooks(void);
