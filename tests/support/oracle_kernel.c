@@ -7,8 +7,8 @@ typedef struct kernel_text {
     int mu2[2][2];
     int power;
     struct {
-        int c;
-        quad b, a;
+        int c, a;
+        quad b;
     } pieces[3];
     quad polynomial[4]; /* 1, q, q^2, q^3 */
 } kernel_text;
@@ -17,11 +17,11 @@ static const kernel_text kernels[] = {
     [SPHG_CUBIC_SPLINE] = {.sigma = {{40, 7}, {8, 1}},
                            .mu2 = {{31, 392}, {3, 40}},
                            .power = 3,
-                           .pieces = {{2, 1, 1}, {-8, .5, 1}}},
+                           .pieces = {{2, 1, 1}, {-8, 1, .5}}},
     [SPHG_QUINTIC_SPLINE] = {.sigma = {{63, 478}, {9, 40}},
                              .mu2 = {{2771, 51624}, {7, 135}},
                              .power = 5,
-                             .pieces = {{1, 3, 3}, {-6, 2, 3}, {15, 1, 3}}},
+                             .pieces = {{1, 3, 3}, {-6, 3, 2}, {15, 3, 1}}},
     [SPHG_WENDLAND_C2] = {.sigma = {{7, 1}, {21, 2}},
                           .mu2 = {{5, 72}, {1, 15}},
                           .power = 4,
@@ -81,12 +81,14 @@ static void add_pieces(const kernel_text *text, quad q, quad shape[3])
 {
     int p = text->power;
     for (int k = 0; k < 3; ++k) {
-        quad c = text->pieces[k].c, a = text->pieces[k].a, base = text->pieces[k].b - a * q;
+        const int c = text->pieces[k].c, a = text->pieces[k].a;
+        const quad base = text->pieces[k].b - (a == 1 ? q : a * q);
         if (c == 0 || base <= 0)
             continue;
-        shape[0] += c * quad_power(base, p);
-        shape[1] -= c * p * a * quad_power(base, p - 1);
-        shape[2] += c * p * (p - 1) * a * a * quad_power(base, p - 2);
+        const quad power = quad_power(base, p - 2), next = power * base;
+        shape[0] += c * (next * base);
+        shape[1] -= c * p * a * next;
+        shape[2] += c * p * (p - 1) * a * a * power;
     }
 }
 
@@ -94,13 +96,15 @@ static void add_product(const kernel_text *text, quad q, quad shape[3])
 {
     const quad *c = text->polynomial;
     int p = text->power;
+    if (c[0] == 0) /* a sum of pieces */
+        return;
     quad value = c[0] + q * (c[1] + q * (c[2] + q * c[3]));
     quad first = c[1] + q * (2 * c[2] + q * 3 * c[3]);
     quad second = 2 * c[2] + 6 * q * c[3];
-    quad t = 1 - q;
-    shape[0] += quad_power(t, p) * value;
-    shape[1] += quad_power(t, p - 1) * (t * first - p * value);
-    shape[2] += quad_power(t, p - 2) * (t * t * second - 2 * p * t * first + p * (p - 1) * value);
+    quad t = 1 - q, power = quad_power(t, p - 2), next = power * t, slope = t * first;
+    shape[0] += next * t * value;
+    shape[1] += next * (slope - p * value);
+    shape[2] += power * (t * t * second - 2 * p * slope + p * (p - 1) * value);
 }
 
 void oracle_shape_of(sphg_kernel kernel, quad q, quad shape[3])

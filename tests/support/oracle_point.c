@@ -166,10 +166,15 @@ static void sum_moments(int d, oracle_point *point)
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         point->spread += pair->spread * pair->r * pair->r;
-        for (int a = 0; a < d; ++a)
-            for (int b = 0; b < d; ++b)
-                point->moment[a][b] -= pair->s * pair->x[a] * pair->x[b];
+        for (int a = 0; a < d; ++a) {
+            const quad weighed = pair->s * pair->x[a];
+            for (int b = a; b < d; ++b)
+                point->moment[a][b] -= weighed * pair->x[b];
+        }
     }
+    for (int a = 0; a < d; ++a)
+        for (int b = 0; b < a; ++b)
+            point->moment[a][b] = point->moment[b][a];
 }
 
 /* eps_i = max(eps, 16 u tr Mhat). */
@@ -273,15 +278,22 @@ static void sum_classic(const oracle_scene *scene, const oracle_point *point, cl
         const oracle_pair *pair = &point->pairs[k];
         quad p[oracle_rows];
         basis_of(scene, point, pair, p);
-        for (int a = 0; a <= d; ++a)
-            for (int b = 0; b <= d; ++b) {
+        for (int a = 0; a <= d; ++a) {
+            sums->a_spread[a][a] += pair->spread * p[a] * p[a];
+            for (int b = a; b <= d; ++b) {
                 quad pp = p[a] * p[b], slope = pair->slope * pp;
                 sums->a[a][b] += pair->s * pp;
-                sums->a_spread[a][b] += pair->spread * pp;
                 for (int c = 0; c < d; ++c)
                     sums->b[c][a][b] += slope * pair->x[c];
             }
+        }
     }
+    for (int a = 0; a <= d; ++a)
+        for (int b = 0; b < a; ++b) {
+            sums->a[a][b] = sums->a[b][a];
+            for (int c = 0; c < d; ++c)
+                sums->b[c][a][b] = sums->b[c][b][a];
+        }
 }
 
 /* M_c = sum w (xi - xb)(xi - xb)^T about the centre xb, the target itself at 0. */
@@ -472,11 +484,12 @@ static quad linearised_gradient(const oracle_scene *scene, const oracle_point *p
 {
     int d = scene->scheme.dimension;
     quad b[3];
-    for (int a = 0; a < d; ++a) {
+    for (int a = 0; a < d; ++a)
         b[a] = pair->s * pair->x[a];
+    for (int a = 0; a < d; ++a) {
         pair->gradient[a] = 0;
         for (int c = 0; c < d; ++c)
-            pair->gradient[a] += point->correction[a][c] * pair->s * pair->x[c];
+            pair->gradient[a] += point->correction[a][c] * b[c];
     }
     return scene->unit *
            (point->correction_norm * pair->spread * pair->r + oracle_filter_error(point, 1, b));

@@ -186,12 +186,13 @@ static moments sum_moments(const oracle_basis *of, const oracle_point *point)
         const oracle_pair *pair = &point->pairs[k];
         quad e[3], q[oracle_pairs], w = -pair->s * unit, spread = pair->spread * unit;
         oracle_offsets_of(point, of, pair, e, q);
-        for (int a = 0; a < of->d; ++a)
-            for (int m = 0; m < of->n; ++m)
-                sums.third[a][m] += w * e[a] * q[m];
-        for (int m = 0; m < of->n; ++m)
-            for (int l = 0; l < of->n; ++l)
-                sums.fourth[m][l] += w * q[m] * q[l];
+        for (int m = 0; m < of->n; ++m) {
+            const quad weighed = w * q[m];
+            for (int a = 0; a < of->d; ++a)
+                sums.third[a][m] += weighed * e[a];
+            for (int l = m; l < of->n; ++l)
+                sums.fourth[m][l] += weighed * q[l];
+        }
         const quad r = quad_norm(e, of->d), size = quad_norm(q, of->n);
         sums.second_spread += spread * r * r;
         sums.third_spread += spread * r * size;
@@ -199,6 +200,9 @@ static moments sum_moments(const oracle_basis *of, const oracle_point *point)
         sums.trace2 += w * r * r;
         sums.trace4 += w * size * size;
     }
+    for (int m = 0; m < of->n; ++m)
+        for (int l = 0; l < m; ++l)
+            sums.fourth[m][l] = sums.fourth[l][m];
     return sums;
 }
 

@@ -22,14 +22,15 @@ static inline quad quad_max(quad a, quad b)
 
 static inline quad quad_power(quad base, int exponent)
 {
-    quad result = 1;
-    for (int k = 0; k < exponent; ++k)
-        result *= base;
-    return result;
+    if (exponent <= 0)
+        return 1;
+    const quad half = exponent > 1 ? quad_power(base, exponent / 2) : 1;
+    return exponent % 2 ? half * half * base : half * half;
 }
 
-/* Newton from the double root; scaled by even powers of two so that the start neither overflows
- * nor underflows. */
+/* Newton from the double root, each step doubling the digits: what it adds is known well enough
+ * from the remainder, which is formed in quad, in double. Scaled by even powers of two so that the
+ * start neither overflows nor underflows. */
 static inline quad quad_sqrt(quad a)
 {
     quad scale = 1;
@@ -41,7 +42,7 @@ static inline quad quad_sqrt(quad a)
         scale *= 0x1p-100;
     quad root = sqrt((double)a);
     for (int step = 0; step < 2; ++step)
-        root = (root + a / root) / 2;
+        root += (double)(a - root * root) / (2 * (double)root);
     return root * scale;
 }
 
