@@ -539,6 +539,8 @@ static void one_sided_fields_among_others_see_their_own_neighbours(const test_ca
     /* Classic methods have neither volumes of their own nor diffusion. */
     const unsigned all = test_is_classic(test) ? 0x3bu : 0x7fu;
     for (int stage = 0; stage < STAGES; ++stage) {
+        if (!test_takes(test, stage, 2))
+            continue;
         mixture m = mixture_of(test, (enum stage)stage);
         ask_for_all(&m);
         int between = 0;

@@ -293,13 +293,6 @@ static void require_all(const scene *of, const char *how)
     }
 }
 
-/* Where the cases are shared, each takes one radius, field of radii or kernel of so many: others
- * are of other dimensions and methods. */
-static int is_taken(const test_case *test, int k, int of)
-{
-    return !test_is_shared() || k % of == (test->dimension + (int)test->method) % of;
-}
-
 /* Lists of one chunk, of several, and of so many that rounding is carried along. */
 static void the_bits_are_those_of_the_long_way(const test_case *test)
 {
@@ -307,7 +300,7 @@ static void the_bits_are_those_of_the_long_way(const test_case *test)
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 3; ++k) {
-            if (!is_taken(test, k, 3))
+            if (!test_takes(test, k, 3))
                 continue;
             const scene of = scene_on(test, context, radius[k], 0);
             require_all(&of, test_text("path %d, H = %g", (int)isa, radius[k]));
@@ -322,7 +315,7 @@ static void radii_of_their_own_go_it(const test_case *test)
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 2; ++k) {
-            if (!is_taken(test, k, 2))
+            if (!test_takes(test, k, 2))
                 continue;
             const scene of = scene_on(test, context, radius[k], 1);
             require_all(&of, test_text("path %d, radii up to %g", (int)isa, radius[k]));
@@ -336,7 +329,7 @@ static void some_of_the_particles_go_it(const test_case *test)
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_watched_context_on(isa);
         for (int graded = 0; context && graded < 2; ++graded) {
-            if (!is_taken(test, graded, 2))
+            if (!test_takes(test, graded, 2))
                 continue;
             scene of = scene_on(test, context, 3, graded);
             of.targets -= of.targets / 4;
@@ -445,7 +438,7 @@ static void several_fields_go_it(const test_case *test)
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 3; ++k) {
-            if (!is_taken(test, k, 3))
+            if (!test_takes(test, k, 3))
                 continue;
             const scene of = scene_on(test, context, radius[k > 0], k == 1);
             const sphg_subset shares[] = {share_of(&of, MOST), share_of(&of, SOME),
@@ -466,7 +459,7 @@ static void every_kernel_goes_it(const test_case *test)
 {
     scene of = scene_on(test, setup_context(), 2, 0);
     for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
-        if (!is_taken(test, kernel, 3))
+        if (!test_takes(test, kernel, 3))
             continue;
         of.scheme.kernel = (sphg_kernel)kernel;
         require_all(&of, test_text("kernel %d", kernel));
@@ -480,7 +473,7 @@ static void order_2_goes_it(const test_case *test)
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
         sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 2; ++k) {
-            if (!is_taken(test, k, 2))
+            if (!test_takes(test, k, 2))
                 continue;
             scene of = scene_on(test, context, radius[k], 0);
             of.scheme.order = 2;
@@ -497,7 +490,7 @@ static void every_kernel_of_order_2_goes_it(const test_case *test)
     scene of = scene_on(test, setup_context(), 2, 0);
     of.scheme.order = 2;
     for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
-        if (!is_taken(test, kernel, 3))
+        if (!test_takes(test, kernel, 3))
             continue;
         of.scheme.kernel = (sphg_kernel)kernel;
         require_all(&of, test_text("kernel %d, order 2", kernel));

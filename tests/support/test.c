@@ -264,6 +264,11 @@ int test_is_shared(void)
     return share.parts > 1;
 }
 
+int test_takes(const test_case *test, int scene, int of)
+{
+    return !test_is_shared() || scene % of == (test->dimension + (int)test->method) % of;
+}
+
 int test_reference_stride(void)
 {
     return TEST_SLOWED || test_is_shared() ? 3 : 1;

@@ -61,6 +61,10 @@ sphg_isa test_isa(void);
  * one case is always run. True when that is asked for: a case may then be smaller, too. */
 int test_is_shared(void);
 
+/* Of scenes that a case goes through, `of` of them or kinds of them: where the run is shared, each
+ * case takes one; cases of other dimensions and methods take the others. */
+int test_takes(const test_case *test, int scene, int of);
+
 /* The larger; NaN if one is NaN, which fmax would pass over. */
 static inline double test_larger(double a, double b)
 {
