@@ -14,7 +14,7 @@ SPHGI_TEMPLATE void OUT_NAME(put)(OUT *at, enum sphgi_array array, vec v)
 
 /* What is known when a loop is compiled. */
 struct OUT_NAME(how) {
-    bool masked, periodic, three, scaled, volumes;
+    bool masked, periodic, three, scaled, volumes, keeps;
 };
 
 /* LANES of the tile's lanes, from `first` on. */
@@ -68,7 +68,7 @@ SPHGI_TEMPLATE void OUT_NAME(gather_lanes)(const struct sphgi_gather *g, const i
         vec r = vsqrt(square);
         if (how.masked)
             r = select(inside, r, far);
-        if (how.scaled && g->keeps) {
+        if (how.keeps) {
             OUT_NAME(put)(at, SPHGI_UX, dx);
             OUT_NAME(put)(at, SPHGI_UY, dy);
             OUT_NAME(put)(at, SPHGI_UZ, dz);
@@ -108,9 +108,12 @@ static void OUT_NAME(gather)(const struct sphgi_gather *g, const int32_t *target
 {
 #define GATHER                                                                                     \
     OUT_NAME(gather_as)                                                                            \
-    (g, targets, lanes, tile, (struct OUT_NAME(how)){masked, periodic, three, scaled, volumes})
+    (g, targets, lanes, tile,                                                                      \
+     (struct OUT_NAME(how)){masked, periodic, three, scaled, volumes, keeps})
 #define SHAPED                                                                                     \
-    WITH(three, g->dimension == 3, WITH(scaled, g->unit != 1, WITH(volumes, g->volumes, GATHER)))
+    WITH(three, g->dimension == 3,                                                                 \
+         WITH(scaled, g->unit != 1,                                                                \
+              WITH(volumes, g->volumes, WITH(keeps, scaled && g->keeps, GATHER))))
     if (!g->masked) {
         enum { masked = false, periodic = false };
         SHAPED;
