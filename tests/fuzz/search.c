@@ -56,8 +56,6 @@ static void take_radii_of_cloud(fuzz_bytes *from, cloud *made)
     if (made->own_targets)
         made->geometry.target_support = fuzz_view(made->type, radii_of(made, 1), 1);
     made->geometry.mutual = flags >> 1 & 1;
-    if (made->geometry.mutual) /* pairs beyond a skin are not told one by one */
-        made->geometry.skin = 0;
 }
 
 static void take_positions(fuzz_bytes *from, cloud *made, int side, int count, int tame)
