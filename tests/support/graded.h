@@ -30,7 +30,7 @@ double graded_skin(const graded *before);
 /* Such a block with the reference, whose pairs are those of now. Neighbours are mutual. */
 comparison graded_stage_of(const test_case *test, double ratio, double support, graded_way way);
 
-/* Compares all that such a field has with the oracle, at eight of the particles. */
+/* Compares all that such a field has with the oracle, at five of the particles or fewer. */
 void graded_compare(const comparison *on, sphg_shape shape, sphg_form form,
                     const setup_array *table);
 
