@@ -112,12 +112,19 @@ static const wish wishes[] = {
 };
 enum { WISHES = sizeof wishes / sizeof wishes[0] };
 
+static int is_classic(const scene *of)
+{
+    return of->test->method == SPHG_CMLS || of->test->method == SPHG_CRKPM;
+}
+
 /* PLAIN has no corrections; lists that are not mutual lack pairs of two-sided forms. Order 2 has
- * differences. */
+ * differences. Two-sided forms of classic methods go step by step. */
 static int is_offered(const scene *of, const wish *w)
 {
     if (of->scheme.order == 2)
         return w->form == SPHG_DIFFERENCE;
+    if (is_classic(of))
+        return w->form < SPHG_SYMMETRIC;
     return !(of->test->method == SPHG_PLAIN && w->corrections) &&
            !(of->graded && w->form >= SPHG_SYMMETRIC);
 }
@@ -138,7 +145,7 @@ static int numbers_of_result(const wish *w, int d)
 static int numbers_of_table(const scene *of)
 {
     const int d = of->test->dimension, pairs = d * (d + 1) / 2, all = d + pairs;
-    return of->scheme.order == 2 ? all * (all + 1) / 2 : pairs;
+    return of->scheme.order == 2 ? all * (all + 1) / 2 : is_classic(of) ? (d + 1) * (d + 1) : pairs;
 }
 
 typedef struct outcome {
@@ -497,6 +504,61 @@ static void every_kernel_of_order_2_goes_it(const test_case *test)
     }
 }
 
+/* ---- Classic methods ------------------------------------------------------------------------- */
+
+/* Lists of one tile, of several, and of so many that rounding is carried along. */
+static void classic_methods_go_it(const test_case *test)
+{
+    static const char *const letters[] = {"vs", "Vs", "dv", "vsvsssvv"};
+    const double radius[] = {2, 3, 4.5};
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        sphg_context *context = context_on(isa);
+        for (int k = 0; context && k < 3; ++k) {
+            const scene of = scene_on(test, context, radius[k], 0);
+            const char *how = test_text("path %d, H = %g", (int)isa, radius[k]);
+            require_all(&of, how);
+            for (int m = 0; m < 4; ++m)
+                require_as_alone(&of, letters[m], NULL, m % 2, how);
+        }
+    }
+}
+
+/* Corrections that are there: fields alone are summed. */
+static void classic_gradients_from_a_table_go_it(const test_case *test)
+{
+    const double radius[] = {2, 4.5};
+    const wish both = {"", 1, SPHG_VECTOR, SPHG_DIFFERENCE, 0, 0};
+    for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
+        sphg_context *context = context_on(isa);
+        for (int k = 0; context && k < 2; ++k) {
+            const scene of = scene_on(test, context, radius[k], 0);
+            const outcome expected = nothing_yet(&of, &both), got = nothing_yet(&of, &both);
+            evaluate(&of, &both, of.kept, setup_view(&of.volume), NULL, &expected);
+            for (int s = 0; s < 2; ++s) {
+                const sphg_sources sources = {.neighbors = supply(&of, s),
+                                              .volume = setup_view(&of.volume),
+                                              .correction = setup_view(&expected.table)};
+                SETUP_OK(of.context,
+                         sphg_jacobian(of.context, &of.scheme, &sources, NULL,
+                                       setup_view(&of.vector), setup_view(&got.result)));
+                TEST_REQUIRE(setup_same_bits(&expected.result, &got.result), "path %d, H = %g, %s",
+                             (int)isa, radius[k], supply_names[s]);
+            }
+        }
+    }
+}
+
+static void every_kernel_of_classic_methods_goes_it(const test_case *test)
+{
+    scene of = scene_on(test, setup_context(), 2, 0);
+    for (int kernel = SPHG_CUBIC_SPLINE; kernel <= SPHG_SPIKY; ++kernel) {
+        of.scheme.kernel = (sphg_kernel)kernel;
+        require_all(&of, test_text("kernel %d", kernel));
+    }
+}
+
+/* ---- What must not get into sums ------------------------------------------------------------- */
+
 /* A_i that is not finite reaches no sum of the direct form at i. */
 static void the_direct_form_does_not_look_at_the_target(const test_case *test)
 {
@@ -545,6 +607,11 @@ static const test_entry entries[] = {
     TEST_ENTRY(order_2_goes_it, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(every_kernel_of_order_2_goes_it, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
+    TEST_ENTRY(classic_methods_go_it, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_CLASSIC, 0),
+    TEST_ENTRY(classic_gradients_from_a_table_go_it, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_CLASSIC, 0),
+    TEST_ENTRY(every_kernel_of_classic_methods_goes_it, TEST_SINGLE_AND_DOUBLE,
+               TEST_BOTH_DIMENSIONS, TEST_CLASSIC, 0),
     TEST_ENTRY(a_bad_volume_is_named, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM) | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(the_direct_form_does_not_look_at_the_target, TEST_SINGLE_AND_DOUBLE,

@@ -351,7 +351,8 @@ SPHGI_TEMPLATE struct classic_places classic_places(bool three)
  * would overflow counts as none. */
 SPHGI_TEMPLATE void classic_solution_as(const struct sphgi_threshold *threshold, double mu2,
                                         int32_t l, const real *sums, const real *self, real *out,
-                                        real *lambda_min, struct sphgi_verdict *verdict, bool three)
+                                        real *lambda_min, struct sphgi_verdict *verdict,
+                                        vec *largest, bool three)
 {
     const int d = three ? 3 : 2;
     const real *wx = sums + SPHGI_WIDTH, *wxx = wx + d * SPHGI_WIDTH;
@@ -369,10 +370,7 @@ SPHGI_TEMPLATE void classic_solution_as(const struct sphgi_threshold *threshold,
             const vec second = load(wxx + k * SPHGI_WIDTH) * inverse;
             m[k] = minus(second, mean[a], mean[b]) * inverse_mu2;
         }
-    const double largest =
-        largest_of(classic_inverse(threshold, m, l, c, lambda_min, verdict, three));
-    if (verdict->largest_square < largest)
-        verdict->largest_square = largest;
+    *largest = vmax(classic_inverse(threshold, m, l, c, lambda_min, verdict, three), *largest);
     for (int k = 0; k < (three ? 6 : 3); ++k) {
         c[k] *= inverse_mu2;
         store(out + (at.inverse_moments + k) * SPHGI_WIDTH, c[k]);
@@ -395,15 +393,18 @@ static void solve_classic(int32_t width, const struct sphgi_threshold *threshold
                           struct sphgi_verdict *verdict)
 {
     verdict->decomposed = verdict->empty = 0;
-    verdict->largest_square = 0;
+    vec largest = splat(R(0));
     for (int32_t l = 0; l < width; l += LANES) {
         const real *in = (const real *)sums + l, *weight = (const real *)self + l;
         real *out = (real *)solution + l;
         if (threshold->dimension == 3)
-            classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, true);
+            classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, &largest,
+                                true);
         else
-            classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, false);
+            classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, &largest,
+                                false);
     }
+    verdict->largest_square = largest_of(largest);
 }
 
 /* y, and z_k = A^-1 r with r = e_k - B_k y, from the sums of sum_classic_slopes. */

@@ -95,6 +95,12 @@ struct sphgi_passes {
      * arrays. */
     void (*sum_group)(const struct sphgi_group_sums *group, const struct sphgi_shape *shape,
                       const struct sphgi_group_lists *lists, struct sphgi_tile *tile);
+    /* The same for the classic methods as far as it can come at once: a chunk of the lists, from
+     * ids to the tile's offsets and weights, V_j in both if `weighted`, and to the moments unless
+     * sums is NULL. */
+    void (*begin_classic)(const struct sphgi_gather *gather, const struct sphgi_shape *shape,
+                          const int32_t *targets, bool weighted, struct sphgi_tile *tile,
+                          void *sums);
     /* The same for order 2. */
     void (*sum_quadratic_group)(const struct sphgi_group_sums *group,
                                 const struct sphgi_shape *shape,

@@ -62,6 +62,7 @@
 #include "record_sums.inl.h"
 #endif
 #include "classic.inl.h"
+#include "classic_groups.inl.h"
 #include "classic_other_side.inl.h"
 #include "quadratic_sums.inl.h"
 #include "quadratic_groups.inl.h"
@@ -102,6 +103,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .keep_factors = keep_factors,
     .stage = stage,
     .sum_group = sum_group,
+    .begin_classic = begin_classic,
     .sum_quadratic_group = sum_quadratic_group,
 #if defined(RECORDS_ARE_READ)
     .sum_records = sum_records,

@@ -83,6 +83,7 @@ struct sphgi_tile {
     bool spread;             /* the lanes hold one list, a chunk each */
     bool carries;            /* lists have more chunks than are added as they are */
     bool scattered;          /* targets of lanes beside each other do not stand so in storage */
+    bool weighed;            /* classic: V_j is in both weights already, if they want it */
     ptrdiff_t section; /* numbers from a sum to its carry, and on to what a spread chunk comes to */
 };
 

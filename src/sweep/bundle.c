@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "bundle.h"
 #include "batch.h"
+#include "classic_way.h"
 #include "core/view.h"
 #include "corrections.h"
 #include "finish.h"
@@ -96,6 +97,7 @@ static void finish_pairs(struct sphgi_worker *w)
 
 void sphgi_bundle_finish(struct sphgi_worker *w)
 {
+    sphgi_classic_complete(w);
     sphgi_put_to_work(w, 0);
     if (w->sweep->pairs)
         finish_pairs(w);

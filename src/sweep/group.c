@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "group.h"
 #include "batch.h"
+#include "classic_way.h"
 #include "own.h"
 #include "short_way.h"
 #include "waiting.h"
@@ -86,15 +87,27 @@ static void run_side_by_side(struct sphgi_worker *w, const uint32_t *ids, const 
     lists->side_by_side = true;
     for (int32_t l = 0; l < count; ++l)
         lists->count[l] = lengths[l];
-    sphgi_batch_run(w);
+    sphgi_run_lists(w);
     lists->side_by_side = false;
+}
+
+static bool is_short(const struct sphgi_worker *w, int32_t steps)
+{
+    return w->is_short &&
+           (!w->sweep->plan->classic || (!w->batch.drops && sphgi_has_tiles_for(w, steps)));
+}
+
+/* Vectors that wait for each other stand one behind the other. */
+static bool is_in_vectors(const struct sphgi_worker *w)
+{
+    return !w->sweep->plan->classic || w->bundle.count % w->passes->lanes == 0;
 }
 
 void sphgi_group_run(struct sphgi_worker *w, const struct sphgi_group *group)
 {
     const struct sphgi_kept_weights *kept = &w->sweep->kept;
     const int32_t number = group->place / SPHGI_GROUP, lanes = w->passes->lanes;
-    if (w->bundle.count > SPHGI_WIDTH - SPHGI_GROUP)
+    if (w->bundle.count > SPHGI_WIDTH - SPHGI_GROUP || !is_in_vectors(w))
         sphgi_finish_lanes(w);
     int32_t targets[SPHGI_GROUP], count = SPHGI_GROUP;
     if (group->places)
@@ -107,11 +120,12 @@ void sphgi_group_run(struct sphgi_worker *w, const struct sphgi_group *group)
         const uint32_t all = (1u << some) - 1, *ids = group->ids + first;
         const uint32_t active = group->active >> first & all;
         const uint16_t *lengths = group->lengths + first;
+        const int32_t steps = w->is_short ? longest_of(lengths, some) : 0;
         w->batch.kept = kept_factors(w, group, ids);
         put_into_lanes(w, group, targets, first, some);
         w->batch.drops = active != all && w->held.room;
-        if (w->is_short)
-            sphgi_short_way_run(w, ids, longest_of(lengths, some));
+        if (is_short(w, steps))
+            sphgi_short_way_run(w, ids, steps);
         else
             run_side_by_side(w, ids, lengths, some);
         if (active != all)
@@ -119,6 +133,8 @@ void sphgi_group_run(struct sphgi_worker *w, const struct sphgi_group *group)
     }
     w->batch.drops = false;
     w->batch.kept = NULL;
+    if (!group->kept)
+        sphgi_classic_complete(w); /* these ids do not stay */
     if (group->kept && kept->number)
         kept->marks[number] = kept->number;
     if (w->bundle.summed == SPHGI_WIDTH)

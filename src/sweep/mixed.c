@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "mixed.h"
-#include "batch.h"
 #include "copies.h"
 #include "group.h"
 #include "waiting.h"
@@ -80,7 +79,7 @@ static void run_oldest(struct sphgi_worker *w)
                                       .lengths = oldest->lengths};
     const uint32_t *end = w->ids_end;
     if (w->bundle.count > w->bundle.summed)
-        sphgi_batch_run(w); /* lists that came one by one meanwhile */
+        sphgi_run_lists(w); /* lists that came one by one meanwhile */
     number_rows(w, oldest);
     if (w->rows.local)
         sphgi_copy_rows(w, copies_of(w, oldest), 0);

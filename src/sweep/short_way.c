@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "short_way.h"
 #include "batch.h"
+#include "classic_way.h"
 #include "lane_radii.h"
 #include "own.h"
 #include "records.h"
@@ -55,6 +56,10 @@ void sphgi_short_way_open(struct sphgi_worker *w)
         w->is_short = true;
         return;
     }
+    if (plan->classic) {
+        w->is_short = sphgi_is_classic_way(w);
+        return;
+    }
     const bool moments = (sweep->steps & SPHGI_SUM_MOMENTS) && plan->computes;
     const int32_t fields = sweep->steps & SPHGI_SUM_FIELDS ? plan->field_count : 0;
     *way = (struct sphgi_group_sums){.gather = &w->gather, .three = plan->dimension == 3};
@@ -72,6 +77,10 @@ void sphgi_short_way_open(struct sphgi_worker *w)
 void sphgi_short_way_run(struct sphgi_worker *w, const uint32_t *ids, int32_t steps)
 {
     const struct sphgi_group_sums *way = &w->short_way;
+    if (w->sweep->plan->classic) {
+        sphgi_classic_begin(w, ids, steps);
+        return;
+    }
     sphgi_put_to_work(w, w->bundle.summed);
     sphgi_read_lane_radii(w);
     const bool records = w->sweep->records;

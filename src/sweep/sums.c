@@ -12,6 +12,12 @@
 #include "core/view.h"
 #include <string.h>
 
+/* V_j is part of the classic weights, and not in them yet. */
+static bool lacks_volumes(const struct sphgi_worker *w)
+{
+    return w->sweep->plan->weighted && !w->tile.weighed;
+}
+
 /* Classic gradients are whole; those of the linearised methods still lack C_i. */
 static enum sphgi_vectors vectors_of(const struct sphgi_worker *w)
 {
@@ -132,7 +138,7 @@ static void sum_transposed(struct sphgi_worker *w, bool symmetric)
 static void form_classic_vectors(struct sphgi_worker *w)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    w->passes->classic_vectors(&w->tile, plan->dimension, plan->weighted,
+    w->passes->classic_vectors(&w->tile, plan->dimension, lacks_volumes(w),
                                sphgi_lane(w, w->coefficients, 0));
 }
 
@@ -185,7 +191,7 @@ static void sum_fields(struct sphgi_worker *w)
     sphgi_load_targets(w);
     if (plan->classic && plan->corrects && is_one_gradient(w)) {
         const struct sphgi_field_plan *field = plan->fields;
-        w->passes->sum_classic_field(&w->tile, plan->dimension, plan->weighted,
+        w->passes->sum_classic_field(&w->tile, plan->dimension, lacks_volumes(w),
                                      sphgi_lane(w, w->coefficients, 0), w->rows.at[field->row],
                                      field->components, sphgi_subtracted(w, field),
                                      sphgi_lane(w, w->reduced, field->sum));
@@ -259,7 +265,7 @@ void sphgi_evaluate_tile(struct sphgi_worker *w)
     else if ((w->batch.summing & SPHGI_SUM_MOMENTS) && plan->computes)
         p->sum_moments(tile, plan->dimension, moments);
     if (w->batch.summing & SPHGI_SUM_SLOPES)
-        p->sum_classic_slopes(tile, plan->dimension, plan->weighted,
+        p->sum_classic_slopes(tile, plan->dimension, lacks_volumes(w),
                               sphgi_lane(w, w->coefficients, 0),
                               sphgi_lane(w, w->reduced, plan->slope_sum));
     if (w->batch.summing & SPHGI_SUM_FIELDS)

@@ -2,6 +2,7 @@
 #include "waiting.h"
 #include "batch.h"
 #include "bundle.h"
+#include "classic_way.h"
 #include <string.h>
 
 int32_t sphgi_add_target(struct sphgi_worker *w, int32_t target, int32_t place)
@@ -18,10 +19,16 @@ void sphgi_finish_lanes(struct sphgi_worker *w)
         sphgi_bundle_finish(w);
 }
 
+void sphgi_run_lists(struct sphgi_worker *w)
+{
+    sphgi_classic_complete(w);
+    sphgi_batch_run(w);
+}
+
 void sphgi_run_rest(struct sphgi_worker *w)
 {
     if (w->bundle.count > w->bundle.summed)
-        sphgi_batch_run(w);
+        sphgi_run_lists(w);
     sphgi_finish_lanes(w);
     w->waiting.used = 0;
 }
@@ -36,7 +43,7 @@ void sphgi_add_list(struct sphgi_worker *w, int32_t target, int32_t place, const
     w->batch.lists->count[lane] = count;
     w->batch.lists->stride[lane] = stride;
     if (lane + 1 == w->passes->lanes)
-        sphgi_batch_run(w);
+        sphgi_run_lists(w);
     if (w->bundle.summed == SPHGI_WIDTH)
         sphgi_finish_lanes(w);
     if (w->bundle.count == w->bundle.summed)

@@ -16,6 +16,9 @@ void sphgi_add_list(struct sphgi_worker *worker, int32_t target, int32_t place, 
 void sphgi_add_copied(struct sphgi_worker *worker, int32_t target, int32_t place,
                       const uint32_t *ids, int32_t count, int32_t copied);
 
+/* Sums the targets whose lists stand in worker->batch.lists, step by step. */
+void sphgi_run_lists(struct sphgi_worker *worker);
+
 /* Sums and writes what waits. */
 void sphgi_run_rest(struct sphgi_worker *worker);
 

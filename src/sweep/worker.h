@@ -48,6 +48,15 @@ struct sphgi_held {
     struct sphgi_held_tile *tile;
 };
 
+/* Vectors of targets on the classic methods' short way (classic_way.h): their moments are summed,
+ * and their tiles stay; what comes next waits until it is done for all of them. */
+struct sphgi_begun {
+    int32_t first; /* of their targets, in the bundle */
+    int32_t vectors, tiles;
+    int32_t longest[SPHGI_TILES_HELD]; /* pairs of a list of each ... */
+    int32_t end[SPHGI_TILES_HELD];     /* ... and tiles up to its last one */
+};
+
 /* Ids that wait until the lanes are full: lists of targets that follow one another, or the pairs of
  * one list that comes in pieces. */
 struct sphgi_waiting {
@@ -176,6 +185,7 @@ struct sphgi_worker {
     struct sphgi_waiting waiting;
     struct sphgi_tile tile;
     struct sphgi_held held;
+    struct sphgi_begun begun;
     struct sphgi_own own;
     struct sphgi_lane_radii radii;
     struct sphgi_curvature curvature;
