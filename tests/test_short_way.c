@@ -512,8 +512,10 @@ static void classic_methods_go_it(const test_case *test)
     static const char *const letters[] = {"vs", "Vs", "dv", "vsvsssvv"};
     const double radius[] = {2, 3, 4.5};
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 3; ++k) {
+            if (!test_takes(test, k, 3))
+                continue;
             const scene of = scene_on(test, context, radius[k], 0);
             const char *how = test_text("path %d, H = %g", (int)isa, radius[k]);
             require_all(&of, how);
@@ -529,8 +531,10 @@ static void classic_gradients_from_a_table_go_it(const test_case *test)
     const double radius[] = {2, 4.5};
     const wish both = {"", 1, SPHG_VECTOR, SPHG_DIFFERENCE, 0, 0};
     for (sphg_isa isa = SPHG_ISA_BASE; isa <= SPHG_ISA_NEON; ++isa) {
-        sphg_context *context = context_on(isa);
+        sphg_context *context = setup_watched_context_on(isa);
         for (int k = 0; context && k < 2; ++k) {
+            if (!test_takes(test, k, 2))
+                continue;
             const scene of = scene_on(test, context, radius[k], 0);
             const outcome expected = nothing_yet(&of, &both), got = nothing_yet(&of, &both);
             evaluate(&of, &both, of.kept, setup_view(&of.volume), NULL, &expected);
