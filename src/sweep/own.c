@@ -96,6 +96,8 @@ void sphgi_ask_for_targets(const struct sphgi_worker *w, int32_t count, const in
     const struct sphgi_passes *p = w->passes;
     p->ask_for_lanes(count, &plan->target_correction, targets, false);
     p->ask_for_lanes(count, &plan->correction, targets, true);
+    if (plan->weighted && plan->own_set >= 0 && plan->computes)
+        p->ask_for_lanes(count, &plan->own_volume, targets, false);
     if (plan->adjoint || plan->transposes[1]) {
         p->ask_for_lanes(count, &plan->target_volume, targets, false);
         p->ask_for_lanes(count, &plan->target_density, targets, false);
