@@ -340,7 +340,7 @@ static void no_way_of_summing_changes_a_bit(const test_case *test)
         uint8_t *mask = test_memory(CROWD);
         for (int every = 2; every < 60; every *= 5) {
             for (int i = 0; i < CROWD; ++i)
-                mask[i] = every == 2 ? i % 3 != 0 : i % every == 0;
+                mask[i] = (uint8_t)(every == 2 ? i % 3 != 0 : i % every == 0);
             const sphg_subset some = sphg_masked(mask, CROWD);
             const pushed found = push(&of, context, alone, SPHG_ADJOINT, &table, &table, &some);
             for (int i = 0; i < CROWD; ++i)
