@@ -457,38 +457,7 @@ static void skins_in_proportion_miss_no_pair(const test_case *test)
 static void pair_gradients_are_those_of_one_pair(const test_case *test)
 {
     const comparison on = graded_stage(test, 0);
-    const int n = on.points.count, d = on.points.dimension;
-    const setup_array table = comparison_table(&on);
-    sphg_sources sources = comparison_sources(&on);
-    sphg_pairs pairs = {0};
-    int64_t *offsets = test_memory(((size_t)n + 1) * sizeof *offsets);
-    pairs.offsets = offsets;
-    SETUP_OK(on.context,
-             sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
-    const setup_array found = setup_output(test_field_type(test), (int)pairs.count, d);
-    pairs.indices = test_memory((size_t)pairs.count * sizeof *pairs.indices);
-    pairs.gradient = setup_view(&found);
-    pairs.capacity = pairs.count;
-    SETUP_OK(on.context,
-             sphg_pair_gradients(on.context, &on.scheme, &sources, NULL, sphg_absent(), &pairs));
-    for (int i = 0; i < n; i += 5)
-        for (int64_t k = offsets[i]; k < offsets[i + 1]; ++k) {
-            const int j = pairs.indices[k];
-            sphg_scheme own = on.scheme;
-            double x[3] = {0}, row[16] = {0}, gradient[3], size = 0, off = 0;
-            own.support_radius = on.scene.support[i];
-            for (int a = 0; a < d; ++a)
-                x[a] = on.points.x[i * d + a] - on.points.x[j * d + a];
-            for (int c = 0; c < table.width; ++c)
-                row[c] = setup_get(&table, i, c);
-            sphg_pair_gradient(&own, x, on.scene.volume[j], row, gradient);
-            for (int a = 0; a < d && i != j; ++a) {
-                size += fabs(gradient[a]);
-                off += fabs(gradient[a] - setup_get(&found, (int)k, a));
-            }
-            TEST_REQUIRE(off <= 4096 * test_unit_roundoff(test) * (size + 1e-3), "pair %d %d", i,
-                         j);
-        }
+    graded_require_pair_gradients(&on, 0, 4096);
 }
 
 typedef struct written {

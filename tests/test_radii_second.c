@@ -147,15 +147,7 @@ static void tables_give_the_bits_of_one_sweep(const test_case *test)
 {
     for (int way = 0; way < GRADED_WAYS; ++way) {
         const comparison on = stage_of(test, 8, 2.5, way);
-        const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 6);
-        const second_order fused =
-            second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){.no_table = 1});
-        const second_order found =
-            second_order_apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
-        const second_order read = second_order_apply(&on, SPHG_VECTOR, numbers,
-                                                     (second_order_how){.table = &found.table});
-        second_order_require_same_bits(&fused, &found, on.name);
-        second_order_require_same_bits(&found, &read, on.name);
+        second_order_require_table_has_all(&on);
     }
 }
 
@@ -218,37 +210,7 @@ static void gradients_of_pairs_are_those_of_one_pair(const test_case *test)
 {
     for (int way = 0; way < 2; ++way) {
         const comparison on = stage_of(test, 8, 2.5, way);
-        const int n = on.points.count, d = on.points.dimension;
-        const setup_array table = comparison_table(&on);
-        sphg_sources sources = comparison_sources(&on);
-        int64_t *offsets = test_memory(((size_t)n + 1) * sizeof *offsets);
-        sphg_pairs pairs = {.offsets = offsets};
-        SETUP_OK(on.context, sphg_pair_gradients(on.context, &on.scheme, &sources, NULL,
-                                                 sphg_absent(), &pairs));
-        const setup_array found = setup_output(test_field_type(test), (int)pairs.count, d);
-        pairs.indices = test_memory((size_t)pairs.count * sizeof *pairs.indices);
-        pairs.gradient = setup_view(&found);
-        pairs.capacity = pairs.count;
-        SETUP_OK(on.context, sphg_pair_gradients(on.context, &on.scheme, &sources, NULL,
-                                                 setup_view(&table), &pairs));
-        for (int i = 0; i < n; i += 5)
-            for (int64_t k = offsets[i]; k < offsets[i + 1]; ++k) {
-                const int j = pairs.indices[k];
-                sphg_scheme own = on.scheme;
-                double x[3] = {0}, row[45] = {0}, gradient[3], size = 0, off = 0;
-                own.support_radius = on.scene.support[i];
-                for (int a = 0; a < d; ++a)
-                    x[a] = on.points.x[i * d + a] - on.points.x[j * d + a];
-                for (int c = 0; c < table.width; ++c)
-                    row[c] = setup_get(&table, i, c);
-                sphg_pair_gradient(&own, x, on.scene.volume[j], row, gradient);
-                for (int a = 0; a < d; ++a) {
-                    size += fabs(gradient[a]);
-                    off += fabs(gradient[a] - setup_get(&found, (int)k, a));
-                }
-                TEST_REQUIRE(off <= 1e5 * test_unit_roundoff(test) * (size + 1e-3),
-                             "pair %d %d is off by %g of %g", i, j, off, size);
-            }
+        graded_require_pair_gradients(&on, 1, 1e5);
     }
 }
 

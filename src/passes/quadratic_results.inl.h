@@ -106,38 +106,49 @@ static void quadratic_gradients(const struct sphgi_tile *tile, int32_t dimension
     WITH(three, dimension == 3, quadratic_gradients_as(tile, correction, splat(R(scale)), three));
 }
 
-/* Minus the gradient seen from j, times the weight: T = weight (P_j s x + Q_j s x x), the products
- * of one axis halved: x has the other sign there. Rows hold P and Q in units of the host, which
- * differ by a factor. */
+/* T = P_j g + Q_j p, the products of one axis halved. Rows hold P and Q in units of the host, which
+ * differ by the factor `between`. */
+SPHGI_TEMPLATE void put_transposed(const struct sphgi_tile *tile, int32_t k,
+                                   const void *const *rows, const vec *g, const vec *p,
+                                   const vec *between, bool three)
+{
+    const int d = three ? 3 : 2, n = three ? 6 : 3, streams = three ? 6 : 3;
+    vec c[24];
+    for (int s = 0; s < streams; ++s) {
+        const struct four row = gather_rows(rows[s], ids_at(tile, k));
+        c[4 * s] = row.x;
+        c[4 * s + 1] = row.y;
+        c[4 * s + 2] = row.z;
+        c[4 * s + 3] = row.w;
+    }
+    for (int a = 0; a < d; ++a) {
+        vec sum = splat(R(0));
+        for (int m = 0; m < n; ++m)
+            sum = plus(sum, c[n + a * n + m], (is_square(m, three) ? R(.5) : R(1)) * p[m]);
+        sum *= *between;
+        for (int b = 0; b < d; ++b)
+            sum = plus(sum, c[sphgi_pair_index(a, b, d)], g[b]);
+        store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
+    }
+}
+
+/* Minus the gradient seen from j, times the weight: g is weight s x, and p weight s x x, since x
+ * has the other sign there. */
 SPHGI_TEMPLATE void transposed_quadratic_as(const struct sphgi_tile *tile, const void *const *rows,
                                             real between, const void *density,
                                             enum sphgi_weight kind, bool three)
 {
-    const int d = three ? 3 : 2, n = three ? 6 : 3, streams = three ? 6 : 3;
+    const int d = three ? 3 : 2;
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const vec weight = weight_of(tile, k, density, kind);
-        vec x[3], g[3], p[PAIRS_MOST], c[24];
+        vec x[3], g[3], p[PAIRS_MOST];
         offsets_at(tile, k, three, x);
         vectors_at(tile, k, SPHGI_FACTORS, three, g);
         for (int a = 0; a < d; ++a)
             g[a] *= weight;
         pair_products(g, x, three, p);
-        for (int s = 0; s < streams; ++s) {
-            const struct four row = gather_rows(rows[s], ids_at(tile, k));
-            c[4 * s] = row.x;
-            c[4 * s + 1] = row.y;
-            c[4 * s + 2] = row.z;
-            c[4 * s + 3] = row.w;
-        }
-        for (int a = 0; a < d; ++a) {
-            vec sum = splat(R(0));
-            for (int m = 0; m < n; ++m)
-                sum = plus(sum, c[n + a * n + m], (is_square(m, three) ? R(.5) : R(1)) * p[m]);
-            sum *= between;
-            for (int b = 0; b < d; ++b)
-                sum = plus(sum, c[sphgi_pair_index(a, b, d)], g[b]);
-            store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
-        }
+        const vec units = splat(between);
+        put_transposed(tile, k, rows, g, p, &units, three);
     }
 }
 
@@ -157,35 +168,20 @@ SPHGI_TEMPLATE void quadratic_other_as(const struct sphgi_shape *shape,
                                        const struct sphgi_other_side *of, sphg_kernel kernel,
                                        bool three)
 {
-    const int d = three ? 3 : 2, n = three ? 6 : 3, streams = three ? 6 : 3;
+    const int d = three ? 3 : 2;
     const bool slope = shape->method == SPHG_KGC;
     for (int32_t k = 0; k < places_of(tile); k += LANES) {
         const struct four radius = gather_rows(of->radii, ids_at(tile, k));
         const struct ratio at = ratio_of(from(tile, SPHGI_UR, k), radius.y);
         const vec value = slope ? kernel_d(kernel, at) : kernel_w(kernel, at);
         const vec s = weight_of(tile, k, of->density, of->weight) * radius.w * value;
-        vec x[3], g[3], p[PAIRS_MOST], c[24];
+        vec x[3], g[3], p[PAIRS_MOST];
         for (int a = 0; a < d; ++a) {
             x[a] = radius.y * from(tile, (enum sphgi_array)(SPHGI_UX + a), k);
             g[a] = s * x[a];
         }
         pair_products(g, x, three, p);
-        for (int r = 0; r < streams; ++r) {
-            const struct four row = gather_rows(of->table[r], ids_at(tile, k));
-            c[4 * r] = row.x;
-            c[4 * r + 1] = row.y;
-            c[4 * r + 2] = row.z;
-            c[4 * r + 3] = row.w;
-        }
-        for (int a = 0; a < d; ++a) {
-            vec sum = splat(R(0));
-            for (int m = 0; m < n; ++m)
-                sum = plus(sum, c[n + a * n + m], (is_square(m, three) ? R(.5) : R(1)) * p[m]);
-            sum *= radius.z;
-            for (int b = 0; b < d; ++b)
-                sum = plus(sum, c[sphgi_pair_index(a, b, d)], g[b]);
-            store(array_of(tile->arrays, SPHGI_TX) + a * SPHGI_TILE + k, sum);
-        }
+        put_transposed(tile, k, of->table, g, p, &radius.z, three);
     }
 }
 

@@ -122,3 +122,47 @@ void graded_compare(const comparison *on, sphg_shape shape, sphg_form form,
     for (int i = 0; i < on->points.count; i += test_reference_stride() * (on->points.count / 4))
         comparison_compare(on, &field, &found, i);
 }
+
+/* |G_ij - found| beside |G_ij|, both as sums over the axes. */
+static void require_pair(const comparison *on, const setup_array *table, const setup_array *found,
+                         int64_t pair, int i, int j, double roundings)
+{
+    const int d = on->points.dimension;
+    sphg_scheme own = on->scheme;
+    double x[3] = {0}, row[45] = {0}, gradient[3], size = 0, off = 0;
+    own.support_radius = on->scene.support[i];
+    for (int a = 0; a < d; ++a)
+        x[a] = on->points.x[i * d + a] - on->points.x[j * d + a];
+    for (int c = 0; c < table->width; ++c)
+        row[c] = setup_get(table, i, c);
+    sphg_pair_gradient(&own, x, on->scene.volume[j], row, gradient);
+    for (int a = 0; a < d; ++a) {
+        size += fabs(gradient[a]);
+        off += fabs(gradient[a] - setup_get(found, (int)pair, a));
+    }
+    TEST_REQUIRE(off <= roundings * test_unit_roundoff(on->test) * (size + 1e-3),
+                 "pair %d %d is off by %g of %g", i, j, off, size);
+}
+
+void graded_require_pair_gradients(const comparison *on, int from_table, double roundings)
+{
+    const int n = on->points.count;
+    const setup_array table = comparison_table(on);
+    const sphg_view given = from_table ? setup_view(&table) : sphg_absent();
+    const sphg_sources sources = comparison_sources(on);
+    int64_t *offsets = test_memory(((size_t)n + 1) * sizeof *offsets);
+    sphg_pairs pairs = {.offsets = offsets};
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, NULL, sphg_absent(), &pairs));
+    const setup_array found =
+        setup_output(test_field_type(on->test), (int)pairs.count, on->points.dimension);
+    pairs.indices = test_memory((size_t)pairs.count * sizeof *pairs.indices);
+    pairs.gradient = setup_view(&found);
+    pairs.capacity = pairs.count;
+    SETUP_OK(on->context,
+             sphg_pair_gradients(on->context, &on->scheme, &sources, NULL, given, &pairs));
+    for (int i = 0; i < n; i += 5)
+        for (int64_t k = offsets[i]; k < offsets[i + 1]; ++k)
+            if (pairs.indices[k] != i) /* classic methods have that, too */
+                require_pair(on, &table, &found, k, i, pairs.indices[k], roundings);
+}

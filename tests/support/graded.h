@@ -34,4 +34,8 @@ comparison graded_stage_of(const test_case *test, double ratio, double support, 
 void graded_compare(const comparison *on, sphg_shape shape, sphg_form form,
                     const setup_array *table);
 
+/* Exported G_ij beside those of sphg_pair_gradient() with H_i: so many roundings apart at most.
+ * Corrections are computed on the way, or those of a table. */
+void graded_require_pair_gradients(const comparison *on, int from_table, double roundings);
+
 #endif

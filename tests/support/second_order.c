@@ -137,3 +137,15 @@ void second_order_slope_at(const cloud *points, int i, double *gradient)
             gradient[b] += a == b ? 0 : second_order_second[k] * x[a];
         }
 }
+
+void second_order_require_table_has_all(const comparison *on)
+{
+    const double *numbers = comparison_random_field(on, SPHG_VECTOR, 6);
+    const second_order fused =
+        second_order_apply(on, SPHG_VECTOR, numbers, (second_order_how){.no_table = 1});
+    const second_order found = second_order_apply(on, SPHG_VECTOR, numbers, (second_order_how){0});
+    const second_order read =
+        second_order_apply(on, SPHG_VECTOR, numbers, (second_order_how){.table = &found.table});
+    second_order_require_same_bits(&fused, &found, on->name);
+    second_order_require_same_bits(&found, &read, on->name);
+}

@@ -34,6 +34,9 @@ second_order second_order_apply(const comparison *on, sphg_shape shape, const do
 void second_order_require_same_bits(const second_order *a, const second_order *b,
                                     const char *where);
 
+/* With corrections of the same call, written beside or not, and of a table: the same bits. */
+void second_order_require_table_has_all(const comparison *on);
+
 /* |found - exact| / bound of item i. */
 double second_order_ratio(const setup_array *found, int i, const quad *exact, quad bound);
 /* All of target i, against one tolerance; nothing where rounding decides. */
