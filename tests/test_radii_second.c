@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Order 2 with a support radius per particle: derivatives, both sides of pairs, tables, pairs and
  * what is lent, over lists that hold the pairs of now or, with a skin, more than these. */
-#include "support/graded.h"
+#include "support/graded_halves.h"
 #include "support/oracle_borrowed.h"
 #include "support/second_order.h"
 #include <math.h>
@@ -69,6 +69,37 @@ static void both_sides_match_the_oracle(const test_case *test)
                 }
             }
         }
+}
+
+/* Targets apart, whose sums come from two source sets. */
+static void halves_apart_match_the_oracle(const test_case *test)
+{
+    for (int way = 0; way < GRADED_WAYS; ++way) {
+        const comparison on = stage_of(test, 8, 2.5, way);
+        const setup_array table = comparison_table(&on);
+        const sphg_shape shape = way & 1 ? SPHG_SCALAR : SPHG_VECTOR;
+        const double *numbers = comparison_random_field(&on, shape, 8);
+        const setup_array values = setup_numbers(test_field_type(test), on.points.count,
+                                                 setup_width(shape, test->dimension), numbers);
+        const graded_halves of = graded_halves_of(&on, 8, 2.5, (graded_way)way, &table, &values);
+        for (int k = 0; k < 4; ++k) {
+            const sphg_form form = k & 1 ? SPHG_ADJOINT : SPHG_DIFFERENCE;
+            const comparison_field field = {shape, form, numbers};
+            const comparison_result found =
+                graded_apply_to_halves(&on, &of, &field, &table, k >> 1);
+            const oracle_field asked = {shape, form, numbers, NULL};
+            for (int i = 0; i < on.points.count; i += 2 * step_of(&on)) {
+                const oracle_curved exact =
+                    k & 1 ? oracle_apply_second_two_sided(on.reference, &asked, i)
+                          : oracle_apply_second(on.reference, &asked, i);
+                if (!exact.undecided)
+                    TEST_WITHIN(quadratic_two_sided,
+                                second_order_ratio(&found.gradient, i, exact.gradient,
+                                                   exact.gradient_bound),
+                                test_text("form %d of particle %d, %s", (int)form, i, on.name));
+            }
+        }
+    }
 }
 
 /* Hessians are lent in units of length, and borrowed in those of each. */
@@ -246,6 +277,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(results_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED,
                0),
     TEST_ENTRY(both_sides_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED, 0),
+    TEST_ENTRY(halves_apart_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
     TEST_ENTRY(borrowed_curvature_matches_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
