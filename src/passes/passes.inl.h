@@ -59,6 +59,7 @@
 #include "group_sums.inl.h"
 #if !defined(__x86_64__) || defined(__AVX2__) /* others wait for arithmetic: not worth the code */
 #define RECORDS_ARE_READ
+#include "records.inl.h"
 #include "record_sums.inl.h"
 #endif
 #include "classic.inl.h"
