@@ -257,11 +257,13 @@ static fork_world fork_world_of(const test_case *test)
 
 /* The parent has a team of OpenMP threads, which the child has not. The thread sanitizer takes what
  * these have read, before the fork, for a race with what the child writes: it knows nothing of
- * their end. */
+ * their end. qemu fails an assertion of its own (plugins/core.c) at the child's first new thread.
+ */
 static void contexts_old_and_new_work_after_a_fork(const test_case *test)
 {
-    if (IS_WATCHED_FOR_RACES) {
-        print_message("skipped: the thread sanitizer does not follow threads through fork()\n");
+    if (IS_WATCHED_FOR_RACES || TEST_IS_EMULATED) {
+        print_message("skipped: the thread sanitizer does not follow threads through fork(), "
+                      "nor does qemu\n");
         test_skip();
     }
     const fork_world own = fork_world_of(test);
