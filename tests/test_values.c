@@ -123,6 +123,24 @@ static void shepard_keeps_constants(const test_case *test)
         assert_true(setup_get(&still, i, 0) == 0);
 }
 
+/* Weights below the normal numbers have few digits, but a mean. */
+static void tiny_weights_have_a_mean(const test_case *test)
+{
+    const comparison on = block_of(test);
+    const int n = on.points.count;
+    double *same = test_memory((size_t)n * sizeof *same),
+           *tiny = test_memory((size_t)n * sizeof *tiny);
+    for (int i = 0; i < n; ++i) {
+        same[i] = 3;
+        tiny[i] = ldexp(1, test_field_type(test) == SPHG_F64 ? -1066 : -141);
+    }
+    const sum of = {SPHG_SCALAR, SPHG_DIRECT, same, tiny, 1};
+    const setup_array found = evaluate(&on, &of);
+    for (int i = 0; i < n; ++i)
+        TEST_REQUIRE(fabs(setup_get(&found, i, 0) / 3 - 1) < .1, "particle %d: %g", i,
+                     setup_get(&found, i, 0));
+}
+
 /* Probes with nobody near: 0, not 0 / 0. */
 static void nobody_gives_nothing(const test_case *test)
 {
@@ -377,6 +395,8 @@ static const test_entry entries[] = {
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_MLS), 0),
     TEST_ENTRY(radii_match_the_oracle, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, METHODS, 0),
     TEST_ENTRY(shepard_keeps_constants, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_BIT(SPHG_KGC), TEST_ALL_KERNELS),
+    TEST_ENTRY(tiny_weights_have_a_mean, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC), TEST_ALL_KERNELS),
     TEST_ENTRY(nobody_gives_nothing, TEST_SINGLE_AND_DOUBLE, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_RKPM), 0),

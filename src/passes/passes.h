@@ -233,6 +233,7 @@ struct sphgi_passes {
     void (*sum_value)(const struct sphgi_tile *tile, const void *rows, int32_t count,
                       const void *at_target, void *sums);
     void (*sum_weights)(const struct sphgi_tile *tile, void *sums); /* of values */
+    void (*means)(int32_t width, int32_t count, const void *weights, void *values);
     /* sum k_ij L_ij (A_j - at_target), k_ij the harmonic mean of both ends' coefficients, or 1 */
     void (*sum_diffusion)(const struct sphgi_tile *tile, const void *rows, int32_t count,
                           const void *coefficients, const void *own_coefficient,

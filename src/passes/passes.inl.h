@@ -156,6 +156,7 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .sum_squares = sum_squares,
     .sum_value = sum_value,
     .sum_weights = sum_weights,
+    .means = means,
     .sum_diffusion = sum_diffusion,
     .sum_vectors = sum_vectors,
     .sum_folded = sum_folded,

@@ -75,11 +75,9 @@ void sphgi_finish_value(struct sphgi_worker *w, const struct sphgi_field_plan *f
     char *value = sphgi_lane(w, w->reduced, field->value_sum);
     if (field->form == SPHG_DIRECT && plan->own_set >= 0)
         add_self(w, field, value);
-    if (field->normalises) { /* by nothing: 0 */
-        w->passes->quotient(w->batch.width, NULL, sphgi_lane(w, w->reduced, field->filling_sum),
-                            w->self);
-        w->passes->scale(w->batch.width, field->components, value, 1, w->self, value);
-    }
+    if (field->normalises)
+        w->passes->means(w->batch.width, field->components,
+                         sphgi_lane(w, w->reduced, field->filling_sum), value);
     w->passes->store_lanes(w->batch.targets, &field->value, sphgi_targets(w), value,
                            field->accumulate);
 }
