@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Curvature that is lent and borrowed: against the oracle, by known errors of lattices, exact where
- * order 2 alone is not, continuous, and without a trace where nobody lends. */
-#include "support/second_order.h"
+/* Curvature that is lent and borrowed: against the oracle, exact where order 2 alone is not,
+ * continuous, and without a trace where nobody lends. */
+#include "support/lattice_block.h"
 #include "support/oracle_borrowed.h"
 #include "support/scenes.h"
 #include <string.h>
@@ -120,191 +120,6 @@ static void every_policy_and_instruction_set_matches_the_oracle(const test_case 
         }
 }
 
-/* ---- Lattices -------------------------------------------------------------------------------- */
-
-/* per_axis^d particles on [-1, 1]^d, moved by up to jitter spacings, with V = 1 / sum W. */
-static comparison block_of(const test_case *test, int per_axis, double support, double jitter)
-{
-    const int d = test->dimension;
-    const double spacing = 2. / per_axis;
-    random_state random = random_seeded(5);
-    cloud points = cloud_lattice(d, per_axis, spacing);
-    for (int k = 0; k < points.count * d; ++k)
-        points.x[k] = -1 + (floor(points.x[k] / spacing + .5) + .5) * spacing +
-                      (jitter > 0 ? jitter * spacing * random_between(&random, -1, 1) : 0);
-    const comparison on = comparison_of(test, "block", points, support * spacing * (1 + 1e-6));
-    sphg_scheme plain = on.scheme;
-    plain.method = SPHG_PLAIN;
-    const double one = 1;
-    double *volumes = test_memory((size_t)points.count * sizeof *volumes);
-    const sphg_view ones = sphg_same_f64(&one);
-    const sphg_sources sources = {.neighbors = on.neighbors, .volume = ones};
-    sphg_field field = {.shape = SPHG_SCALAR, .form = SPHG_DIRECT, .at_sources = &ones};
-    field.value = sphg_view_f64(volumes, sizeof *volumes);
-    const sphg_request request = {
-        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
-    SETUP_OK(on.context, sphg_evaluate(on.context, &plain, &request));
-    for (int i = 0; i < points.count; ++i)
-        volumes[i] = 1 / volumes[i];
-    return second_order_comparison(comparison_with_volumes(&on, volumes));
-}
-
-static int is_boundary(const comparison *on, int i)
-{
-    const int d = on->points.dimension;
-    for (int a = 0; a < d; ++a)
-        if (1 - fabs(on->points.x[i * d + a]) < 2 * on->points.spacing)
-            return 1;
-    return 0;
-}
-
-/* (cos 2x, cos y - sin 3x) in 2D, cos y - sin 3x + cos 2z in 3D: value, derivatives, Laplacian. */
-static void wave(int d, const double *x, double *value, double *slope, double *laplacian)
-{
-    if (d == 2) {
-        value[0] = cos(2 * x[0]), value[1] = cos(x[1]) - sin(3 * x[0]);
-        slope[0] = -2 * sin(2 * x[0]), slope[1] = 0;
-        slope[2] = -3 * cos(3 * x[0]), slope[3] = -sin(x[1]);
-        laplacian[0] = -4 * cos(2 * x[0]), laplacian[1] = 9 * sin(3 * x[0]) - cos(x[1]);
-        return;
-    }
-    value[0] = cos(x[1]) - sin(3 * x[0]) + cos(2 * x[2]);
-    slope[0] = -3 * cos(3 * x[0]), slope[1] = -sin(x[1]), slope[2] = -2 * sin(2 * x[2]);
-    laplacian[0] = -cos(x[1]) + 9 * sin(3 * x[0]) - 4 * cos(2 * x[2]);
-}
-
-typedef struct errors {
-    double boundary, inside, laplacian, mean;
-} errors;
-
-static errors errors_of(const comparison *on, const second_order *found)
-{
-    const int d = on->points.dimension, n = on->points.count;
-    errors worst = {0};
-    for (int i = 0; i < n; ++i) {
-        double value[2], slope[4], laplacian[2], square = 0;
-        wave(d, on->points.x + i * d, value, slope, laplacian);
-        for (int k = 0; k < found->gradient.width; ++k)
-            square += pow(setup_get(&found->gradient, i, k) - slope[k], 2);
-        double *most = is_boundary(on, i) ? &worst.boundary : &worst.inside;
-        *most = test_larger(*most, sqrt(square));
-        worst.mean += sqrt(square) / n;
-        for (int c = 0; c < found->laplacian.width && is_boundary(on, i); ++c)
-            worst.laplacian = test_larger(worst.laplacian,
-                                          fabs(setup_get(&found->laplacian, i, c) - laplacian[c]));
-    }
-    return worst;
-}
-
-static double *waves_on(const comparison *on)
-{
-    const int d = on->points.dimension, width = d == 2 ? 2 : 1;
-    double *numbers = test_memory((size_t)(on->points.count * width) * sizeof *numbers);
-    for (int i = 0; i < on->points.count; ++i) {
-        double slope[4], laplacian[2];
-        wave(d, on->points.x + i * d, numbers + i * width, slope, laplacian);
-    }
-    return numbers;
-}
-
-/* The first call, and `passes` that borrow: each targets that would, the others keep theirs. */
-static errors errors_after(const comparison *on, int passes, sphg_stats *stats)
-{
-    const sphg_shape shape = on->points.dimension == 2 ? SPHG_VECTOR : SPHG_SCALAR;
-    const double *numbers = waves_on(on);
-    second_order found = apply(on, shape, numbers, (second_order_how){0});
-    const sphg_subset open = sphg_masked(found.borrows.data, on->points.count);
-    *stats = found.stats;
-    for (int pass = 0; pass < passes; ++pass) {
-        second_order next = apply(on, shape, numbers,
-                                  (second_order_how){.lent = &found.curvature, .subset = &open});
-        const setup_array *from[] = {&found.gradient, &found.laplacian, &found.curvature};
-        setup_array *to[] = {&next.gradient, &next.laplacian, &next.curvature};
-        for (int k = 0; k < 3; ++k)
-            for (int i = 0; i < on->points.count; ++i)
-                for (int c = 0; c < to[k]->width && setup_get(&found.borrows, i, 0) == 0; ++c)
-                    setup_put(to[k], i * to[k]->width + c, setup_get(from[k], i, c));
-        next.borrows = found.borrows;
-        found = next;
-    }
-    return errors_of(on, &found);
-}
-
-typedef struct gate {
-    sphg_method method;
-    int per_axis;
-    double support, before, after, again, inside, laplacian;
-    int64_t full;
-} gate;
-
-static double relative(double found, double expected)
-{
-    return fabs(found / expected - 1);
-}
-
-static void check_gate(const test_case *test, const gate *known)
-{
-    if (known->method != test->method)
-        return;
-    const comparison on = block_of(test, known->per_axis, known->support, 0);
-    sphg_stats stats;
-    const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
-    const errors twice = errors_after(&on, 2, &stats);
-    TEST_REQUIRE(relative(alone.boundary, known->before) < 6e-4 &&
-                     relative(once.boundary, known->after) < 4e-3 &&
-                     relative(twice.boundary, known->again) < 4e-3 &&
-                     relative(once.inside, known->inside) < 1e-3 &&
-                     relative(once.laplacian, known->laplacian) < 3e-4,
-                 "%d: %.5f, %.5f, %.5f, inside %.6f, Laplacian %.4f", known->per_axis,
-                 alone.boundary, once.boundary, twice.boundary, once.inside, once.laplacian);
-    TEST_REQUIRE(stats.quadratic == known->full, "%lld full", (long long)stats.quadratic);
-}
-
-static void lattice_errors_are_the_known_ones_in_2d(const test_case *test)
-{
-    static const gate gates[] = {
-        {SPHG_KGC, 40, 2, .09080, .02225, .02237, .011212, 1.3263, 1444},
-        {SPHG_KGC, 80, 2, .04527, .00570, .00573, .002811, .6787, 6084},
-        {SPHG_KGC, 160, 2, .02259, .00144, .00145, .000711, .3423, 24964},
-        {SPHG_KGC, 40, 2.5, .02228, .02282, .02282, .016812, 1.3533, 1600},
-        {SPHG_RKPM, 40, 2, .09077, .02224, .02234, .011212, 1.3263, 1444},
-        {SPHG_RKPM, 80, 2, .04526, .00570, .00572, .002811, .6787, 6084},
-    };
-    for (size_t g = 0; g < sizeof gates / sizeof *gates; ++g)
-        check_gate(test, &gates[g]);
-}
-
-static void lattice_errors_are_the_known_ones_in_3d(const test_case *test)
-{
-    static const gate gates[] = {
-        {SPHG_KGC, 12, 2, .53061, .19215, .19646, .124337, 4.7476, 1000},
-        {SPHG_KGC, 24, 2, .20425, .05889, .06030, .032273, 2.7002, 10648},
-        {SPHG_RKPM, 12, 2, .53055, .19199, .19567, .124337, 4.7444, 1000},
-    };
-    for (size_t g = 0; g < sizeof gates / sizeof *gates; ++g)
-        check_gate(test, &gates[g]);
-}
-
-/* Disordered particles: the largest error falls like the square of the spacing. */
-static void jitter_keeps_the_second_order(const test_case *test)
-{
-    static const struct {
-        int per_axis;
-        double alone, borrowed, mean;
-    } known[] = {{24, .178, .078, .0209}, {36, .125, .0335, .0093}, {48, .090, .0185, .0052}};
-    for (int k = 0; k < (test_is_shared() ? 2 : 3); ++k) {
-        const comparison on = block_of(test, known[k].per_axis, 2, .2);
-        sphg_stats stats;
-        const errors alone = errors_after(&on, 0, &stats), once = errors_after(&on, 1, &stats);
-        /* The largest of some ten thousand errors: another cloud has another. */
-        TEST_REQUIRE(alone.boundary > .6 * known[k].alone &&
-                         once.boundary < 2.5 * known[k].borrowed &&
-                         relative(once.mean, known[k].mean) < .02,
-                     "%d: %.4f, then %.4f, mean %.4f", known[k].per_axis, alone.boundary,
-                     once.boundary, once.mean);
-    }
-}
-
 /* ---- Exactness ------------------------------------------------------------------------------- */
 
 static double distance_from_exact(const comparison *on, const second_order *found, int i)
@@ -334,7 +149,7 @@ static int exact_ones(const comparison *on, const second_order *found)
 static void quadratic_fields_are_exact_where_lenders_are(const test_case *test)
 {
     const int d = test->dimension, per_axis = d == 3 ? 12 : 16;
-    const comparison on = block_of(test, per_axis, 2, 0);
+    const comparison on = lattice_block_of(test, per_axis, 2, 0);
     const double *numbers = second_order_polynomial(&on.points, 2);
     const second_order first = apply(&on, SPHG_SCALAR, numbers, (second_order_how){0});
     const second_order second =
@@ -758,10 +573,6 @@ static const test_entry entries[] = {
                0),
     TEST_ENTRY(every_policy_and_instruction_set_matches_the_oracle, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
-    TEST_ENTRY(lattice_errors_are_the_known_ones_in_2d, TEST_BIT(TEST_F64), TEST_2D,
-               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
-    TEST_ENTRY(lattice_errors_are_the_known_ones_in_3d, TEST_BIT(TEST_F64), TEST_3D,
-               TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
     TEST_ENTRY(quadratic_fields_are_exact_where_lenders_are, TEST_BIT(TEST_F64),
                TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(each_pass_makes_more_exact, TEST_BIT(TEST_F64), TEST_BOTH_DIMENSIONS,
@@ -779,6 +590,5 @@ static const test_entry entries[] = {
     TEST_ENTRY(a_sliding_neighbour_makes_no_jump, 0, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
     TEST_ENTRY(what_cannot_be_borrowed_is_refused_by_name, TEST_ALL_PRECISIONS, 0, 0, 0),
-    TEST_ENTRY(jitter_keeps_the_second_order, TEST_BIT(TEST_F64), TEST_3D, TEST_BIT(SPHG_KGC), 0),
 };
 TEST_MAIN(entries)
