@@ -97,7 +97,7 @@ static void make_world(rig *own, world *made)
                  : made->asked == FLOW                                     ? SPHG_ADJOINT
                  : made->asked == GRADIENT && random_index(random, 3) == 0 ? SPHG_DIRECT
                                                                            : SPHG_DIFFERENCE;
-    made->has_radii = made->scheme.order < 2 && random_index(random, 2); /* where it is searched */
+    made->has_radii = random_index(random, 2); /* where it is searched */
     for (int k = 0; k < made->count * d; ++k)
         made->x[k] = k % d >= 3 - flat % 4 ? .25 : fraction(own, flat == 5 ? 1 : 2, 9);
     for (int i = 0; i < made->count; ++i) {
@@ -411,8 +411,6 @@ static void one_radius(rig *own, const world *on, const outcome *expected)
     world alike = *on, alone = *on;
     outcome found = {.rank = {0}}, of_one = {.rank = {0}};
     (void)expected;
-    if (on->scheme.order == 2)
-        return;
     alike.has_radii = 1;
     alone.has_radii = 0;
     for (int i = 0; i < on->count; ++i)

@@ -3,6 +3,7 @@
  * bits as with one radius where all are the same. */
 #include "support/brute_force.h"
 #include "support/graded.h"
+#include "support/second_order.h"
 #include <math.h>
 #include <string.h>
 
@@ -194,59 +195,91 @@ static comparison rings(const test_case *test, double ratio, double c, int mutua
     return comparison_with_volumes(&made, volume);
 }
 
-/* Errors of A = cos(2x / ratio) + sin(3y / ratio), times the ratio, by an independent program: the
- * largest of all, and two rings off the rim. */
+typedef struct ring_errors {
+    double most, inside; /* of all, and two rings off the rim */
+} ring_errors;
+
+/* Of the gradient of A = cos(2x / ratio) + sin(3y / ratio), times the ratio. */
+static ring_errors errors_on_rings(const comparison *on, double ratio)
+{
+    ring_errors worst = {0, 0};
+    double *a = test_memory((size_t)on->points.count * sizeof *a);
+    for (int i = 0; i < on->points.count; ++i)
+        a[i] = cos(2 * on->points.x[2 * i] / ratio) + sin(3 * on->points.x[2 * i + 1] / ratio);
+    const comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, a};
+    const comparison_result found = comparison_apply(on, &field, NULL);
+    for (int i = 0; i < on->points.count; ++i) {
+        const double *x = on->points.x + 2 * i;
+        const double error =
+            hypot(ratio * setup_get(&found.gradient, i, 0) + 2 * sin(2 * x[0] / ratio),
+                  ratio * setup_get(&found.gradient, i, 1) - 3 * cos(3 * x[1] / ratio));
+        const int u = i % RINGS, v = i / RINGS;
+        worst.most = test_larger(worst.most, error);
+        if (u > 1 && v > 1 && u < RINGS - 2 && v < RINGS - 2)
+            worst.inside = test_larger(worst.inside, error);
+    }
+    return worst;
+}
+
+/* By an independent program: order 1 with H = 2 spacings, order 2 with 3. */
 static void errors_and_pairs_of_rings_are_known(const test_case *test)
 {
     static const struct {
-        double ratio, most, inside, pairs[2][2]; /* [c is 2, 3][mutual] */
-    } known[] = {{2, .10835, .00296, {{10.31, 11.24}, {24.40, 25.28}}},
-                 {8, .25435, .01804, {{10.31, 11.24}, {24.40, 28.69}}},
-                 {64, .55012, .05380, {{12.09, 14.79}, {28.58, 37.05}}}};
-    for (int k = 0; k < 3; ++k) {
+        double ratio;
+        ring_errors errors[2];
+        double pairs[2][2]; /* [c is 2, 3][mutual] */
+    } known[] = {{2, {{.10835, .00296}, {.00689, .00605}}, {{10.31, 11.24}, {24.40, 25.28}}},
+                 {8, {{.25435, .01804}, {.05097, .03799}}, {{10.31, 11.24}, {24.40, 28.69}}},
+                 {64, {{.55012, .05380}, {.19462, .11338}}, {{12.09, 14.79}, {28.58, 37.05}}}};
+    for (int k = 0; k < 3; ++k)
         for (int way = 0; way < 4; ++way) {
-            const comparison on = rings(test, known[k].ratio, 2 + way / 2, way % 2);
+            comparison on = rings(test, known[k].ratio, 2 + way / 2, way % 2);
+            on.scheme.order = 1 + way / 2;
             sphg_neighbors_info info;
             SETUP_OK(on.context, sphg_neighbors_get_info(on.context, on.neighbors, &info));
             const double pairs = (double)info.pairs / on.points.count;
             TEST_REQUIRE(fabs(pairs - known[k].pairs[way / 2][way % 2]) < .0051,
                          "%g pairs, ratio %g, way %d", pairs, known[k].ratio, way);
+            const ring_errors found = errors_on_rings(&on, known[k].ratio),
+                              expected = known[k].errors[way / 2];
+            TEST_REQUIRE(fabs(found.most - expected.most) < 6e-6 &&
+                             fabs(found.inside - expected.inside) < 6e-6,
+                         "errors %.5f, %.5f, ratio %g, order %d", found.most, found.inside,
+                         known[k].ratio, on.scheme.order);
         }
-        const comparison on = rings(test, known[k].ratio, 2, 0);
-        double *a = test_memory((size_t)on.points.count * sizeof *a), most = 0, inside = 0;
-        for (int i = 0; i < on.points.count; ++i)
-            a[i] = cos(2 * on.points.x[2 * i] / known[k].ratio) +
-                   sin(3 * on.points.x[2 * i + 1] / known[k].ratio);
-        const comparison_field field = {SPHG_SCALAR, SPHG_DIFFERENCE, a};
-        const comparison_result found = comparison_apply(&on, &field, NULL);
-        for (int i = 0; i < on.points.count; ++i) {
-            const double *x = on.points.x + 2 * i, r = known[k].ratio;
-            const double error =
-                hypot(r * setup_get(&found.gradient, i, 0) + 2 * sin(2 * x[0] / r),
-                      r * setup_get(&found.gradient, i, 1) - 3 * cos(3 * x[1] / r));
-            const int u = i % RINGS, v = i / RINGS;
-            most = test_larger(most, error);
-            if (u > 1 && v > 1 && u < RINGS - 2 && v < RINGS - 2)
-                inside = test_larger(inside, error);
-        }
-        TEST_REQUIRE(fabs(most - known[k].most) < 6e-6 && fabs(inside - known[k].inside) < 6e-6,
-                     "errors %.5f, %.5f, ratio %g", most, inside, known[k].ratio);
-    }
 }
 
 /* ---- The same bits --------------------------------------------------------------------------- */
 
-static void require_same_bits(const comparison *a, const comparison *b, const char *where)
+static void require_same_bits(const comparison *a, const comparison *b, int mutual,
+                              const char *where)
 {
     const setup_array table = comparison_table(a), other = comparison_table(b);
     TEST_REQUIRE(setup_same_bits(&table, &other), "table, %s", where);
-    for (int form = SPHG_DIFFERENCE; form <= SPHG_DIRECT; ++form) {
+    for (int form = SPHG_DIFFERENCE; form <= (mutual ? SPHG_ADJOINT : SPHG_DIRECT); ++form) {
+        const int two_sided = form >= SPHG_SYMMETRIC, direct = form == SPHG_DIRECT;
         comparison_field field = {SPHG_SCALAR, (sphg_form)form,
                                   comparison_random_field(a, SPHG_SCALAR, 3)};
-        const comparison_result one = comparison_apply(a, &field, NULL),
-                                two = comparison_apply(b, &field, NULL);
+        if (direct && a->scheme.order == 2)
+            continue;
+        const comparison_result one = comparison_apply(a, &field, two_sided ? &table : NULL),
+                                two = comparison_apply(b, &field, two_sided ? &table : NULL);
         TEST_REQUIRE(comparison_results_have_same_bits(&one, &two), "form %d, %s", form, where);
     }
+}
+
+/* Second derivatives, what is lent and what comes of it. */
+static void require_same_second(const comparison *a, const comparison *b, const char *where)
+{
+    const double *numbers = comparison_random_field(a, SPHG_VECTOR, 4);
+    second_order_how how = {.lends = 1};
+    const second_order one = second_order_apply(a, SPHG_VECTOR, numbers, how),
+                       two = second_order_apply(b, SPHG_VECTOR, numbers, how);
+    second_order_require_same_bits(&one, &two, where);
+    how.lent = &one.curvature;
+    const second_order borrowed = second_order_apply(a, SPHG_VECTOR, numbers, how),
+                       other = second_order_apply(b, SPHG_VECTOR, numbers, how);
+    second_order_require_same_bits(&borrowed, &other, where);
 }
 
 /* Also where a stride of 0 gives one radius to all; the scheme's is not read. */
@@ -270,7 +303,14 @@ static void same_radii_give_the_bits_of_one(const test_case *test)
         geometry.list_free = way >> 2;
         same.scheme.support_radius = way & 1 ? 0 : 17;
         same.neighbors = setup_search(one.context, &same.scheme, &geometry);
-        require_same_bits(&one, &same, test_text("way %d", way));
+        require_same_bits(&one, &same, geometry.mutual, test_text("way %d", way));
+        if (test_is_classic(test) || test->method == SPHG_PLAIN)
+            continue;
+        one = second_order_comparison(one);
+        same = second_order_comparison(same);
+        require_same_bits(&one, &same, geometry.mutual, test_text("order 2, way %d", way));
+        require_same_second(&one, &same, test_text("order 2, way %d", way));
+        one.scheme.order = 1;
     }
 }
 
