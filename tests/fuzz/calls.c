@@ -12,6 +12,7 @@ typedef struct world {
     sphg_context *context;
     sphg_neighbors *objects[OBJECTS];
     float x[MOST * 3], volume[MOST], field[MOST], out[MOST * 45], more[MOST * 16];
+    float radii[MOST], second[4][MOST * 7], lent[MOST * 7], tensor[MOST * 9];
     int32_t order[MOST], indices[MOST * MOST];
     int64_t offsets[MOST + 1];
     uint8_t rank[MOST];
@@ -59,15 +60,20 @@ static sphg_result search_as_foretold(world *own, sphg_neighbors *object,
 static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
 {
     const int count = fuzz_below(from, MOST + 1), flags = fuzz_byte(from);
-    const sphg_geometry geometry = {.sources = sphg_view_f32(own->x, own->scheme.dimension * 4),
-                                    .source_count = count,
-                                    .target_count = flags & 1 ? count : count / 2,
-                                    .list_free = (flags & 2) != 0,
-                                    .skin = flags & 4 ? .25 : 0,
-                                    .period = {flags & 8 ? 40 : 0}};
+    sphg_geometry geometry = {.sources = sphg_view_f32(own->x, own->scheme.dimension * 4),
+                              .source_count = count,
+                              .target_count = flags & 1 ? count : count / 2,
+                              .list_free = (flags & 2) != 0,
+                              .skin = flags & 4 ? .25 : 0,
+                              .period = {flags & 8 ? 40 : 0},
+                              .mutual = (flags & 64) != 0};
     const sphg_lists lists = {.offsets = own->offsets, .indices = own->indices};
     for (int k = 0; k < count * 3; ++k)
         own->x[k] = (float)fuzz_tame(from);
+    if (flags & 32)
+        geometry.source_support = sphg_view_f32(own->radii, 4);
+    for (int i = 0; i < count && flags & 32; ++i)
+        own->radii[i] = (float)ldexp(1 + fuzz_byte(from) % 16, -(fuzz_byte(from) % 24));
     if (!(flags & 16))
         return search_as_foretold(own, object, &geometry);
     for (int i = 0; i <= MOST; ++i)
@@ -77,10 +83,67 @@ static sphg_result search(world *own, fuzz_bytes *from, sphg_neighbors *object)
     return sphg_neighbors_use_lists(own->context, object, &own->scheme, &geometry, &lists);
 }
 
+/* Second derivatives, with lenders or without. */
+static void ask_for_curvature(world *own, int wanted, const sphg_view *lenders, sphg_field *field,
+                              sphg_request *request)
+{
+    field->gradient = sphg_view_f32(own->out, own->scheme.dimension * 4);
+    field->hessian = wanted & 1 ? sphg_view_f32(own->second[0], 24) : sphg_absent();
+    field->laplacian = wanted & 2 ? sphg_view_f32(own->second[1], 4) : sphg_absent();
+    field->curvature = wanted & 4 ? sphg_view_f32(own->second[2], 28) : sphg_absent();
+    field->lenders = wanted & 8 ? lenders : NULL;
+    request->borrows = wanted & 16 ? sphg_view_u8(own->rank, 1) : sphg_absent();
+}
+
+static void ask_for_values(world *own, int wanted, const sphg_view *volumes, sphg_field *field)
+{
+    field->form = wanted & 1 ? SPHG_DIRECT : SPHG_DIFFERENCE;
+    field->shepard = wanted & 1;
+    field->value = sphg_view_f32(own->second[3], 4);
+    field->value_volume = wanted & 2 ? volumes : NULL;
+}
+
+/* What order 2, diffusion and other sums add to a field; now and then what its form has not. */
+static sphg_result ask_for_more(world *own, fuzz_bytes *from, sphg_sources *sources,
+                                const sphg_subset *chosen)
+{
+    const int d = own->scheme.dimension, kind = fuzz_byte(from), wanted = fuzz_byte(from);
+    const sphg_view scalars = sphg_view_f32(own->field, 4), volumes = sphg_view_f32(own->volume, 4),
+                    vectors = sphg_view_f32(own->x, 4 * d), lenders = sphg_view_f32(own->lent, 28);
+    sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &scalars};
+    sphg_request request = {
+        .sources = sources, .fields = &field, .set_count = 1, .field_count = 1, .subset = chosen};
+    sphg_stats stats;
+    if (kind % 4 == 0) {
+        ask_for_curvature(own, wanted, &lenders, &field, &request);
+        request.stats = wanted & 32 ? &stats : NULL;
+    } else if (kind % 4 == 1) {
+        field.form = SPHG_ADJOINT;
+        field.laplacian = sphg_view_f32(own->second[1], 4);
+        field.coefficient = wanted & 1 ? &volumes : NULL;
+        field.coefficient_at_targets = wanted & 2 ? volumes : sphg_absent();
+        sources->correction = sphg_view_f32(own->out, 180);
+    } else if (kind % 4 == 2) {
+        ask_for_values(own, wanted, &volumes, &field);
+    } else {
+        field.shape = SPHG_VECTOR;
+        field.at_sources = &vectors;
+        field.tensor = sphg_view_f32(own->tensor, 4 * d * d);
+        field.contraction = sphg_view_f32(own->more, 4);
+    }
+    if (kind > 240)
+        field.form = (sphg_form)(kind / 4 % 4);
+    const sphg_result result = sphg_evaluate(own->context, &own->scheme, &request);
+    for (int k = 0; k < MOST * 7 && result == SPHG_OK && wanted & 4; ++k)
+        own->lent[k] = own->second[2][k];
+    return result;
+}
+
 static sphg_result operate(world *own, fuzz_bytes *from, const sphg_neighbors *object)
 {
-    const int d = own->scheme.dimension, kind = fuzz_byte(from) % 6;
-    const sphg_sources sources = {.neighbors = object, .volume = sphg_view_f32(own->volume, 4)};
+    const int d = own->scheme.dimension, drawn = fuzz_byte(from);
+    const int kind = drawn % 6;
+    sphg_sources sources = {.neighbors = object, .volume = sphg_view_f32(own->volume, 4)};
     const sphg_view field = sphg_view_f32(own->field, 4), out = sphg_view_f32(own->out, d * 4);
     const sphg_subset subset = {0, fuzz_below(from, MOST + 1), NULL, NULL};
     const sphg_subset *chosen = fuzz_byte(from) % 2 ? &subset : NULL;
@@ -91,6 +154,8 @@ static sphg_result operate(world *own, fuzz_bytes *from, const sphg_neighbors *o
     if (kind == 1)
         return sphg_correction(own->context, &own->scheme, &sources, chosen, table,
                                sphg_view_u8(own->rank, 1));
+    if (drawn >= 192)
+        return ask_for_more(own, from, &sources, chosen);
     if (kind == 2)
         return sphg_force(own->context, &own->scheme, &sources, chosen, SPHG_SCALAR, field, out);
     sphg_pairs pairs = {.offsets = own->offsets, .capacity = fuzz_byte(from)};
