@@ -637,7 +637,7 @@ SPHG_API sphg_result sphg_pair_gradients(sphg_context *context, const sphg_schem
                                          const sphg_sources *sources, const sphg_subset *subset,
                                          sphg_view target_correction, sphg_pairs *pairs);
 
-/* G_ij of one pair. correction: item i of the table; NULL for PLAIN. gradient: d numbers. */
+/* G_ij of one pair; support_radius is H_i. correction: item i of the table; NULL: PLAIN. gradient: d numbers. */
 SPHG_API void sphg_pair_gradient(const sphg_scheme *scheme, const double *x_ij, double volume,
                                  const double *correction, double *gradient);
 
