@@ -109,6 +109,14 @@ void sphgi_ask_for_targets(const struct sphgi_worker *w, int32_t count, const in
         p->ask_for_lanes(count, &field->gradient, targets, true);
         p->ask_for_lanes(count, &field->divergence, targets, true);
         p->ask_for_lanes(count, &field->curl, targets, true);
+        p->ask_for_lanes(count, &field->tensor, targets, false);
+        p->ask_for_lanes(count, &field->contraction, targets, true);
+        p->ask_for_lanes(count, &field->coefficient, targets, false);
+        p->ask_for_lanes(count, &field->value, targets, true);
+        p->ask_for_lanes(count, &field->laplacian, targets, true);
+        p->ask_for_lanes(count, &field->curvature, targets, true);
+        for (int32_t c = 0; c < 3; ++c)
+            p->ask_for_lanes(count, &field->hessian[c], targets, true);
     }
 }
 
