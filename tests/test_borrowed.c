@@ -513,6 +513,59 @@ static void a_sliding_neighbour_makes_no_jump(const test_case *test)
     }
 }
 
+/* ---- Degenerate ------------------------------------------------------------------------------ */
+
+/* A plane bent to a parabola along its first axis. */
+static cloud bent_sheet(int d, int per_axis, double spacing)
+{
+    cloud sheet = cloud_plane(d, per_axis, spacing);
+    for (int i = 0; i < sheet.count; ++i)
+        sheet.x[i * d + d - 1] += .5 * pow(sheet.x[i * d] - .5, 2);
+    return sheet;
+}
+
+static void require_finite(const setup_array *found, const char *where)
+{
+    for (int k = 0; k < found->count * found->width; ++k)
+        TEST_REQUIRE(isfinite(setup_get(found, k / found->width, k % found->width)), "%s", where);
+}
+
+/* All that order 1 is tried with, and a sheet that is curved, under every policy. */
+static void nothing_is_ever_infinite(const test_case *test)
+{
+    random_state random = random_seeded(72);
+    const int d = test->dimension, wide = d == 2 ? 12 : 5;
+    const cloud clouds[] = {cloud_plane(d, wide, .25),
+                            cloud_tilted_plane(d, wide, .25, &random),
+                            cloud_line(d, 10, .25),
+                            cloud_pair(d, .25),
+                            cloud_single(d),
+                            cloud_coincident(d, 3, 0, .25),
+                            cloud_coincident(d, 3, 1, .25),
+                            cloud_sheets(d, wide, .25, .002),
+                            bent_sheet(d, wide, .25)};
+    for (size_t c = 0; c < sizeof clouds / sizeof *clouds; ++c) {
+        const comparison made = comparison_of(test, test_text("cloud %d", (int)c), clouds[c], .625);
+        for (int policy = SPHG_BLEND; policy <= SPHG_IDENTITY; ++policy) {
+            const comparison on =
+                second_order_comparison(comparison_under(&made, (sphg_policy)policy, 0));
+            const double *numbers = comparison_random_field(&on, SPHG_VECTOR, 11);
+            const setup_array table = comparison_table(&on);
+            require_finite(&table, on.name);
+            second_order found = apply(&on, SPHG_VECTOR, numbers, (second_order_how){0});
+            for (int pass = 0; pass < 3; ++pass) {
+                const setup_array *arrays[] = {&found.gradient, &found.hessian, &found.laplacian,
+                                               &found.curvature, &found.curl};
+                for (int k = 0; k < 5; ++k)
+                    require_finite(arrays[k], test_text("result %d of %s, policy %d, pass %d", k,
+                                                        on.name, policy, pass));
+                found =
+                    apply(&on, SPHG_VECTOR, numbers, (second_order_how){.lent = &found.curvature});
+            }
+        }
+    }
+}
+
 /* ---- What is refused ------------------------------------------------------------------------- */
 
 static void require_refused(const comparison *on, const sphg_field *field,
@@ -589,6 +642,8 @@ static const test_entry entries[] = {
                TEST_LINEARISED, 0),
     TEST_ENTRY(a_sliding_neighbour_makes_no_jump, 0, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_KGC) | TEST_BIT(SPHG_RKPM), 0),
+    TEST_ENTRY(nothing_is_ever_infinite, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED,
+               0),
     TEST_ENTRY(what_cannot_be_borrowed_is_refused_by_name, TEST_ALL_PRECISIONS, 0, 0, 0),
 };
 TEST_MAIN(entries)
