@@ -318,6 +318,77 @@ static void jitter_keeps_the_second_order(const test_case *test)
     }
 }
 
+/* ---- In time --------------------------------------------------------------------------------- */
+
+enum { ONE, TWO, LENT, WAYS };
+
+/* -u.grad A with u = (.8, .6). */
+static void transport(const comparison *on, int way, const double *a, double *rate)
+{
+    const int n = on->points.count;
+    comparison by = *on;
+    by.scheme.order = way == ONE ? 1 : 2;
+    double *gradient = test_memory((size_t)(2 * n) * sizeof *gradient),
+           *lent = test_memory((size_t)(4 * n) * sizeof *lent);
+    const sphg_view values = sphg_view_f64(a, sizeof *a),
+                    lenders = sphg_view_f64(lent, 4 * sizeof *lent);
+    const sphg_sources sources = comparison_sources(&by);
+    sphg_field field = {.shape = SPHG_SCALAR, .at_sources = &values};
+    const sphg_request request = {
+        .sources = &sources, .fields = &field, .set_count = 1, .field_count = 1};
+    if (way == LENT) {
+        field.curvature = lenders;
+        SETUP_OK(on->context, sphg_evaluate(on->context, &by.scheme, &request));
+        field.curvature = sphg_absent();
+        field.lenders = &lenders;
+    }
+    field.gradient = sphg_view_f64(gradient, 2 * sizeof *gradient);
+    SETUP_OK(on->context, sphg_evaluate(on->context, &by.scheme, &request));
+    for (int i = 0; i < n; ++i)
+        rate[i] = -.8 * gradient[2 * i] - .6 * gradient[2 * i + 1];
+}
+
+/* What is left of a field that was 1 at most, by the method of Runge and Kutta. */
+static double largest_after(const comparison *on, int way, int steps)
+{
+    const int n = on->points.count;
+    const double dt = .01;
+    double *a = test_memory((size_t)n * sizeof *a), *at = test_memory((size_t)n * sizeof *at),
+           *rate = test_memory((size_t)n * sizeof *rate), *sum = test_memory((size_t)n * sizeof *a);
+    for (int i = 0; i < n; ++i)
+        a[i] = cos(2 * on->points.x[2 * i]) * cos(3 * on->points.x[2 * i + 1]);
+    for (int step = 0; step < steps; ++step) {
+        memset(sum, 0, (size_t)n * sizeof *sum);
+        memcpy(at, a, (size_t)n * sizeof *at);
+        for (int stage = 0; stage < 4; ++stage) {
+            transport(on, way, at, rate);
+            for (int i = 0; i < n; ++i) {
+                sum[i] += rate[i] * (stage % 3 ? 2 : 1) / 6;
+                at[i] = a[i] + dt * rate[i] * (stage < 2 ? .5 : 1);
+            }
+        }
+        for (int i = 0; i < n; ++i)
+            a[i] += dt * sum[i];
+    }
+    double most = 0;
+    for (int i = 0; i < n; ++i)
+        most = test_larger(most, fabs(a[i]));
+    return most;
+}
+
+/* How fast the fastest growing part grows, over |u| / spacing. At H = 2 spacings order 2 by itself
+ * amplifies what it transports near surfaces; where curvature is lent it is as order 1 is. */
+static void lent_curvature_does_not_grow_in_time(const test_case *test)
+{
+    const comparison on = lattice_block_of(test, 20, 2, .2);
+    double growth[WAYS];
+    for (int way = ONE; way < WAYS; ++way)
+        growth[way] = .1 * log(largest_after(&on, way, 300) / largest_after(&on, way, 200));
+    TEST_REQUIRE(growth[ONE] < 1.3 && growth[TWO] > 2.5 && growth[LENT] < 1.7,
+                 "order 1 grows by %g, order 2 by %g, lent by %g", growth[ONE], growth[TWO],
+                 growth[LENT]);
+}
+
 static const test_entry entries[] = {
     TEST_ENTRY(lattice_errors_are_the_known_ones_in_2d, TEST_BIT(TEST_F64), TEST_2D,
                TEST_LINEARISED, 0),
@@ -328,5 +399,7 @@ static const test_entry entries[] = {
     TEST_ENTRY(each_kernel_resolves_curvature_at_its_width, TEST_BIT(TEST_F64),
                TEST_BOTH_DIMENSIONS, TEST_LINEARISED, TEST_ALL_KERNELS),
     TEST_ENTRY(jitter_keeps_the_second_order, TEST_BIT(TEST_F64), TEST_3D, TEST_BIT(SPHG_KGC), 0),
+    TEST_ENTRY(lent_curvature_does_not_grow_in_time, TEST_BIT(TEST_F64), TEST_2D,
+               TEST_BIT(SPHG_KGC), 0),
 };
 TEST_MAIN(entries)
