@@ -2,6 +2,7 @@
 /* Order 2: against the oracle, exact on quadratic fields where the rank says so, on linear ones
  * wherever order 1 is, continuous, and never worse than finite. */
 #include "support/second_order.h"
+#include "support/long_counts.h"
 #include "support/scenes.h"
 #include <string.h>
 
@@ -177,6 +178,54 @@ static void rank_is_the_oracles(const test_case *test)
         }
     }
     TEST_REQUIRE(open * 4 < all, "%d of %d decided by rounding", open, all);
+}
+
+/* Around a target on a parabola or paraboloid, off it by a part of any size: all but one direction
+ * of curvature is resolved, and that one by as much as they are off. */
+static cloud near_quadric(int d, int count, random_state *random)
+{
+    cloud points = cloud_random(d, count, 1, random);
+    points.spacing *= 4; /* volumes that fill what the thin cloud leaves empty */
+    const double off = pow(10, random_between(random, -3.5, 0)),
+                 bend = random_between(random, -1, 1), tilt = random_between(random, -.5, .5),
+                 twist = random_between(random, -1, 1);
+    for (int i = 0; i < count; ++i) {
+        double *x = points.x + i * d;
+        for (int a = 0; a < d; ++a)
+            x[a] = i ? 2 * x[a] - 1 : 0;
+        x[d - 1] *= off;
+        x[d - 1] += tilt * x[0] + bend * x[0] * x[0];
+        if (d == 3)
+            x[2] += twist * x[0] * x[1] - bend * x[1] * x[1];
+    }
+    return points;
+}
+
+/* Nobody counts as exact whose curvature is not resolved. */
+static void targets_on_quadrics_have_the_rank_of_the_oracle(const test_case *test)
+{
+    const int d = test->dimension, clouds = long_or(2000, 200);
+    int full = 0, short_of_it = 0;
+    for (int k = 0; k < clouds; ++k) {
+        random_state random = random_seeded(1000 + (uint64_t)k);
+        const int count = (d == 2 ? 5 : 9) + random_index(&random, d == 2 ? 10 : 21);
+        const comparison on = second_order_comparison(
+            comparison_of(test, test_text("cloud %d", k), near_quadric(d, count, &random), 1.9));
+        const second_order found = second_order_apply(
+            &on, SPHG_SCALAR, comparison_random_field(&on, SPHG_SCALAR, 4), (second_order_how){0});
+        const oracle_point *point = oracle_at(on.reference, 0);
+        oracle_second second;
+        oracle_solve_second(&on.scene, point, &second);
+        if (oracle_second_rank_is_open(&on.scene, point, &second))
+            continue;
+        const int rank = (int)setup_get(&found.rank, 0, 0);
+        TEST_REQUIRE(rank == second.rank, "%d, not %d, of %d near a quadric, %s", rank, second.rank,
+                     count, on.name);
+        full += rank == full_rank(d);
+        short_of_it += rank >= d && rank < full_rank(d);
+    }
+    TEST_REQUIRE(full > clouds / 20 && full + short_of_it > clouds / 5, "%d full, %d not, of %d",
+                 full, short_of_it, clouds);
 }
 
 /* ---- Exactness ------------------------------------------------------------------------------- */
@@ -770,6 +819,8 @@ static const test_entry entries[] = {
     TEST_ENTRY(volumes_that_are_alike_need_not_be_told, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_BIT(SPHG_MLS), 0),
     TEST_ENTRY(rank_is_the_oracles, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
+    TEST_ENTRY(targets_on_quadrics_have_the_rank_of_the_oracle, TEST_ALL_PRECISIONS,
+               TEST_BOTH_DIMENSIONS, TEST_LINEARISED, 0),
     TEST_ENTRY(quadratic_fields_are_exact_at_full_rank, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_LINEARISED, 0),
     TEST_ENTRY(linear_fields_are_exact_wherever_order_1_is, TEST_ALL_PRECISIONS,
