@@ -160,28 +160,39 @@ static outcome nothing_yet(const scene *of, const wish *w)
         setup_output(type, of->points.count, numbers_of_result(w, of->test->dimension))};
 }
 
+static sphg_view numbers_for(const scene *of, const wish *w)
+{
+    return setup_view(w->shape == SPHG_SCALAR   ? &of->scalar
+                      : w->shape == SPHG_VECTOR ? &of->vector
+                                                : &of->matrix);
+}
+
+static sphg_field field_for(const wish *w, const sphg_view *numbers, const outcome *to)
+{
+    static const sphg_view absent;
+    sphg_field wanted = {.shape = w->shape,
+                         .form = w->form,
+                         .at_sources = w->mirror ? &absent : numbers,
+                         .mirror = w->mirror};
+    if (w->mirror)
+        wanted.at_targets = *numbers;
+    if (w->divergence)
+        wanted.divergence = setup_view(&to->result);
+    else
+        wanted.gradient = setup_view(&to->result);
+    return wanted;
+}
+
 static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neighbors,
                      sphg_view volume, const sphg_subset *subset, const outcome *to)
 {
-    const sphg_view field = setup_view(w->shape == SPHG_SCALAR   ? &of->scalar
-                                       : w->shape == SPHG_VECTOR ? &of->vector
-                                                                 : &of->matrix);
-    const sphg_view absent = sphg_absent();
+    const sphg_view field = numbers_for(of, w);
     sphg_sources sources = {.neighbors = neighbors, .volume = volume, .same_volumes = 1};
     if (w->form == SPHG_SYMMETRIC)
         sources.density = setup_view(&of->density);
     if (takes_a_table(of, w))
         sources.correction = setup_view(&of->table);
-    sphg_field wanted = {.shape = w->shape,
-                         .form = w->form,
-                         .at_sources = w->mirror ? &absent : &field,
-                         .mirror = w->mirror};
-    if (w->mirror)
-        wanted.at_targets = field;
-    if (w->divergence)
-        wanted.divergence = setup_view(&to->result);
-    else
-        wanted.gradient = setup_view(&to->result);
+    const sphg_field wanted = field_for(w, &field, to);
     sphg_request request = {.sources = &sources,
                             .fields = w->shape ? &wanted : NULL,
                             .set_count = 1,
@@ -192,15 +203,29 @@ static void evaluate(const scene *of, const wish *w, const sphg_neighbors *neigh
     SETUP_OK(of->context, sphg_evaluate(of->context, &of->scheme, &request));
 }
 
-/* Memory of a wish, for one evaluation after the other. */
+/* Memory of a wish, for one evaluation after the other; `all`: by one volume, by one for each. */
 typedef struct outcomes {
-    outcome none, all, expected, got;
+    outcome none, all[2], expected, got;
 } outcomes;
 
-static outcomes outcomes_of(const scene *of, const wish *w)
+/* Of all offered wishes, which have the corrections of the long way in common. */
+static outcomes *outcomes_of(const scene *of)
 {
-    return (outcomes){nothing_yet(of, w), nothing_yet(of, w), nothing_yet(of, w),
-                      nothing_yet(of, w)};
+    static const wish corrections = {.corrections = 1};
+    const outcome common[] = {nothing_yet(of, &corrections), nothing_yet(of, &corrections)};
+    outcomes *own = test_memory(WISHES * sizeof *own);
+    for (int k = 0; k < WISHES; ++k) {
+        const wish *w = &wishes[k];
+        if (!is_offered(of, w))
+            continue;
+        own[k] = (outcomes){nothing_yet(of, w),
+                            {nothing_yet(of, w), nothing_yet(of, w)},
+                            nothing_yet(of, w),
+                            nothing_yet(of, w)};
+        for (int each = 0; w->corrections && each < 2; ++each)
+            own[k].all[each].table = common[each].table;
+    }
+    return own;
 }
 
 /* Items of the first targets that a mask selects; the others' are those of `none`. */
@@ -215,24 +240,68 @@ static void take(const setup_array *to, const setup_array *from, const setup_arr
     }
 }
 
-static void take_both(const outcomes *own, const outcome *to, const uint8_t *mask, int targets)
+static void take_both(const outcomes *own, const outcome *from, const outcome *to,
+                      const uint8_t *mask, int targets)
 {
-    take(&to->table, &own->all.table, &own->none.table, mask, targets);
-    take(&to->result, &own->all.result, &own->none.result, mask, targets);
+    take(&to->table, &from->table, &own->none.table, mask, targets);
+    take(&to->result, &from->result, &own->none.result, mask, targets);
+}
+
+static sphg_view volume_of(const scene *of, int each)
+{
+    sphg_view volume = setup_view(each ? &of->volume : &of->one_volume);
+    if (!each)
+        volume.stride = 0;
+    return volume;
+}
+
+/* Wishes that may stand in one request: they want the same of the sources. */
+static int stands_with(const scene *of, const wish *w, int table)
+{
+    return is_offered(of, w) && takes_a_table(of, w) == table;
+}
+
+static void evaluate_together(const scene *of, int table, const sphg_subset *subset, int each,
+                              const outcomes *own)
+{
+    sphg_view numbers[WISHES];
+    sphg_field fields[WISHES];
+    sphg_sources sources = {
+        .neighbors = of->found, .volume = volume_of(of, each), .same_volumes = 1};
+    sphg_request request = {
+        .sources = &sources, .fields = fields, .set_count = 1, .subset = subset};
+    sources.density = setup_view(&of->density); /* of no matter to those that are not symmetric */
+    if (table)
+        sources.correction = setup_view(&of->table);
+    for (int k = 0; k < WISHES; ++k) {
+        const wish *w = &wishes[k];
+        const outcome *to = &own[k].all[each];
+        if (!stands_with(of, w, table))
+            continue;
+        if (w->corrections)
+            request.correction = setup_view(&to->table);
+        if (!w->shape)
+            continue;
+        numbers[request.field_count] = numbers_for(of, w);
+        fields[request.field_count] = field_for(w, &numbers[request.field_count], to);
+        ++request.field_count;
+    }
+    if (request.field_count)
+        SETUP_OK(of->context, sphg_evaluate(of->context, &of->scheme, &request));
 }
 
 /* Of all: lists that are found on the spot, of each group so few targets at a time that they are
- * not laid side by side. */
-static void long_way(const scene *of, const wish *w, const outcomes *own, sphg_view volume)
+ * not laid side by side, and more fields than one pass takes. */
+static void long_way(const scene *of, int each, const outcomes *own)
 {
     enum { PARTS = 4 };
     uint8_t mask[1024];
-    take_both(own, &own->all, NULL, 0);
     for (int part = 0; part < PARTS; ++part) {
         for (int i = 0; i < of->targets; ++i)
             mask[i] = i % PARTS == part;
         const sphg_subset some = sphg_masked(mask, of->targets);
-        evaluate(of, w, of->found, volume, &some, &own->all);
+        evaluate_together(of, 0, &some, each, own);
+        evaluate_together(of, 1, &some, each, own);
     }
 }
 
@@ -248,15 +317,15 @@ static const sphg_neighbors *supply(const scene *of, int number)
 }
 
 /* Some of the targets by every second supply, of one wish these and of the next the others. */
-static void require_same(const scene *of, const wish *w, const outcomes *own, sphg_view volume,
+static void require_same(const scene *of, const wish *w, const outcomes *own, int each,
                          const sphg_subset *subset, const char *how)
 {
-    const outcome *expected = subset ? &own->expected : &own->all;
+    const outcome *all = &own->all[each], *expected = subset ? &own->expected : all;
     if (subset)
-        take_both(own, expected, subset->mask, of->targets);
+        take_both(own, all, expected, subset->mask, of->targets);
     for (int k = subset ? (int)(w - wishes) % 2 : 0; k < SUPPLIES; k += subset ? 2 : 1) {
-        take_both(own, &own->got, NULL, 0);
-        evaluate(of, w, supply(of, k), volume, subset, &own->got);
+        take_both(own, &own->none, &own->got, NULL, 0);
+        evaluate(of, w, supply(of, k), volume_of(of, each), subset, &own->got);
         TEST_REQUIRE(setup_same_bits(&expected->table, &own->got.table), "%s, %s, %s: corrections",
                      w->name, how, supply_names[k]);
         TEST_REQUIRE(setup_same_bits(&expected->result, &own->got.result), "%s, %s, %s", w->name,
@@ -282,21 +351,19 @@ static void require_all(const scene *of, const char *how)
 {
     static const char *const names[] = {"most", "some", "few"};
     const sphg_subset shares[] = {share_of(of, MOST), share_of(of, SOME), share_of(of, FEW)};
-    const sphg_view each = setup_view(&of->volume);
-    sphg_view one = setup_view(&of->one_volume);
-    one.stride = 0;
+    const outcomes *all = outcomes_of(of);
+    long_way(of, 0, all);
+    long_way(of, 1, all);
     for (int k = 0; k < WISHES; ++k) {
         const wish *w = &wishes[k];
+        const outcomes *own = &all[k];
         if (!is_offered(of, w))
             continue;
-        const outcomes own = outcomes_of(of, w);
-        long_way(of, w, &own, one);
-        require_same(of, w, &own, one, NULL, test_text("%s, one volume", how));
-        require_same(of, w, &own, one, &shares[FEW], test_text("%s, few, one volume", how));
-        long_way(of, w, &own, each);
-        require_same(of, w, &own, each, NULL, how);
+        require_same(of, w, own, 0, NULL, test_text("%s, one volume", how));
+        require_same(of, w, own, 0, &shares[FEW], test_text("%s, few, one volume", how));
+        require_same(of, w, own, 1, NULL, how);
         for (int share = 0; share < SHARES; ++share)
-            require_same(of, w, &own, each, &shares[share], test_text("%s, %s", how, names[share]));
+            require_same(of, w, own, 1, &shares[share], test_text("%s, %s", how, names[share]));
     }
 }
 
