@@ -28,10 +28,10 @@ typedef struct oracle_pair {
     quad x[3], r; /* x_ij */
     quad s;       /* linearised: s_ij; classic: the weight w_j */
     quad slope;   /* classic: (W'/r) [V_j] */
-    quad spread;  /* linearised: |s| + r |ds/dr|; classic: w + r |w'| */
-    quad slope_spread;
+    rough spread; /* linearised: |s| + r |ds/dr|; classic: w + r |w'| */
+    rough slope_spread;
     quad gradient[3]; /* G_ij */
-    quad bound;       /* D of G_ij */
+    rough bound;      /* D of G_ij */
 } oracle_pair;
 
 /* Everything about one target. */
@@ -43,17 +43,18 @@ typedef struct oracle_point {
     double support; /* H_i */
     quad volume;    /* V_i, negative where absent */
     quad scale;     /* m_ref; classic: S0 mu2 */
-    quad spread;    /* T = sum a r^2 */
+    rough spread;   /* T = sum a r^2 */
     oracle_filter filter;
     int rank;
-    quad correction_norm;  /* |C_i| */
-    quad correction_bound; /* D of C_i */
+    rough correction_norm;  /* |C_i| */
+    rough correction_bound; /* D of C_i */
     oracle_matrix moment, correction;
     /* classic */
     quad mass;        /* S0 */
     quad self_weight; /* w_0 */
     quad y[oracle_rows], z[3][oracle_rows];
-    quad self_gradient[3], self_bound;
+    quad self_gradient[3];
+    rough self_bound;
     quad y_norm, z_norm, condition;
     quad y_bound; /* (1 + k) |y| and what the threshold adds */
     quad z_bound; /* (1 + k) |z|, what cancels in z, and what the threshold adds */
@@ -81,7 +82,7 @@ typedef struct oracle_field {
 
 typedef struct oracle_result {
     quad gradient[9], divergence[3], curl[3], value[9], square;
-    quad bound, value_bound, square_bound;
+    rough bound, value_bound, square_bound;
     int touched;   /* a threshold acted on a particle involved */
     int undecided; /* one of them is undecided: do not compare */
 } oracle_result;
@@ -92,6 +93,6 @@ double oracle_ratio(int width, const double *found, const quad *exact, quad boun
 
 /* G_ij for target i's neighbour given as a pair of its list, from coefficients of `point`; used
  * for G_ji with the pair seen from the other side. */
-quad oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair);
+rough oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair);
 
 #endif

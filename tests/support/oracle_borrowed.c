@@ -204,8 +204,9 @@ static void borrow_component(const oracle_scene *scene, const oracle_basis *of,
                          quad_norm(h.own, of->n) +
                      b.norm_transport * h.borrowed_off +
                      b.transport_off * quad_norm(h.borrowed, of->n);
-    found->gradient_bound += scene->unit * off * over;
-    found->hessian_bound += scene->unit * (h.own_off + h.borrowed_off) * over * over * 2 * of->off;
+    const quad off_twice = (h.own_off + h.borrowed_off) * over * over * 2 * of->off;
+    found->gradient_bound += scene->unit * (rough)(off * over);
+    found->hessian_bound += scene->unit * (rough)off_twice;
 }
 
 oracle_curved oracle_apply_borrowed(oracle *reference, const oracle_field *field,

@@ -82,12 +82,12 @@ static item read_item(int d, sphg_shape shape, const double *numbers, int i)
     return full;
 }
 
-static item scaled_sum(quad weight, const item *left, quad other_weight, const item *right)
+static item scaled(quad weight, const item *of)
 {
-    item sum = {.count = left->count};
-    for (int k = 0; k < sum.count; ++k)
-        sum.a[k] = weight * left->a[k] + other_weight * right->a[k];
-    return sum;
+    item product = {.count = of->count};
+    for (int k = 0; k < product.count; ++k)
+        product.a[k] = weight * of->a[k];
+    return product;
 }
 
 static void add_curl(int d, const quad *a, const quad *g, quad *curl)
@@ -127,7 +127,7 @@ static void add_self(const oracle_scene *scene, const oracle_field *field, int i
         return;
     item own = read_item(d, field->shape, field->at_sources, i);
     contract(d, field->shape, &own, point->self_gradient, result);
-    result->bound += quad_norm(own.a, own.count) * point->self_bound;
+    result->bound += rough_norm(own.a, own.count) * point->self_bound;
 }
 
 static void one_sided(const oracle_scene *scene, const oracle_field *field, int i,
@@ -135,27 +135,30 @@ static void one_sided(const oracle_scene *scene, const oracle_field *field, int 
 {
     int d = scene->scheme.dimension, width = 0;
     const double *targets = field->at_targets ? field->at_targets : field->at_sources;
-    quad own_share = field->form == SPHG_DIFFERENCE ? -1 : 0, b[27] = {0};
+    const int differs = field->form == SPHG_DIFFERENCE;
+    rough b[27] = {0};
     item own = {.count = 0};
-    if (own_share != 0)
+    if (differs)
         own = read_item(d, field->shape, targets, i);
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
-        item other = read_item(d, field->shape, field->at_sources, pair->j);
-        item change = scaled_sum(1, &other, own_share, &own);
+        item change = read_item(d, field->shape, field->at_sources, pair->j);
         width = change.count;
-        quad size = quad_norm(change.a, width);
+        for (int c = 0; differs && c < width; ++c)
+            change.a[c] -= own.a[c];
+        const rough size = rough_norm(change.a, width);
         contract(d, field->shape, &change, pair->gradient, result);
         if (oracle_is_classic(scene->scheme.method))
             result->bound += size * pair->bound;
         else
-            result->bound += scene->unit * point->correction_norm * pair->spread * pair->r * size;
+            result->bound +=
+                scene->unit * point->correction_norm * pair->spread * (rough)pair->r * size;
         for (int c = 0; c < d * width; ++c)
-            b[c] += pair->s * pair->x[c / width] * change.a[c % width];
+            b[c] += (rough)pair->s * (rough)pair->x[c / width] * (rough)change.a[c % width];
     }
     if (!oracle_is_classic(scene->scheme.method))
         result->bound += scene->unit * oracle_filter_error(point, width, b);
-    else if (own_share == 0)
+    else if (!differs)
         add_self(scene, field, i, point, result);
     result->touched = point->rank < d;
     result->undecided = point->undecided;
@@ -196,7 +199,7 @@ static void two_sided(oracle *reference, const oracle_field *field, int i, oracl
     const oracle_scene *scene = &reference->scene;
     const oracle_point *point = oracle_at(reference, i);
     int d = scene->scheme.dimension;
-    item own = read_item(d, field->shape, field->at_sources, i), none = {.count = own.count};
+    item own = read_item(d, field->shape, field->at_sources, i);
     result->touched = point->rank < d;
     result->undecided = point->undecided;
     for (int k = 0; k < point->pair_count; ++k) {
@@ -205,12 +208,12 @@ static void two_sided(oracle *reference, const oracle_field *field, int i, oracl
         oracle_pair back = seen_from(scene, there, pair, i);
         item other = read_item(d, field->shape, field->at_sources, pair->j);
         side_weights weights = two_weights(scene, field->form, i, pair->j);
-        item here = scaled_sum(weights.own, &own, 0, &none);
-        item away = scaled_sum(-weights.other, &other, 0, &none);
+        item here = scaled(weights.own, &own);
+        item away = scaled(-weights.other, &other);
         contract(d, field->shape, &here, pair->gradient, result);
         contract(d, field->shape, &away, back.gradient, result);
-        result->bound += quad_norm(here.a, here.count) * pair->bound +
-                         quad_norm(away.a, away.count) * back.bound;
+        result->bound += rough_norm(here.a, here.count) * pair->bound +
+                         rough_norm(away.a, away.count) * back.bound;
         result->touched |= there->rank < d;
         result->undecided |= there->undecided;
     }
@@ -219,22 +222,24 @@ static void two_sided(oracle *reference, const oracle_field *field, int i, oracl
 /* ---- Value ---------------------------------------------------------------------------------- */
 
 static quad interpolation_weight(const oracle_scene *scene, const oracle_point *point,
-                                 const oracle_pair *pair, quad *bound)
+                                 const oracle_pair *pair, rough *bound)
 {
     const sphg_scheme *scheme = &scene->scheme;
     int d = scheme->dimension;
     if (oracle_is_classic(scheme->method)) {
-        quad sum = point->y[0], square = 1;
+        quad sum = point->y[0];
+        rough square = 1;
         for (int k = 0; k < d; ++k) {
             quad xi = -pair->x[k] / point->support;
             sum += point->y[k + 1] * xi;
-            square += xi * xi;
+            square += (rough)xi * (rough)xi;
         }
-        *bound = pair->spread * quad_sqrt(square) * point->y_bound;
+        *bound = pair->spread * sqrtl(square) * (rough)point->y_bound;
         return pair->s * sum;
     }
     oracle_weights at = oracle_weights_at(scheme->kernel, d, point->support, pair->r);
-    *bound = scene->volume[pair->j] * (2 * at.w + pair->r * pair->r * quad_abs(at.slope));
+    *bound = scene->volume[pair->j] *
+             (2 * (rough)at.w + (rough)pair->r * (rough)pair->r * rough_abs(at.slope));
     return scene->volume[pair->j] * at.w;
 }
 
@@ -243,12 +248,13 @@ static void add_value(const oracle_scene *scene, const oracle_field *field, cons
 {
     int d = scene->scheme.dimension, width = width_of(field->shape, d);
     const double *a = field->at_sources + pair->j * width;
-    quad bound, weight = interpolation_weight(scene, point, pair, &bound), square = 0;
+    rough bound, square = 0;
+    const quad weight = interpolation_weight(scene, point, pair, &bound);
     for (int c = 0; c < width; ++c) {
         result->value[c] += weight * a[c];
-        square += (quad)a[c] * a[c];
+        square += (rough)a[c] * a[c];
     }
-    result->value_bound += scene->unit * bound * quad_sqrt(square);
+    result->value_bound += scene->unit * bound * sqrtl(square);
 }
 
 static void sum_values(const oracle_scene *scene, const oracle_field *field, int i,
@@ -258,18 +264,18 @@ static void sum_values(const oracle_scene *scene, const oracle_field *field, int
         add_value(scene, field, &point->pairs[k], point, result);
     if (!point->has_self)
         return;
-    oracle_pair self = {.j = i, .s = point->self_weight, .spread = point->self_weight};
+    oracle_pair self = {.j = i, .s = point->self_weight, .spread = (rough)point->self_weight};
     add_value(scene, field, &self, point, result);
 }
 
 /* ---- Squares of gradients ------------------------------------------------------------------- */
 
-static void add_square(const oracle_scene *scene, quad a, const quad *gradient, quad size,
-                       quad bound, oracle_result *result)
+static void add_square(const oracle_scene *scene, quad a, const quad *gradient, rough size,
+                       rough bound, oracle_result *result)
 {
-    const quad norm = quad_norm(gradient, scene->scheme.dimension);
-    result->square += a * norm * norm;
-    result->square_bound += quad_abs(a) * bound * (2 * size + bound);
+    for (int k = 0; k < scene->scheme.dimension; ++k)
+        result->square += a * gradient[k] * gradient[k];
+    result->square_bound += rough_abs(a) * bound * (2 * size + bound);
 }
 
 /* size: of what C_i is multiplied with, however much of it C_i takes away. The second order counts:
@@ -281,13 +287,13 @@ static void sum_squares(const oracle_scene *scene, const oracle_field *field, in
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         add_square(scene, field->at_sources[pair->j], pair->gradient,
-                   classic ? quad_norm(pair->gradient, d)
-                           : point->correction_norm * quad_abs(pair->s) * pair->r,
+                   classic ? rough_norm(pair->gradient, d)
+                           : point->correction_norm * rough_abs(pair->s) * (rough)pair->r,
                    pair->bound, result);
     }
     if (point->has_self && classic)
         add_square(scene, field->at_sources[i], point->self_gradient,
-                   quad_norm(point->self_gradient, d), point->self_bound, result);
+                   rough_norm(point->self_gradient, d), point->self_bound, result);
 }
 
 oracle_result oracle_apply(oracle *reference, const oracle_field *field, int i)

@@ -18,6 +18,6 @@ static inline const double *oracle_target(const oracle_scene *scene, int i)
 const oracle_scene *oracle_scene_of(const oracle *reference);
 void oracle_solve(const oracle_scene *scene, int i, oracle_point *point);
 void oracle_weigh(const oracle_scene *scene, double support, quad volume, oracle_pair *pair);
-quad oracle_filter_error(const oracle_point *point, int width, const quad *b);
+rough oracle_filter_error(const oracle_point *point, int width, const rough *b);
 
 #endif

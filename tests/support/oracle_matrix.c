@@ -129,14 +129,16 @@ static quad smallest(int n, const quad *values)
 
 /* The steepest f within `blur` of an eigenvalue. Beside a band of the policy that is hardly wider
  * than what rounding does to lambda, the slope at lambda itself says little. */
-static quad steepest(sphg_policy policy, const oracle_filter *filter, int k, int below, quad blur)
+static rough steepest(sphg_policy policy, const oracle_filter *filter, int k, int below, quad blur)
 {
     enum { steps = 8 };
-    quad largest = 0;
-    for (int step = -steps; step <= steps; ++step) {
+    rough largest = 0;
+    /* Above every band it is the lowest of them. */
+    const int first = -steps, last = filter->lambda[k] - blur >= 4 * filter->eps ? first : steps;
+    for (int step = first; step <= last; ++step) {
         quad near = filter->lambda[k] + blur * step / steps;
         policy_value value = apply(policy, near, filter->lambda_min, filter->eps, below);
-        largest = quad_max(largest, quad_abs(value.derivative));
+        largest = rough_max(largest, rough_abs(value.derivative));
     }
     return largest;
 }
@@ -158,7 +160,7 @@ oracle_filter oracle_filtered(int n, oracle_matrix normalised, sphg_policy polic
             quad size = quad_abs(filter.lambda[k]) + quad_abs(filter.lambda[l]);
             filter.divided[k][l] = quad_abs(gap) <= size * 0x1p-50
                                        ? steepest(policy, &filter, k, below, blur)
-                                       : quad_abs((filter.f[k] - filter.f[l]) / gap);
+                                       : rough_abs(filter.f[k] - filter.f[l]) / rough_abs(gap);
         }
     return filter;
 }

@@ -16,11 +16,11 @@ quad oracle_spectral_norm(int n, oracle_matrix a);
 /* f applied to normalised moments. */
 typedef struct oracle_filter {
     int n;
-    quad eps;                               /* eps_i */
-    quad lambda[oracle_rows];               /* ascending is not promised */
-    quad f[oracle_rows];                    /* f(lambda) */
-    quad divided[oracle_rows][oracle_rows]; /* |f[lambda_k, lambda_l]| */
-    oracle_matrix axes;                     /* column k for lambda_k */
+    quad eps;                                /* eps_i */
+    quad lambda[oracle_rows];                /* ascending is not promised */
+    quad f[oracle_rows];                     /* f(lambda) */
+    rough divided[oracle_rows][oracle_rows]; /* |f[lambda_k, lambda_l]| */
+    oracle_matrix axes;                      /* column k for lambda_k */
     int rank;
     quad lambda_min;
 } oracle_filter;

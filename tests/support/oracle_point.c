@@ -100,17 +100,18 @@ static void find_pairs(const oracle_scene *scene, int i, oracle_point *point)
 /* |f| + r |f'| of W and of W'/r. Within a few roundings of the rim the first order is not enough:
  * there the values a little further in count. */
 static void spread_weights(const oracle_scene *scene, double support, quad r,
-                           const oracle_weights *at, quad *weight, quad *slope)
+                           const oracle_weights *at, rough *weight, rough *slope)
 {
     const sphg_scheme *scheme = &scene->scheme;
+    const rough distance = (rough)r, square = distance * distance;
     oracle_weights inner = *at;
     if (r > .99 * support)
         inner = oracle_weights_at(scheme->kernel, scheme->dimension, support,
                                   r * (1 - 4 * (quad)scene->unit));
-    *weight =
-        quad_max(at->w + r * r * quad_abs(at->slope), inner.w + r * r * quad_abs(inner.slope));
-    *slope = quad_max(quad_abs(at->slope) + r * quad_abs(at->slope_rate),
-                      quad_abs(inner.slope) + r * quad_abs(inner.slope_rate));
+    *weight = rough_max((rough)at->w + square * rough_abs(at->slope),
+                        (rough)inner.w + square * rough_abs(inner.slope));
+    *slope = rough_max(rough_abs(at->slope) + distance * rough_abs(at->slope_rate),
+                       rough_abs(inner.slope) + distance * rough_abs(inner.slope_rate));
 }
 
 /* The weight of a pair under the volume of its source. */
@@ -119,19 +120,21 @@ void oracle_weigh(const oracle_scene *scene, double support, quad volume, oracle
     const sphg_scheme *scheme = &scene->scheme;
     oracle_weights at = oracle_weights_at(scheme->kernel, scheme->dimension, support, pair->r);
     int has_volume = scheme->method != SPHG_MLS && scheme->method != SPHG_CMLS;
-    quad v = has_volume ? volume : 1, weight_spread, slope_spread;
+    const quad v = has_volume ? volume : 1;
+    const rough times = (rough)v;
+    rough weight_spread, slope_spread;
     spread_weights(scene, support, pair->r, &at, &weight_spread, &slope_spread);
     if (oracle_is_classic(scheme->method)) {
         pair->s = v * at.w;
         pair->slope = v * at.slope;
-        pair->spread = v * weight_spread;
-        pair->slope_spread = v * slope_spread;
+        pair->spread = times * weight_spread;
+        pair->slope_spread = times * slope_spread;
     } else if (scheme->method == SPHG_MLS || scheme->method == SPHG_RKPM) {
         pair->s = -v * at.w;
-        pair->spread = v * weight_spread;
+        pair->spread = times * weight_spread;
     } else {
         pair->s = v * at.slope;
-        pair->spread = v * slope_spread;
+        pair->spread = times * slope_spread;
     }
 }
 
@@ -165,7 +168,7 @@ static void sum_moments(int d, oracle_point *point)
 {
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
-        point->spread += pair->spread * pair->r * pair->r;
+        point->spread += pair->spread * (rough)pair->r * (rough)pair->r;
         for (int a = 0; a < d; ++a) {
             const quad weighed = pair->s * pair->x[a];
             for (int b = a; b < d; ++b)
@@ -207,27 +210,31 @@ static void filter_moments(const oracle_scene *scene, int below, oracle_point *p
             point->undecided = 1;
 }
 
-static quad largest_divided(const oracle_filter *filter, int l)
+static rough largest_divided(const oracle_filter *filter, int l)
 {
-    quad largest = 0;
+    rough largest = 0;
     for (int k = 0; k < filter->n; ++k)
-        largest = quad_max(largest, filter->divided[k][l]);
+        largest = rough_max(largest, filter->divided[k][l]);
     return largest;
 }
 
 /* (T / m^2) sum_l max_k |f[lambda_k, lambda_l]| |b_l|, for b of `width` columns. */
-quad oracle_filter_error(const oracle_point *point, int width, const quad *b)
+rough oracle_filter_error(const oracle_point *point, int width, const rough *b)
 {
-    quad sum = 0;
+    const rough scale = (rough)point->scale;
+    rough sum = 0;
     int d = point->filter.n;
     for (int l = 0; l < d; ++l) {
-        quad row[9] = {0};
-        for (int k = 0; k < d; ++k)
-            for (int c = 0; c < width; ++c)
-                row[c] += point->filter.axes[k][l] * b[k * width + c];
-        sum += largest_divided(&point->filter, l) * quad_norm(row, width);
+        rough square = 0;
+        for (int c = 0; c < width; ++c) {
+            rough along = 0;
+            for (int k = 0; k < d; ++k)
+                along += (rough)point->filter.axes[k][l] * b[k * width + c];
+            square += along * along;
+        }
+        sum += largest_divided(&point->filter, l) * sqrtl(square);
     }
-    return sum * point->spread / (point->scale * point->scale);
+    return sum * point->spread / (scale * scale);
 }
 
 static void solve_linearised(const oracle_scene *scene, oracle_point *point)
@@ -246,11 +253,11 @@ static void solve_linearised(const oracle_scene *scene, oracle_point *point)
         point->spread = 0;
     }
     for (int k = 0; k < d; ++k) {
-        quad size = quad_abs(point->filter.f[k]) / point->scale;
-        point->correction_norm = quad_max(point->correction_norm, size);
-        quad error =
-            largest_divided(&point->filter, k) * point->spread / (point->scale * point->scale);
-        point->correction_bound = quad_max(point->correction_bound, error);
+        const rough scale = (rough)point->scale;
+        point->correction_norm =
+            rough_max(point->correction_norm, rough_abs(point->filter.f[k]) / scale);
+        const rough error = largest_divided(&point->filter, k) * point->spread / (scale * scale);
+        point->correction_bound = rough_max(point->correction_bound, error);
     }
     point->correction_bound = scene->unit * (point->correction_bound + point->correction_norm);
 }
@@ -258,7 +265,8 @@ static void solve_linearised(const oracle_scene *scene, oracle_point *point)
 /* ---- Classic --------------------------------------------------------------------------------- */
 
 typedef struct classic_sums {
-    oracle_matrix a, b[3], a_spread;
+    oracle_matrix a, b[3];
+    rough a_spread[oracle_rows]; /* the diagonal */
     quad first[oracle_rows];
 } classic_sums;
 
@@ -273,13 +281,14 @@ static void basis_of(const oracle_scene *scene, const oracle_point *point, const
 static void sum_classic(const oracle_scene *scene, const oracle_point *point, classic_sums *sums)
 {
     int d = scene->scheme.dimension;
-    sums->a[0][0] = sums->a_spread[0][0] = point->self_weight;
+    sums->a[0][0] = point->self_weight;
+    sums->a_spread[0] = (rough)point->self_weight;
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
         quad p[oracle_rows];
         basis_of(scene, point, pair, p);
         for (int a = 0; a <= d; ++a) {
-            sums->a_spread[a][a] += pair->spread * p[a] * p[a];
+            sums->a_spread[a] += pair->spread * (rough)p[a] * (rough)p[a];
             for (int b = a; b <= d; ++b) {
                 quad pp = p[a] * p[b], slope = pair->slope * pp;
                 sums->a[a][b] += pair->s * pp;
@@ -303,11 +312,11 @@ static void centre_moments(const oracle_scene *scene, oracle_point *point, const
     for (int k = -1; k < point->pair_count; ++k) {
         quad p[oracle_rows] = {1};
         quad w = k < 0 ? point->self_weight : point->pairs[k].s;
-        quad spread = k < 0 ? w : point->pairs[k].spread, square = 0;
+        rough spread = k < 0 ? (rough)w : point->pairs[k].spread, square = 0;
         if (k >= 0)
             basis_of(scene, point, &point->pairs[k], p);
         for (int a = 0; a < d; ++a) {
-            square += p[a + 1] * p[a + 1];
+            square += (rough)p[a + 1] * (rough)p[a + 1];
             for (int b = 0; b < d; ++b)
                 point->moment[a][b] += w * (p[a + 1] - centre[a]) * (p[b + 1] - centre[b]);
         }
@@ -368,21 +377,22 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
                            const oracle_point *point)
 {
     int d = scene->scheme.dimension;
-    quad unit_part = 0, sum = 0;
+    rough unit_part = 0, sum = 0;
     for (int k = 1; k <= d; ++k)
-        unit_part = quad_max(unit_part, quad_norm(inverse[k], d + 1));
+        unit_part = rough_max(unit_part, rough_norm(inverse[k], d + 1));
     for (int n = 0; n < point->pair_count; ++n) {
         const oracle_pair *pair = &point->pairs[n];
-        quad p[oracle_rows], size = 0, value = 0;
+        quad p[oracle_rows], value = 0;
+        rough size = 0;
         basis_of(scene, point, pair, p);
         for (int a = 0; a <= d; ++a) {
-            quad image = 0;
+            rough image = 0;
             value += p[a] * point->y[a];
             for (int b = 0; b <= d; ++b)
-                image += inverse[a][b] * p[b];
-            size = quad_max(size, quad_abs(image));
+                image += (rough)inverse[a][b] * (rough)p[b];
+            size = rough_max(size, fabsl(image));
         }
-        sum += pair->slope_spread * pair->r * quad_abs(value) * size;
+        sum += pair->slope_spread * (rough)pair->r * rough_abs(value) * size;
     }
     return sum + unit_part / point->support;
 }
@@ -432,7 +442,7 @@ static quad balanced_condition(const oracle_scene *scene, oracle_matrix inverse,
     oracle_matrix balanced;
     for (int a = 0; a <= d; ++a) {
         quad row = a ? root : 1;
-        trace += sums->a_spread[a][a] / (row * row);
+        trace += sums->a_spread[a] / (row * row);
         for (int b = 0; b <= d; ++b)
             balanced[a][b] = inverse[a][b] * row * (b ? root : 1);
     }
@@ -474,29 +484,32 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
                      blur_of_slopes(scene, inverse, point);
     if (point->rank < d)
         add_blur_of_filter(scene, inverse, &sums, centre, point);
-    point->self_bound = scene->unit * point->self_weight * point->z_bound;
+    point->self_bound = scene->unit * (rough)(point->self_weight * point->z_bound);
 }
 
 /* ---- G_ij ------------------------------------------------------------------------------------ */
 
-static quad linearised_gradient(const oracle_scene *scene, const oracle_point *point,
-                                oracle_pair *pair)
+static rough linearised_gradient(const oracle_scene *scene, const oracle_point *point,
+                                 oracle_pair *pair)
 {
     int d = scene->scheme.dimension;
     quad b[3];
-    for (int a = 0; a < d; ++a)
+    rough size[3];
+    for (int a = 0; a < d; ++a) {
         b[a] = pair->s * pair->x[a];
+        size[a] = (rough)b[a];
+    }
     for (int a = 0; a < d; ++a) {
         pair->gradient[a] = 0;
         for (int c = 0; c < d; ++c)
             pair->gradient[a] += point->correction[a][c] * b[c];
     }
-    return scene->unit *
-           (point->correction_norm * pair->spread * pair->r + oracle_filter_error(point, 1, b));
+    return scene->unit * (point->correction_norm * pair->spread * (rough)pair->r +
+                          oracle_filter_error(point, 1, size));
 }
 
-static quad classic_gradient(const oracle_scene *scene, const oracle_point *point,
-                             oracle_pair *pair)
+static rough classic_gradient(const oracle_scene *scene, const oracle_point *point,
+                              oracle_pair *pair)
 {
     int d = scene->scheme.dimension;
     quad p[oracle_rows], value = 0;
@@ -509,11 +522,12 @@ static quad classic_gradient(const oracle_scene *scene, const oracle_point *poin
             slope += p[a] * point->z[k][a];
         pair->gradient[k] = pair->slope * pair->x[k] * value + pair->s * slope;
     }
-    return scene->unit * quad_norm(p, d + 1) *
-           (pair->slope_spread * pair->r * point->y_bound + pair->spread * point->z_bound);
+    return scene->unit * rough_norm(p, d + 1) *
+           (pair->slope_spread * (rough)pair->r * (rough)point->y_bound +
+            pair->spread * (rough)point->z_bound);
 }
 
-quad oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair)
+rough oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair)
 {
     return oracle_is_classic(scene->scheme.method) ? classic_gradient(scene, point, pair)
                                                    : linearised_gradient(scene, point, pair);

@@ -73,7 +73,8 @@ void oracle_whitened(const oracle_basis *of, const quad *pairs, quad *q)
 {
     quad mean = 0;
     for (int k = 0; k < of->n; ++k)
-        mean += of->a[k] == of->b[k] ? pairs[k] / of->d : 0;
+        mean += of->a[k] == of->b[k] ? pairs[k] : 0;
+    mean /= of->d;
     for (int k = 0; k < of->n; ++k)
         q[k] = of->a[k] == of->b[k] ? of->deviator * (pairs[k] - mean) + of->trace * mean
                                     : of->off * pairs[k];
@@ -175,7 +176,8 @@ static void keep(const oracle_scene *scene, const oracle_point *point, oracle_se
 typedef struct moments {
     quad third[3][oracle_pairs];
     oracle_block fourth;
-    quad second_spread, third_spread, fourth_spread, trace2, trace4;
+    rough second_spread, third_spread, fourth_spread;
+    quad trace2, trace4;
 } moments;
 
 static moments sum_moments(const oracle_basis *of, const oracle_point *point)
@@ -184,7 +186,8 @@ static moments sum_moments(const oracle_basis *of, const oracle_point *point)
     const quad unit = oracle_weight_unit(point);
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
-        quad e[3], q[oracle_pairs], w = -pair->s * unit, spread = pair->spread * unit;
+        quad e[3], q[oracle_pairs], w = -pair->s * unit, r2 = 0, size2 = 0;
+        const rough spread = pair->spread * (rough)unit;
         oracle_offsets_of(point, of, pair, e, q);
         for (int m = 0; m < of->n; ++m) {
             const quad weighed = w * q[m];
@@ -192,13 +195,15 @@ static moments sum_moments(const oracle_basis *of, const oracle_point *point)
                 sums.third[a][m] += weighed * e[a];
             for (int l = m; l < of->n; ++l)
                 sums.fourth[m][l] += weighed * q[l];
+            size2 += q[m] * q[m];
         }
-        const quad r = quad_norm(e, of->d), size = quad_norm(q, of->n);
-        sums.second_spread += spread * r * r;
-        sums.third_spread += spread * r * size;
-        sums.fourth_spread += spread * size * size;
-        sums.trace2 += w * r * r;
-        sums.trace4 += w * size * size;
+        for (int a = 0; a < of->d; ++a)
+            r2 += e[a] * e[a];
+        sums.second_spread += spread * (rough)r2;
+        sums.third_spread += spread * sqrtl((rough)r2 * (rough)size2);
+        sums.fourth_spread += spread * (rough)size2;
+        sums.trace2 += w * r2;
+        sums.trace4 += w * size2;
     }
     for (int m = 0; m < of->n; ++m)
         for (int l = 0; l < m; ++l)
@@ -313,20 +318,21 @@ oracle_change oracle_sum_changes(const oracle_basis *of, const oracle_point *poi
         quad difference =
             (quad)field->at_sources[pair->j * width + component] - targets[i * width + component];
         oracle_offsets_of(point, of, pair, e, q);
+        const quad weighed = pair->s * unit * difference;
         for (int a = 0; a < of->d; ++a)
-            sums.first[a] -= pair->s * unit * e[a] * difference;
+            sums.first[a] -= weighed * e[a];
         for (int m = 0; m < of->n; ++m)
-            sums.second[m] -= pair->s * unit * q[m] * difference;
-        const quad size = pair->spread * unit * quad_abs(difference);
-        sums.first_size += size * quad_norm(e, of->d);
-        sums.second_size += size * quad_norm(q, of->n);
+            sums.second[m] -= weighed * q[m];
+        const rough size = pair->spread * (rough)unit * rough_abs(difference);
+        sums.first_size += size * rough_norm(e, of->d);
+        sums.second_size += size * rough_norm(q, of->n);
     }
     return sums;
 }
 
 /* h, and how far it may be off over u; y = M2^-1 b1 */
-static quad solve_curvature(const oracle_basis *of, const oracle_second *second,
-                            const oracle_change *sums, quad y_norm, quad *h)
+static rough solve_curvature(const oracle_basis *of, const oracle_second *second,
+                             const oracle_change *sums, rough y_norm, quad *h)
 {
     quad right[oracle_pairs];
     for (int m = 0; m < of->n; ++m) {
@@ -339,24 +345,28 @@ static quad solve_curvature(const oracle_basis *of, const oracle_second *second,
         for (int l = 0; l < of->n; ++l)
             h[m] += second->f[m][l] * right[l];
     }
-    const quad size = quad_norm(h, of->n), k = second->norm_k;
+    const rough size = rough_norm(h, of->n), k = (rough)second->norm_k;
+    const rough of_second = (rough)second->second;
     /* The shift follows t, twice as steeply. */
-    const quad wrong =
-        sums->second_size + k * sums->first_size + (second->third + k * second->second) * y_norm;
-    return second->norm_f *
-               (wrong + (second->shift > 0 ? 3 : 1) * second->size * size / second->kept) +
-           second->change_of_kept * second->second * size;
+    const rough wrong =
+        sums->second_size + k * sums->first_size + ((rough)second->third + k * of_second) * y_norm;
+    return (rough)second->norm_f * (wrong + (second->shift > 0 ? 3 : 1) * (rough)second->size *
+                                                size / (rough)second->kept) +
+           (rough)second->change_of_kept * of_second * size;
 }
 
-quad oracle_slope_norm(const oracle_basis *of, const oracle_point *point, const oracle_change *sums)
+rough oracle_slope_norm(const oracle_basis *of, const oracle_point *point,
+                        const oracle_change *sums)
 {
-    quad y[3] = {0};
-    for (int a = 0; a < of->d; ++a)
-        for (int k = 0; k < of->d; ++k)
-            for (int b = 0; b < of->d; ++b)
-                y[a] += point->filter.axes[a][k] * point->filter.axes[b][k] * sums->first[b] /
-                        point->filter.lambda[k];
-    return quad_norm(y, of->d);
+    rough square = 0; /* the axes are orthonormal */
+    for (int k = 0; k < of->d; ++k) {
+        rough along = 0;
+        for (int b = 0; b < of->d; ++b)
+            along += (rough)point->filter.axes[b][k] * (rough)sums->first[b];
+        along /= (rough)point->filter.lambda[k];
+        square += along * along;
+    }
+    return sqrtl(square);
 }
 
 void oracle_hessian_of(const oracle_basis *of, const quad *h, quad over, quad *hessian)
@@ -372,24 +382,27 @@ void oracle_curve_component(const oracle_scene *scene, const oracle_basis *of,
                             const oracle_change *sums, quad *g, quad *hessian, oracle_curved *found)
 {
     const quad over = 1 / (quad)point->support;
-    quad h[oracle_pairs] = {0}, h_off = 0;
+    quad h[oracle_pairs] = {0};
+    rough h_off = 0;
     if (second->kept > 0)
         h_off = solve_curvature(of, second, sums, oracle_slope_norm(of, point, sums), h);
     oracle_hessian_of(of, h, over, hessian);
     for (int a = 0; a < of->d; ++a) {
         g[a] = 0;
         for (int b = 0; b < of->d; ++b)
-            g[a] += point->correction[a][b] * point->scale * sums->first[b];
+            g[a] += point->correction[a][b] * sums->first[b];
+        g[a] *= point->scale;
         for (int m = 0; m < of->n; ++m)
             g[a] -= second->k[a][m] * h[m];
         g[a] *= over;
     }
     /* What the linear part contributes comes with the field's other components. */
-    const quad off = second->norm_k * h_off +
-                     second->inverse_norm * (second->third + second->second * second->norm_k) *
-                         quad_norm(h, of->n);
-    found->gradient_bound += scene->unit * off * over;
-    found->hessian_bound += scene->unit * h_off * over * over * 2 * of->off;
+    const rough k = (rough)second->norm_k, per = (rough)over;
+    const rough off = k * h_off + (rough)second->inverse_norm *
+                                      ((rough)second->third + (rough)second->second * k) *
+                                      rough_norm(h, of->n);
+    found->gradient_bound += scene->unit * off * per;
+    found->hessian_bound += scene->unit * h_off * per * per * 2 * (rough)of->off;
 }
 
 void oracle_contract_second(const oracle_basis *of, const oracle_field *field, quad gradient[9][3],

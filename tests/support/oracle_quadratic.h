@@ -23,7 +23,7 @@ typedef struct oracle_second {
 
 typedef struct oracle_curved {
     quad gradient[9], hessian[18], laplacian[9], divergence[3], curl[3];
-    quad gradient_bound, hessian_bound; /* D_g and D_h */
+    rough gradient_bound, hessian_bound; /* D_g and D_h */
     int touched, undecided;
 } oracle_curved;
 

@@ -21,14 +21,14 @@ quad oracle_shift_at(sphg_policy policy, quad t, quad eps);
 
 typedef struct oracle_change {
     quad first[3], second[oracle_pairs];
-    quad first_size, second_size; /* sums of spread |dA| |e| and spread |dA| |q| */
+    rough first_size, second_size; /* sums of spread |dA| |e| and spread |dA| |q| */
 } oracle_change;
 
 oracle_change oracle_sum_changes(const oracle_basis *of, const oracle_point *point,
                                  const oracle_field *field, int i, int component, int width);
 /* |M2^-1 b1| */
-quad oracle_slope_norm(const oracle_basis *of, const oracle_point *point,
-                       const oracle_change *sums);
+rough oracle_slope_norm(const oracle_basis *of, const oracle_point *point,
+                        const oracle_change *sums);
 /* Second derivatives from h; over: 1 / H. */
 void oracle_hessian_of(const oracle_basis *of, const quad *h, quad over, quad *hessian);
 /* Gradient and Hessian of a component from its changes; their bounds are added, but for that of the

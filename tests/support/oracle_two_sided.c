@@ -5,23 +5,24 @@
 #include "oracle_second.h"
 
 /* G_ij is the gradient of a field that is 1 at j, 0 elsewhere. */
-static quad gradient_of(const oracle_scene *scene, const oracle_basis *of,
-                        const oracle_point *point, const oracle_second *second, oracle_pair *pair,
-                        quad *g)
+static rough gradient_of(const oracle_scene *scene, const oracle_basis *of,
+                         const oracle_point *point, const oracle_second *second,
+                         const oracle_pair *pair, quad *g)
 {
-    const quad unit = oracle_weight_unit(point);
+    const quad unit = oracle_weight_unit(point), weight = -pair->s * unit;
+    const rough spread = pair->spread * (rough)unit;
     quad e[3], q[oracle_pairs], hessian[oracle_pairs];
     oracle_change change = {.first_size = 0};
     oracle_curved bounds = {.gradient_bound = 0};
     oracle_offsets_of(point, of, pair, e, q);
     for (int a = 0; a < of->d; ++a)
-        change.first[a] = -pair->s * unit * e[a];
+        change.first[a] = weight * e[a];
     for (int m = 0; m < of->n; ++m)
-        change.second[m] = -pair->s * unit * q[m];
-    change.first_size = pair->spread * unit * quad_norm(e, of->d);
-    change.second_size = pair->spread * unit * quad_norm(q, of->n);
+        change.second[m] = weight * q[m];
+    change.first_size = spread * rough_norm(e, of->d);
+    change.second_size = spread * rough_norm(q, of->n);
     oracle_curve_component(scene, of, point, second, &change, g, hessian, &bounds);
-    return bounds.gradient_bound + oracle_gradient_of(scene, point, pair);
+    return bounds.gradient_bound + pair->bound;
 }
 
 static oracle_pair seen_from_there(const oracle_scene *scene, const oracle_point *there,
@@ -32,6 +33,7 @@ static oracle_pair seen_from_there(const oracle_scene *scene, const oracle_point
     for (int k = 0; k < scene->scheme.dimension; ++k)
         back.x[k] = -pair->x[k];
     oracle_weigh(scene, there->support, scene->volume[i], &back);
+    back.bound = oracle_gradient_of(scene, there, &back);
     return back;
 }
 
@@ -57,14 +59,14 @@ oracle_curved oracle_apply_second_two_sided(oracle *reference, const oracle_fiel
             weights[1] = weights[1] / weights[0] / ratio;
             weights[0] = ratio;
         }
-        const quad bounds[2] = {gradient_of(scene, &of, point, second, &pair, here),
-                                gradient_of(scene, &of, there, other, &back, back_there)};
+        const rough bounds[2] = {gradient_of(scene, &of, point, second, &pair, here),
+                                 gradient_of(scene, &of, there, other, &back, back_there)};
         for (int c = 0; c < width; ++c) {
             for (int a = 0; a < d; ++a)
                 gradient[c][a] +=
                     weights[0] * own[c] * here[a] - weights[1] * away[c] * back_there[a];
-            found.gradient_bound += quad_abs(weights[0] * own[c]) * bounds[0] +
-                                    quad_abs(weights[1] * away[c]) * bounds[1];
+            found.gradient_bound += rough_abs(weights[0]) * fabsl(own[c]) * bounds[0] +
+                                    rough_abs(weights[1]) * fabsl(away[c]) * bounds[1];
         }
         found.touched |= !other->full;
         found.undecided |= other->undecided;

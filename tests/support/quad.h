@@ -10,6 +10,10 @@ __extension__ typedef __float128 quad; /* 113 bits */
 typedef long double quad; /* 113 bits where there is no __float128, as on AArch64 */
 #endif
 
+/* Bounds say how far a result may be off: nobody needs their digits. What a processor computes in
+ * by itself reaches as far, with 64 bits, where there is quad. */
+typedef long double rough;
+
 static inline quad quad_abs(quad a)
 {
     return a < 0 ? -a : a;
@@ -52,6 +56,24 @@ static inline quad quad_norm(const quad *a, int count)
     for (int k = 0; k < count; ++k)
         sum += a[k] * a[k];
     return quad_sqrt(sum);
+}
+
+static inline rough rough_abs(quad a)
+{
+    return fabsl((rough)a);
+}
+
+static inline rough rough_max(rough a, rough b)
+{
+    return a > b ? a : b;
+}
+
+static inline rough rough_norm(const quad *a, int count)
+{
+    rough sum = 0;
+    for (int k = 0; k < count; ++k)
+        sum += (rough)a[k] * (rough)a[k];
+    return sqrtl(sum);
 }
 
 #endif
