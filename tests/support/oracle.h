@@ -55,9 +55,9 @@ typedef struct oracle_point {
     quad y[oracle_rows], z[3][oracle_rows];
     quad self_gradient[3];
     rough self_bound;
-    quad y_norm, z_norm, condition;
-    quad y_bound; /* (1 + k) |y| and what the threshold adds */
-    quad z_bound; /* (1 + k) |z|, what cancels in z, and what the threshold adds */
+    rough y_norm, z_norm, condition;
+    rough y_bound; /* (1 + k) |y| and what the threshold adds */
+    rough z_bound; /* (1 + k) |z|, what cancels in z, and what the threshold adds */
 } oracle_point;
 
 /* Zeroed memory, never NULL: each program that links the oracle has one, and releases it when it

@@ -64,11 +64,12 @@ quad oracle_pi(void)
 
 quad oracle_sigma(sphg_kernel kernel, int dimension)
 {
-    static quad inverse_pi;
+    static quad known[SPHG_SPIKY + 1][2];
     const int *ratio = kernels[kernel].sigma[dimension - 2];
-    if (inverse_pi == 0)
-        inverse_pi = 1 / oracle_pi();
-    return ratio[0] * inverse_pi / ratio[1];
+    quad *value = &known[kernel][dimension - 2];
+    if (*value == 0)
+        *value = ratio[0] / (ratio[1] * oracle_pi());
+    return *value;
 }
 
 quad oracle_mu2(sphg_kernel kernel, int dimension)

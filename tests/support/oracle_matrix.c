@@ -3,8 +3,8 @@
 
 /* ---- Eigenvalues: cyclic Jacobi ------------------------------------------------------------- */
 
-/* vectors: NULL where nobody wants them. 0: nothing was left to turn. */
-static int rotate(int n, oracle_matrix a, quad (*vectors)[oracle_rows], int p, int q)
+/* 0: nothing was left to turn. */
+static int rotate(int n, oracle_matrix a, oracle_matrix vectors, int p, int q)
 {
     /* So small beside the diagonal that it is less than a unit of its last place. */
     if (quad_abs(a[p][q]) <= 0x1p-130 * (quad_abs(a[p][p]) + quad_abs(a[q][q]))) {
@@ -14,17 +14,17 @@ static int rotate(int n, oracle_matrix a, quad (*vectors)[oracle_rows], int p, i
     quad theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
     quad t = (theta < 0 ? -1 : 1) / (quad_abs(theta) + quad_sqrt(theta * theta + 1));
     quad c = 1 / quad_sqrt(t * t + 1), s = t * c;
+    const quad change = t * a[p][q];
+    a[p][p] -= change;
+    a[q][q] += change;
     for (int k = 0; k < n; ++k) {
         quad left = a[k][p], right = a[k][q];
-        a[k][p] = c * left - s * right;
-        a[k][q] = s * left + c * right;
+        if (k == p || k == q)
+            continue;
+        a[k][p] = a[p][k] = c * left - s * right;
+        a[k][q] = a[q][k] = s * left + c * right;
     }
     for (int k = 0; k < n; ++k) {
-        quad left = a[p][k], right = a[q][k];
-        a[p][k] = c * left - s * right;
-        a[q][k] = s * left + c * right;
-    }
-    for (int k = 0; vectors && k < n; ++k) {
         quad left = vectors[k][p], right = vectors[k][q];
         vectors[k][p] = c * left - s * right;
         vectors[k][q] = s * left + c * right;
@@ -34,7 +34,7 @@ static int rotate(int n, oracle_matrix a, quad (*vectors)[oracle_rows], int p, i
 }
 
 /* Sweeps until nothing is left to turn: convergence is quadratic. */
-static void diagonalise(int n, oracle_matrix a, quad (*vectors)[oracle_rows])
+static void diagonalise(int n, oracle_matrix a, oracle_matrix vectors)
 {
     enum { sweeps = 20 };
     int turned = 1;
@@ -59,16 +59,39 @@ void oracle_eigen(int n, oracle_matrix a, quad *values, oracle_matrix vectors)
         values[i] = work[i][i];
 }
 
-quad oracle_spectral_norm(int n, oracle_matrix a)
+/* The same, for a norm of which nobody needs all digits. */
+static void turn_roughly(int n, rough (*a)[oracle_rows], int p, int q)
 {
-    quad largest = 0;
-    oracle_matrix work;
+    if (fabsl(a[p][q]) <= 0x1p-70L * (fabsl(a[p][p]) + fabsl(a[q][q])))
+        return;
+    const rough theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+    const rough t = (theta < 0 ? -1 : 1) / (fabsl(theta) + sqrtl(theta * theta + 1));
+    const rough c = 1 / sqrtl(t * t + 1), s = t * c, change = t * a[p][q];
+    a[p][p] -= change;
+    a[q][q] += change;
+    a[p][q] = a[q][p] = 0;
+    for (int k = 0; k < n; ++k) {
+        const rough left = a[k][p], right = a[k][q];
+        if (k == p || k == q)
+            continue;
+        a[k][p] = a[p][k] = c * left - s * right;
+        a[k][q] = a[q][k] = s * left + c * right;
+    }
+}
+
+rough oracle_spectral_norm(int n, oracle_matrix a)
+{
+    enum { sweeps = 10 };
+    rough largest = 0, work[oracle_rows][oracle_rows];
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j)
-            work[i][j] = a[i][j];
-    diagonalise(n, work, NULL);
+            work[i][j] = (rough)a[i][j];
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+        for (int p = 0; p < n; ++p)
+            for (int q = p + 1; q < n; ++q)
+                turn_roughly(n, work, p, q);
     for (int k = 0; k < n; ++k)
-        largest = quad_max(largest, quad_abs(work[k][k]));
+        largest = rough_max(largest, fabsl(work[k][k]));
     return largest;
 }
 

@@ -11,7 +11,7 @@ typedef quad oracle_matrix[oracle_rows][oracle_rows];
 /* a = Q diag(values) Q^T of the leading n x n part; column k of vectors for value k. */
 void oracle_eigen(int n, oracle_matrix a, quad *values, oracle_matrix vectors);
 /* The largest |eigenvalue|. */
-quad oracle_spectral_norm(int n, oracle_matrix a);
+rough oracle_spectral_norm(int n, oracle_matrix a);
 
 /* f applied to normalised moments. */
 typedef struct oracle_filter {

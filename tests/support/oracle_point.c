@@ -278,9 +278,19 @@ static void basis_of(const oracle_scene *scene, const oracle_point *point, const
         p[k + 1] = -pair->x[k] / point->support;
 }
 
+typedef quad cube[oracle_rows][oracle_rows][oracle_rows]; /* [a][b][c] of a <= b <= c */
+
+static quad sorted(cube sums, int a, int b, int c)
+{
+    const int low = a < b ? a : b, high = a < b ? b : a;
+    return c < low ? sums[c][low][high] : c < high ? sums[low][c][high] : sums[low][high][c];
+}
+
+/* B_k holds x_k = -H p_k+1: products of three p are summed once for all that have them. */
 static void sum_classic(const oracle_scene *scene, const oracle_point *point, classic_sums *sums)
 {
     int d = scene->scheme.dimension;
+    cube slopes = {{{0}}};
     sums->a[0][0] = point->self_weight;
     sums->a_spread[0] = (rough)point->self_weight;
     for (int k = 0; k < point->pair_count; ++k) {
@@ -290,18 +300,18 @@ static void sum_classic(const oracle_scene *scene, const oracle_point *point, cl
         for (int a = 0; a <= d; ++a) {
             sums->a_spread[a] += pair->spread * (rough)p[a] * (rough)p[a];
             for (int b = a; b <= d; ++b) {
-                quad pp = p[a] * p[b], slope = pair->slope * pp;
+                const quad pp = a ? p[a] * p[b] : p[b], slope = pair->slope * pp;
                 sums->a[a][b] += pair->s * pp;
-                for (int c = 0; c < d; ++c)
-                    sums->b[c][a][b] += slope * pair->x[c];
+                for (int c = b ? b : 1; c <= d; ++c)
+                    slopes[a][b][c] += slope * p[c];
             }
         }
     }
     for (int a = 0; a <= d; ++a)
-        for (int b = 0; b < a; ++b) {
-            sums->a[a][b] = sums->a[b][a];
+        for (int b = 0; b <= d; ++b) {
+            sums->a[a][b] = sums->a[a < b ? a : b][a < b ? b : a];
             for (int c = 0; c < d; ++c)
-                sums->b[c][a][b] = sums->b[c][b][a];
+                sums->b[c][a][b] = -point->support * sorted(slopes, a, b, c + 1);
         }
 }
 
@@ -317,11 +327,16 @@ static void centre_moments(const oracle_scene *scene, oracle_point *point, const
             basis_of(scene, point, &point->pairs[k], p);
         for (int a = 0; a < d; ++a) {
             square += (rough)p[a + 1] * (rough)p[a + 1];
-            for (int b = 0; b < d; ++b)
-                point->moment[a][b] += w * (p[a + 1] - centre[a]) * (p[b + 1] - centre[b]);
+            p[a + 1] -= centre[a];
+            const quad weighed = w * p[a + 1];
+            for (int b = 0; b <= a; ++b)
+                point->moment[a][b] += weighed * p[b + 1];
         }
         point->spread += spread * square;
     }
+    for (int a = 0; a < d; ++a)
+        for (int b = a + 1; b < d; ++b)
+            point->moment[a][b] = point->moment[b][a];
 }
 
 /* [ 1/S0 + xb.C xb , -(C xb)^T ; -C xb , C ] */
@@ -373,8 +388,8 @@ static void solve_coefficients(const oracle_scene *scene, oracle_matrix inverse,
 
 /* What rounding of the sums B_k does to z, before anything cancels: |A^-1 e_k| / H and
  * sum |d_k w| |p.y| |A^-1 p|. */
-static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
-                           const oracle_point *point)
+static rough blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
+                            const oracle_point *point)
 {
     int d = scene->scheme.dimension;
     rough unit_part = 0, sum = 0;
@@ -394,20 +409,21 @@ static quad blur_of_slopes(const oracle_scene *scene, oracle_matrix inverse,
         }
         sum += pair->slope_spread * (rough)pair->r * rough_abs(value) * size;
     }
-    return sum + unit_part / point->support;
+    return sum + unit_part / (rough)point->support;
 }
 
 /* The largest |A^-1| |B_k|: what z_k answers to a change of y, however much of z_k itself cancels.
  */
-static quad blur_of_y(int d, oracle_matrix inverse, const classic_sums *sums)
+static rough blur_of_y(int d, oracle_matrix inverse, const classic_sums *sums)
 {
-    quad largest = 0;
+    rough largest = 0;
     for (int k = 0; k < d; ++k) {
-        quad square = 0;
-        for (int a = 0; a <= d; ++a)
-            for (int b = 0; b <= d; ++b)
-                square += sums->b[k][a][b] * sums->b[k][a][b];
-        largest = quad_max(largest, quad_sqrt(square));
+        rough square = 0;
+        for (int a = 0; a <= d; ++a) {
+            const rough row = rough_norm(sums->b[k][a], d + 1);
+            square += row * row;
+        }
+        largest = rough_max(largest, sqrtl(square));
     }
     return oracle_spectral_norm(d + 1, inverse) * largest;
 }
@@ -418,31 +434,33 @@ static void add_blur_of_filter(const oracle_scene *scene, oracle_matrix inverse,
                                const classic_sums *sums, const quad *centre, oracle_point *point)
 {
     int d = scene->scheme.dimension;
-    quad steepest = 0, size = 0, largest = 0, border = 1 + quad_norm(centre, d);
+    rough steepest = 0, size = 0, largest = 0, border = 1 + rough_norm(centre, d);
+    const rough scale = (rough)point->scale;
     for (int l = 0; l < d; ++l)
-        steepest = quad_max(steepest, largest_divided(&point->filter, l));
-    quad change = steepest * point->spread / (point->scale * point->scale) * border * border;
+        steepest = rough_max(steepest, largest_divided(&point->filter, l));
+    const rough change = steepest * point->spread / (scale * scale) * border * border;
     point->y_bound += change;
     for (int k = 0; k < d; ++k) {
         quad right[oracle_rows];
         right_side(scene, sums, point, k, right);
-        largest = quad_max(largest, quad_norm(right, d + 1));
+        largest = rough_max(largest, rough_norm(right, d + 1));
         for (int a = 0; a <= d; ++a)
-            size = quad_max(size, quad_norm(sums->b[k][a], d + 1));
+            size = rough_max(size, rough_norm(sums->b[k][a], d + 1));
     }
     point->z_bound += change * (largest + oracle_spectral_norm(d + 1, inverse) * size);
 }
 
 /* tr A |A^-1| in the basis (1, xi / sqrt(mu2)). */
-static quad balanced_condition(const oracle_scene *scene, oracle_matrix inverse,
-                               const classic_sums *sums)
+static rough balanced_condition(const oracle_scene *scene, oracle_matrix inverse,
+                                const classic_sums *sums)
 {
     int d = scene->scheme.dimension;
-    quad root = quad_sqrt(oracle_mu2(scene->scheme.kernel, d)), trace = 0;
+    const quad root = quad_sqrt(oracle_mu2(scene->scheme.kernel, d));
+    rough trace = 0;
     oracle_matrix balanced;
     for (int a = 0; a <= d; ++a) {
         quad row = a ? root : 1;
-        trace += sums->a_spread[a] / (row * row);
+        trace += sums->a_spread[a] / (rough)(row * row);
         for (int b = 0; b <= d; ++b)
             balanced[a][b] = inverse[a][b] * row * (b ? root : 1);
     }
@@ -472,9 +490,9 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
     bordered_inverse(d, point, centre, inverse);
     solve_coefficients(scene, inverse, &sums, point);
     point->condition = balanced_condition(scene, inverse, &sums);
-    point->y_norm = quad_norm(point->y, d + 1);
+    point->y_norm = rough_norm(point->y, d + 1);
     for (int k = 0; k < d; ++k) {
-        point->z_norm = quad_max(point->z_norm, quad_norm(point->z[k], d + 1));
+        point->z_norm = rough_max(point->z_norm, rough_norm(point->z[k], d + 1));
         point->self_gradient[k] = point->self_weight * point->z[k][0];
     }
     /* 1: the weight that y and z are multiplied with is as uncertain as those they come from. */
@@ -484,7 +502,7 @@ static void solve_classic(const oracle_scene *scene, int i, oracle_point *point)
                      blur_of_slopes(scene, inverse, point);
     if (point->rank < d)
         add_blur_of_filter(scene, inverse, &sums, centre, point);
-    point->self_bound = scene->unit * (rough)(point->self_weight * point->z_bound);
+    point->self_bound = scene->unit * (rough)point->self_weight * point->z_bound;
 }
 
 /* ---- G_ij ------------------------------------------------------------------------------------ */
@@ -523,8 +541,7 @@ static rough classic_gradient(const oracle_scene *scene, const oracle_point *poi
         pair->gradient[k] = pair->slope * pair->x[k] * value + pair->s * slope;
     }
     return scene->unit * rough_norm(p, d + 1) *
-           (pair->slope_spread * (rough)pair->r * (rough)point->y_bound +
-            pair->spread * (rough)point->z_bound);
+           (pair->slope_spread * (rough)pair->r * point->y_bound + pair->spread * point->z_bound);
 }
 
 rough oracle_gradient_of(const oracle_scene *scene, const oracle_point *point, oracle_pair *pair)

@@ -186,7 +186,7 @@ static moments sum_moments(const oracle_basis *of, const oracle_point *point)
     const quad unit = oracle_weight_unit(point);
     for (int k = 0; k < point->pair_count; ++k) {
         const oracle_pair *pair = &point->pairs[k];
-        quad e[3], q[oracle_pairs], w = -pair->s * unit, r2 = 0, size2 = 0;
+        quad e[3], q[oracle_pairs], w = -pair->s * unit;
         const rough spread = pair->spread * (rough)unit;
         oracle_offsets_of(point, of, pair, e, q);
         for (int m = 0; m < of->n; ++m) {
@@ -195,16 +195,16 @@ static moments sum_moments(const oracle_basis *of, const oracle_point *point)
                 sums.third[a][m] += weighed * e[a];
             for (int l = m; l < of->n; ++l)
                 sums.fourth[m][l] += weighed * q[l];
-            size2 += q[m] * q[m];
         }
-        for (int a = 0; a < of->d; ++a)
-            r2 += e[a] * e[a];
-        sums.second_spread += spread * (rough)r2;
-        sums.third_spread += spread * sqrtl((rough)r2 * (rough)size2);
-        sums.fourth_spread += spread * (rough)size2;
-        sums.trace2 += w * r2;
-        sums.trace4 += w * size2;
+        const rough r = rough_norm(e, of->d), size = rough_norm(q, of->n);
+        sums.second_spread += spread * r * r;
+        sums.third_spread += spread * r * size;
+        sums.fourth_spread += spread * size * size;
     }
+    for (int a = 0; a < of->d; ++a)
+        sums.trace2 += point->moment[a][a] / point->scale;
+    for (int m = 0; m < of->n; ++m)
+        sums.trace4 += sums.fourth[m][m];
     for (int m = 0; m < of->n; ++m)
         for (int l = 0; l < m; ++l)
             sums.fourth[m][l] = sums.fourth[l][m];
@@ -215,11 +215,13 @@ static void eliminate(const oracle_point *point, const oracle_basis *of, moments
                       oracle_second *second)
 {
     const oracle_filter *filter = &point->filter;
-    quad inverse[3][3] = {{0}}, square = 0;
+    quad inverse[3][3] = {{0}}, square = 0, over[3];
+    for (int k = 0; k < of->d; ++k)
+        over[k] = 1 / filter->lambda[k];
     for (int a = 0; a < of->d; ++a)
         for (int b = 0; b < of->d; ++b) {
             for (int k = 0; k < of->d; ++k)
-                inverse[a][b] += filter->axes[a][k] * filter->axes[b][k] / filter->lambda[k];
+                inverse[a][b] += filter->axes[a][k] * filter->axes[b][k] * over[k];
             square += inverse[a][b] * inverse[a][b];
         }
     second->inverse_norm = quad_sqrt(square);
@@ -272,10 +274,12 @@ void oracle_solve_second(const oracle_scene *scene, const oracle_point *point,
     second->t = solved ? 1 / oracle_norm_of(of.n, whole) : 0;
     second->shift = oracle_shift_at(policy, second->t, second->eps);
     const int dropped = policy == SPHG_IDENTITY && second->shift > 0;
-    if (!dropped)
+    if (!dropped && (second->shift > 0 || !solved))
         oracle_inverse_of(of.n, second->s, second->shift, second->f);
     second->left = dropped ? 0 : of.n;
     for (int m = 0; m < of.n; ++m) {
+        for (int l = 0; l < of.n && solved && !(second->shift > 0); ++l)
+            second->f[m][l] = whole[m][l];
         second->left -= second->shift * second->f[m][m];
         for (int l = 0; l < of.n; ++l)
             second->f[m][l] *= second->kept;
