@@ -7,20 +7,7 @@
  * code for one instruction set must never be merged with that for another. */
 #include "passes.h"
 #include "kernel_list.h"
-
-/* `call` with a constant of that name, true or false as the value is: branches on it are decided
- * when the call is compiled, once for each. */
-#define WITH(name, value, call)                                                                    \
-    do                                                                                             \
-        if (value) {                                                                               \
-            enum { name = true };                                                                  \
-            call;                                                                                  \
-        } else {                                                                                   \
-            enum { name = false };                                                                 \
-            call;                                                                                  \
-        }                                                                                          \
-    while (0)
-
+#include "with.inl.h"
 #include "vec.inl.h"
 #include "lanes.inl.h"
 #include "kernels.inl.h"
