@@ -88,32 +88,6 @@ static void sum_divergence(const struct sphgi_tile *tile, int32_t dimension, sph
     WITH(three, dimension == 3, divergence_in(tile, shape, vectors, rows, at_target, sums, three));
 }
 
-/* What add_outer is to a gradient. */
-SPHGI_TEMPLATE void add_product_as(int32_t l, bool three, sphg_shape shape, const real *a,
-                                   const real *b, const real *each, real *divergence)
-{
-    const int d = three ? 3 : 2;
-    const int count = components_of(shape, d), results = shape == SPHG_VECTOR ? 1 : d;
-    const vec factor = each ? load(each + l) : splat(R(1));
-    vec tensor[9], vector[3], sum[3];
-    for (int c = 0; c < count; ++c)
-        tensor[c] = load(a + c * SPHGI_WIDTH + l);
-    for (int k = 0; k < d; ++k)
-        vector[k] = factor * load(b + k * SPHGI_WIDTH + l);
-    for (int r = 0; r < results; ++r)
-        sum[r] = load(divergence + r * SPHGI_WIDTH + l);
-    add_contracted(shape, d, tensor, vector, sum);
-    for (int r = 0; r < results; ++r)
-        store(divergence + r * SPHGI_WIDTH + l, sum[r]);
-}
-
-static void add_product(int32_t width, int32_t dimension, sphg_shape shape, const void *a,
-                        const void *b, const void *each, void *divergence)
-{
-    for (int32_t l = 0; l < width; l += LANES)
-        add_product_as(l, dimension == 3, shape, a, b, each, divergence);
-}
-
 /* ---- Squares -------------------------------------------------------------------------------- */
 
 SPHGI_TEMPLATE void squares_as(const struct sphgi_tile *tile, enum sphgi_vectors vectors,
@@ -158,32 +132,4 @@ static void sum_squares(const struct sphgi_tile *tile, int32_t dimension,
                         const void *at_target, void *sums)
 {
     WITH(three, dimension == 3, squares_in(tile, vectors, count, rows, at_target, sums, three));
-}
-
-/* sum_ab C_ab (C S)_ab */
-SPHGI_TEMPLATE vec trace_between_as(const real *correction, const real *sums, int d)
-{
-    vec c[6], s[6], trace = splat(R(0));
-    for (int k = 0; k < d * (d + 1) / 2; ++k) {
-        c[k] = load(correction + k * SPHGI_WIDTH);
-        s[k] = load(sums + k * SPHGI_WIDTH);
-    }
-    for (int a = 0; a < d; ++a)
-        for (int b = 0; b < d; ++b) {
-            vec product = c[sphgi_pair_index(a, 0, d)] * s[sphgi_pair_index(0, b, d)];
-            for (int k = 1; k < d; ++k)
-                product = plus(product, c[sphgi_pair_index(a, k, d)], s[sphgi_pair_index(k, b, d)]);
-            trace = plus(trace, c[sphgi_pair_index(a, b, d)], product);
-        }
-    return trace;
-}
-
-static void trace_between(int32_t width, int32_t dimension, const void *correction,
-                          const void *sums, void *trace)
-{
-    for (int32_t l = 0; l < width; l += LANES) {
-        const real *c = (const real *)correction + l, *s = (const real *)sums + l;
-        store((real *)trace + l,
-              dimension == 3 ? trace_between_as(c, s, 3) : trace_between_as(c, s, 2));
-    }
 }

@@ -308,12 +308,16 @@ struct sphgi_passes {
     void (*quotient)(int32_t width, const void *a, const void *b, void *out);
     void (*add_outer)(int32_t width, int32_t dimension, int32_t count, const void *a, const void *b,
                       const void *each, void *jacobian);
-    /* divergence += each A . b */
-    void (*add_product)(int32_t width, int32_t dimension, sphg_shape shape, const void *a,
-                        const void *b, const void *each, void *divergence);
-    /* tr(C S C) of the triangle S */
-    void (*trace_between)(int32_t width, int32_t dimension, const void *correction,
-                          const void *sums, void *trace);
+    /* The adjoint or the symmetric form, as a gradient or a divergence: own_gradient is G_i, sums
+     * those over the sources' terms. */
+    void (*two_sided_gradient)(int32_t width, int32_t dimension, int32_t count,
+                               const struct sphgi_two_sided *of, const void *a,
+                               const void *own_gradient, const void *sums, void *gradient);
+    void (*two_sided_divergence)(int32_t width, int32_t dimension, sphg_shape shape,
+                                 const struct sphgi_two_sided *of, const void *a,
+                                 const void *own_gradient, const void *sums, void *divergence);
+    void (*square)(int32_t width, int32_t dimension, const struct sphgi_square *of,
+                   const void *sums, void *square);
     void (*double_product)(int32_t width, int32_t count, const void *a, const void *b, void *out);
     void (*contract)(int32_t width, int32_t dimension, sphg_shape shape, const void *jacobian,
                      void *divergence, void *curl);

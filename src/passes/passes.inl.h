@@ -62,6 +62,7 @@
 #include "classic_solution.inl.h"
 #include "lane_units.inl.h"
 #include "results.inl.h"
+#include "forms.inl.h"
 #include "quadratic.inl.h"
 #include "borrowed.inl.h"
 #include "quadratic_results.inl.h"
@@ -167,8 +168,9 @@ const struct sphgi_passes CONCATENATE(sphgi_passes_, SUFFIX) = {
     .source_weights = source_weights,
     .quotient = quotient,
     .add_outer = add_outer,
-    .add_product = add_product,
-    .trace_between = trace_between,
+    .two_sided_gradient = two_sided_gradient,
+    .two_sided_divergence = two_sided_divergence,
+    .square = square,
     .double_product = double_product,
     .contract = contract,
     .ask_for_lanes = ask_for_lanes,

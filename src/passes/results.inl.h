@@ -104,14 +104,19 @@ static void fill(int32_t count, double value, void *out)
         store((real *)out + k, splat(R(value)));
 }
 
+/* a / b, and 0 where b is 0 */
+SPHGI_TEMPLATE vec ratio(vec a, vec b)
+{
+    return where(differ(b, splat(R(0))), a / b);
+}
+
 static void quotient(int32_t width, const void *a, const void *b, void *out)
 {
     for (int32_t l = 0; l < width; l += LANES) {
         vec numerator = splat(R(1));
         if (a)
             numerator = load((const real *)a + l);
-        const vec denominator = load((const real *)b + l);
-        store((real *)out + l, where(differ(denominator, splat(R(0))), numerator / denominator));
+        store((real *)out + l, ratio(numerator, load((const real *)b + l)));
     }
 }
 

@@ -264,6 +264,24 @@ enum sphgi_weight {
     SPHGI_WEIGHT_V_PER_DENSITY
 };
 
+/* How the adjoint and the symmetric form of targets are made of sums over both sides. */
+struct sphgi_two_sided {
+    double unit;         /* from the sources' terms to units of H ... */
+    double factor;       /* ... and from these to the unit of the result */
+    const void *volume;  /* V_i */
+    const void *density; /* rho_i; NULL: the adjoint form */
+    bool holds_volume;   /* the sources' terms hold V_i, which has been left out of the sums */
+};
+
+/* What `square` adds up to: sums, of a triangle that C_i goes around unless that is NULL; and of
+ * classic methods the target's own pair, G_ii and A_i, or NULL. */
+struct sphgi_square {
+    const void *correction;
+    double factor;
+    const void *each; /* times the factor; NULL: 1 */
+    const void *self, *value;
+};
+
 /* What the classic methods and order 2 read of sources that have radii of their own: coefficients;
  * H / H_j, 1 / H_j, H_j and, of order 2, a factor behind them in `radii`; rho_j or NULL. */
 struct sphgi_other_side {

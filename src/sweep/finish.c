@@ -63,97 +63,69 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
                      sphgi_inverse_lanes(w), to);
 }
 
-/* What the terms of both sides are multiplied with; NULL: 1. */
-struct sides {
-    double table; /* from sums over G_ji to units of H ... */
-    const void *other, *own;
-    double factor; /* ... and of the result */
-    const void *each;
-};
+/* s_ji of KGC, RKPM and PLAIN hold V_i, and those of CRKPM where sources have radii of their own.
+ */
+static bool holds_volume(const struct sphgi_plan *plan)
+{
+    return plan->classic ? plan->weighted && plan->both_sides : plan->scheme.method != SPHG_MLS;
+}
 
-/* adjoint: f = (1/H) (V_i A_i G + H^d sum V_j A_j T), with H^d V_i = V_i H^-d H^d; KGC and
- * RKPM have V_i inside T, too, and CRKPM where sources have radii of their own. symmetric: f =
- * (1/H) (A_i G / rho_i + rho_i [/ V_i] sum A_j T). */
-static struct sides sides_of(struct sphgi_worker *w, bool symmetric)
+/* folded: C_j came in in units of H, as classic and PLAIN terms do. Sums are in units of H: of the
+ * adjoint form V_i is H^-d V_i, and H^d stands before both sides. */
+static struct sphgi_two_sided two_sided(const struct sphgi_worker *w, bool symmetric, bool folded)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_passes *p = w->passes;
-    const bool volume_inside =
-        plan->classic ? plan->weighted && plan->both_sides : plan->scheme.method != SPHG_MLS;
-    const bool ours = plan->classic || plan->scheme.method == SPHG_PLAIN;
-    struct sides sides = {.table = ours ? 1 : 1 / sphgi_table_scales(&plan->scheme).value};
-    if (symmetric) {
-        char *ratio = sphgi_lane(w, w->extra, 4), *inverse = sphgi_lane(w, w->extra, 5);
-        if (!volume_inside)
-            p->quotient(w->batch.width, w->own.density, w->own.volume, ratio);
-        p->quotient(w->batch.width, NULL, w->own.density, inverse);
-        sides.other = volume_inside ? w->own.density : ratio;
-        sides.own = inverse;
-        sides.factor = w->inverse_h;
-    } else {
-        sides.own = volume_inside ? NULL : w->own.volume;
-        sides.factor = w->inverse_h * sphgi_power(plan->scheme.radius, plan->dimension);
-        sides.each = volume_inside ? w->own.volume : NULL;
-    }
-    return sides;
+    const bool ours = folded || plan->classic || plan->scheme.method == SPHG_PLAIN;
+    const double volume = symmetric ? 1 : sphgi_power(plan->scheme.radius, plan->dimension);
+    return (struct sphgi_two_sided){
+        .unit = ours ? 1 : 1 / sphgi_table_scales(&plan->scheme).value,
+        .factor = w->inverse_h * volume,
+        .volume = w->own.volume,
+        .density = symmetric ? w->own.density : NULL,
+        .holds_volume = holds_volume(plan),
+    };
 }
 
-/* The table comes first: its factor times a density need not be a number of f32. */
-static void join_sides(struct sphgi_worker *w, const struct sphgi_field_plan *field,
-                       const struct sides *sides, bool divergence)
+static void finish_two_sided(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
-    const struct sphgi_passes *p = w->passes;
-    const int32_t d = w->sweep->plan->dimension;
-    const int32_t count = divergence ? field->divergence.count : field->components * d;
-    const char *own = sphgi_lane(w, w->own.field, field->at_target);
-    char *to = divergence ? w->contracted : w->jacobian;
-    p->scale(w->batch.width, count,
-             sphgi_lane(w, w->reduced, divergence ? field->divergence_sum : field->sum),
-             sides->table, NULL, to);
-    if (sides->other)
-        p->scale(w->batch.width, count, to, 1, sides->other, to);
-    if (divergence)
-        p->add_product(w->batch.width, d, field->shape, own, w->extra, sides->own, to);
-    else
-        p->add_outer(w->batch.width, d, field->components, own, w->extra, sides->own, to);
-    p->scale(w->batch.width, count, to, sides->factor, sides->each, to);
-}
-
-static void finish_transposed(struct sphgi_worker *w, const struct sphgi_field_plan *field)
-{
+    const struct sphgi_plan *plan = w->sweep->plan;
     const bool symmetric = field->form == SPHG_SYMMETRIC;
-    const struct sides sides = sides_of(w, symmetric);
-    struct sides folded = sides; /* whose C_j came in in units of H */
-    folded.table = 1;
-    const struct sphgi_plan *plan = w->sweep->plan;
-    const int32_t apart = plan->vector_sum[symmetric], in_fold = plan->folded_sum[symmetric];
-    const int32_t first = field->rows ? apart : in_fold, second = field->fold ? in_fold : apart;
+    const struct sphgi_two_sided apart = two_sided(w, symmetric, false);
+    const struct sphgi_two_sided folded = two_sided(w, symmetric, true);
+    const int32_t sum_apart = plan->vector_sum[symmetric], in_fold = plan->folded_sum[symmetric];
+    const int32_t first = field->rows ? sum_apart : in_fold;
+    const int32_t second = field->fold ? in_fold : sum_apart;
+    const char *own = sphgi_lane(w, w->own.field, field->at_target);
     if (field->sums_gradient) {
         own_side(w, first, w->extra);
-        join_sides(w, field, field->rows ? &sides : &folded, false);
+        w->passes->two_sided_gradient(w->batch.width, plan->dimension, field->components,
+                                      field->rows ? &apart : &folded, own, w->extra,
+                                      sphgi_lane(w, w->reduced, field->sum), w->jacobian);
     }
     if (!field->sums_divergence)
         return;
     if (!field->sums_gradient || second != first)
         own_side(w, second, w->extra);
-    join_sides(w, field, field->fold ? &folded : &sides, true);
+    w->passes->two_sided_divergence(
+        w->batch.width, plan->dimension, field->shape, field->fold ? &folded : &apart, own,
+        w->extra, sphgi_lane(w, w->reduced, field->divergence_sum), w->contracted);
 }
 
 static void finish_square(struct sphgi_worker *w, const struct sphgi_field_plan *field)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const char *sums = sphgi_lane(w, w->reduced, field->square_sum);
-    if (sphgi_square_sums(plan) > 1) {
-        w->passes->trace_between(w->batch.width, plan->dimension, w->coefficients, sums, w->self);
-        sums = w->self;
-    }
-    w->passes->scale(w->batch.width, 1, sums, sphgi_common(w, w->inverse_h * w->inverse_h),
-                     plan->graded ? w->radii.inverse_square : NULL, w->contracted);
+    struct sphgi_square of = {
+        .correction = sphgi_square_sums(plan) > 1 ? w->coefficients : NULL,
+        .factor = sphgi_common(w, w->inverse_h * w->inverse_h),
+        .each = plan->graded ? w->radii.inverse_square : NULL,
+    };
     if (plan->classic && plan->own_set >= 0) {
         sphgi_self_gradient(w, w->extra);
-        w->passes->add_product(w->batch.width, plan->dimension, SPHG_VECTOR, w->extra, w->extra,
-                               sphgi_lane(w, w->own.field, field->at_target), w->contracted);
+        of.self = w->extra;
+        of.value = sphgi_lane(w, w->own.field, field->at_target);
     }
+    w->passes->square(w->batch.width, plan->dimension, &of,
+                      sphgi_lane(w, w->reduced, field->square_sum), w->contracted);
     w->passes->store_lanes(w->batch.targets, &field->square, sphgi_targets(w), w->contracted,
                            field->accumulate);
 }
@@ -193,7 +165,7 @@ void sphgi_finish_fields(struct sphgi_worker *w)
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (field->differentiates) {
             if (!field->one_sided)
-                finish_transposed(w, field);
+                finish_two_sided(w, field);
             else if (plan->quadratic)
                 sphgi_finish_quadratic(w, field);
             else if (plan->scheme.method == SPHG_PLAIN)
