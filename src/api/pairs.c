@@ -141,19 +141,24 @@ static sphg_result count_by_sweep(struct exporting *e)
     return sphgi_sweep_run(e->checker, &counting, e->subset, &sink);
 }
 
+/* Rows, lengths where they are asked for, and offsets. Returns the bytes. */
+static size_t place_counts(struct exporting *e, char *base)
+{
+    struct sphgi_layout layout = {base, 0};
+    const size_t targets = (size_t)e->plan->target_count;
+    const bool lengths = e->pairs->lengths || e->pairs->block;
+    e->row_of_target = sphgi_place(&layout, targets + 1, sizeof(int32_t));
+    e->lengths = lengths ? sphgi_place(&layout, targets + 1, sizeof(int32_t)) : NULL;
+    e->offsets = sphgi_place(&layout, targets + 1, sizeof(int64_t));
+    return layout.used;
+}
+
 static sphg_result count_pairs(struct exporting *e)
 {
     sphg_context *context = e->checker.context;
-    const size_t targets = (size_t)e->plan->target_count;
-    const bool lengths = e->pairs->lengths || e->pairs->block;
-    const size_t map_size = sphgi_round_up(targets * sizeof(int32_t) + 1, SPHGI_ALIGNMENT);
-    if (!sphgi_reserve(&context->allocator, &context->sums,
-                       (lengths ? 2 : 1) * map_size + (targets + 1) * sizeof(int64_t), 1))
+    if (!sphgi_reserve(&context->allocator, &context->sums, place_counts(e, NULL), 1))
         return sphgi_fail_memory(context, e->checker.function);
-    char *memory = context->sums.data;
-    e->row_of_target = context->sums.data;
-    e->lengths = lengths ? (int32_t *)(void *)(memory + map_size) : NULL;
-    e->offsets = (int64_t *)(void *)(memory + (lengths ? 2 : 1) * map_size);
+    place_counts(e, context->sums.data);
     e->rows = sphgi_selected_rows(e->subset, e->plan->target_count, e->row_of_target);
     sphg_result result = SPHG_OK;
     if (are_lengths_counts(e))

@@ -28,4 +28,18 @@ bool sphgi_reserve(const struct sphgi_allocator *allocator, struct sphgi_buffer 
                    size_t count, size_t item_size);
 void sphgi_free(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer);
 
+/* Arrays one after the other in one piece of memory. base NULL: they are only measured, so that the
+ * same lines say how much memory there must be and what lies where. */
+struct sphgi_layout {
+    char *base;
+    size_t used; /* [byte] */
+};
+
+static inline void *sphgi_place(struct sphgi_layout *layout, size_t count, size_t item_size)
+{
+    void *here = layout->base ? layout->base + layout->used : NULL;
+    layout->used += sphgi_round_up(count * item_size, SPHGI_ALIGNMENT);
+    return here;
+}
+
 #endif

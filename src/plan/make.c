@@ -184,9 +184,10 @@ static sphg_result check_needed(struct sphgi_plan_builder *builder)
 
 /* ---- Memory of the plan --------------------------------------------------------------------- */
 
-static bool make_room(struct sphgi_plan_builder *builder)
+/* Returns the bytes. */
+static size_t place_plan(struct sphgi_plan_builder *builder, char *base)
 {
-    sphg_context *context = builder->checker.context;
+    struct sphgi_layout layout = {base, 0};
     const sphg_request *request = builder->request;
     const size_t sets = (size_t)request->set_count, fields = (size_t)request->field_count;
     size_t each = 0, more = 0; /* views of each set */
@@ -195,26 +196,24 @@ static bool make_room(struct sphgi_plan_builder *builder)
         more += sphgi_views_of(&request->fields[k]);
     }
     const size_t corrections = builder->plan->scheme.order == 2 ? 6 : 4;
-    const size_t streams = sets * (each + corrections + 1);
     const size_t views = sets * (fields + more + 3) + 15 * fields + 8;
-    const size_t sizes[] = {sets * sizeof(struct sphgi_set_plan),
-                            fields * sizeof(struct sphgi_field_plan),
-                            streams * sizeof(struct sphgi_stream),
-                            views * sizeof(struct sphgi_extent), views * SPHGI_NAME_LENGTH};
-    size_t total = 0, at[5];
-    for (int k = 0; k < 5; ++k) {
-        at[k] = total;
-        total += sphgi_round_up(sizes[k], SPHGI_ALIGNMENT);
-    }
-    if (!sphgi_reserve(&context->allocator, &context->plan, total, 1))
+    builder->plan->sets = sphgi_place(&layout, sets, sizeof *builder->plan->sets);
+    builder->plan->fields = sphgi_place(&layout, fields, sizeof *builder->plan->fields);
+    builder->streams =
+        sphgi_place(&layout, sets * (each + corrections + 1), sizeof *builder->streams);
+    builder->extents = sphgi_place(&layout, views, sizeof *builder->extents);
+    builder->names = sphgi_place(&layout, views, sizeof *builder->names);
+    return layout.used;
+}
+
+static bool make_room(struct sphgi_plan_builder *builder)
+{
+    sphg_context *context = builder->checker.context;
+    const size_t bytes = place_plan(builder, NULL);
+    if (!sphgi_reserve(&context->allocator, &context->plan, bytes, 1))
         return false;
-    char *memory = context->plan.data;
-    memset(memory, 0, total);
-    builder->plan->sets = (void *)(memory + at[0]);
-    builder->plan->fields = (void *)(memory + at[1]);
-    builder->streams = (void *)(memory + at[2]);
-    builder->extents = (void *)(memory + at[3]);
-    builder->names = (void *)(memory + at[4]);
+    memset(context->plan.data, 0, bytes);
+    place_plan(builder, context->plan.data);
     return true;
 }
 

@@ -257,19 +257,6 @@ static void sort_by_block(sphg_context *context, struct sphgi_sort *sort)
 
 /* ---- Memory --------------------------------------------------------------------------------- */
 
-/* Scratch is carved from one buffer; base NULL: only measured. */
-struct carver {
-    char *base;
-    size_t used;
-};
-
-static void *carve(struct carver *carver, size_t count, size_t size)
-{
-    void *here = carver->base ? carver->base + carver->used : NULL;
-    carver->used += sphgi_round_up(count * size, SPHGI_ALIGNMENT);
-    return here;
-}
-
 /* Enough for a table that doubles as soon as half of it is taken. */
 static size_t chunk_slots(int32_t particles)
 {
@@ -288,35 +275,35 @@ static int32_t bits_seen(int32_t particles)
     return bits;
 }
 
-static void carve_chunk(struct sphgi_chunk *chunk, struct carver *carver, int32_t particles)
+static void place_chunk(struct sphgi_chunk *chunk, struct sphgi_layout *layout, int32_t particles)
 {
-    chunk->keys = carve(carver, (size_t)particles, sizeof *chunk->keys);
-    chunk->hash = carve(carver, chunk_slots(particles), sizeof *chunk->hash);
-    chunk->counts = carve(carver, (size_t)particles, sizeof *chunk->counts);
-    chunk->global = carve(carver, (size_t)particles, sizeof *chunk->global);
+    chunk->keys = sphgi_place(layout, (size_t)particles, sizeof *chunk->keys);
+    chunk->hash = sphgi_place(layout, chunk_slots(particles), sizeof *chunk->hash);
+    chunk->counts = sphgi_place(layout, (size_t)particles, sizeof *chunk->counts);
+    chunk->global = sphgi_place(layout, (size_t)particles, sizeof *chunk->global);
     chunk->seen_bits = bits_seen(particles);
-    chunk->seen = carve(carver, (size_t)1 << chunk->seen_bits, sizeof *chunk->seen);
+    chunk->seen = sphgi_place(layout, (size_t)1 << chunk->seen_bits, sizeof *chunk->seen);
 }
 
 /* Returns the bytes. */
-static size_t carve_sort(struct sphgi_sort *sort, char *base, int32_t count)
+static size_t place_sort(struct sphgi_sort *sort, char *base, int32_t count)
 {
-    struct carver carver = {base, 0};
+    struct sphgi_layout layout = {base, 0};
     const size_t n = (size_t)count;
     const int32_t each = (count + sort->chunk_count - 1) / sort->chunk_count;
-    sort->chunks = carve(&carver, (size_t)sort->chunk_count, sizeof *sort->chunks);
-    sort->block = carve(&carver, n, sizeof *sort->block);
-    sort->order = carve(&carver, n, sizeof *sort->order);
-    sort->cell = carve(&carver, n, 1);
-    sort->sorted_cell = carve(&carver, n, 1);
-    sort->keys = carve(&carver, n, sizeof *sort->keys);
-    sort->numbers = carve(&carver, n, sizeof *sort->numbers);
-    sort->scratch = carve(&carver, n, sizeof *sort->scratch);
+    sort->chunks = sphgi_place(&layout, (size_t)sort->chunk_count, sizeof *sort->chunks);
+    sort->block = sphgi_place(&layout, n, sizeof *sort->block);
+    sort->order = sphgi_place(&layout, n, sizeof *sort->order);
+    sort->cell = sphgi_place(&layout, n, 1);
+    sort->sorted_cell = sphgi_place(&layout, n, 1);
+    sort->keys = sphgi_place(&layout, n, sizeof *sort->keys);
+    sort->numbers = sphgi_place(&layout, n, sizeof *sort->numbers);
+    sort->scratch = sphgi_place(&layout, n, sizeof *sort->scratch);
     for (int32_t c = 0; c < sort->chunk_count; ++c) {
         const int64_t begin = (int64_t)c * each, end = begin + each;
         struct sphgi_chunk chunk = {.begin = begin < count ? (int32_t)begin : count,
                                     .end = end < count ? (int32_t)end : count};
-        carve_chunk(&chunk, &carver, each);
+        place_chunk(&chunk, &layout, each);
         if (!base)
             continue;
         chunk.cells = sort->order + chunk.begin;
@@ -324,7 +311,7 @@ static size_t carve_sort(struct sphgi_sort *sort, char *base, int32_t count)
             chunk.cells_most = (chunk.end - chunk.begin) / SPHGI_BLOCK_CELLS;
         sort->chunks[c] = chunk;
     }
-    return carver.used;
+    return layout.used;
 }
 
 sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
@@ -341,14 +328,14 @@ sphg_result sphgi_grid_build(sphg_context *context, struct sphgi_grid *grid,
                               .grid = grid};
     sort.chunk_count = sphgi_max32(1, sphgi_min32(context->threads, count / CHUNK_LEAST));
     grid->sorted = false;
-    if (!sphgi_reserve(&context->allocator, &context->sort, carve_sort(&sort, NULL, count), 1) ||
+    if (!sphgi_reserve(&context->allocator, &context->sort, place_sort(&sort, NULL, count), 1) ||
         !sphgi_reserve(allocator, &grid->rows, n + SPHGI_LANES_MOST, row_size) ||
         !sphgi_reserve(allocator, &grid->cell_start, n + 1, sizeof(int32_t)) ||
         !sphgi_reserve(allocator, &grid->order, n, sizeof(int32_t)) ||
         (place && !sphgi_reserve(allocator, place, n, sizeof(int32_t))))
         return SPHG_ERROR_MEMORY;
     sort.place = place ? place->data : NULL;
-    carve_sort(&sort, context->sort.data, count);
+    place_sort(&sort, context->sort.data, count);
     grid->raster = *raster;
     grid->type = type;
     grid->count = count;

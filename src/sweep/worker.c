@@ -4,22 +4,6 @@
 #include "core/view.h"
 #include <string.h>
 
-struct layout {
-    size_t total;
-};
-
-static size_t claim(struct layout *layout, size_t count, size_t size)
-{
-    const size_t here = layout->total;
-    layout->total += sphgi_round_up(count * size, SPHGI_ALIGNMENT);
-    return here;
-}
-
-static void *place(char *base, size_t offset)
-{
-    return base ? base + offset : NULL;
-}
-
 /* Classic gradients, L_ij of diffusion, and gradients pair by pair, need the target's coefficients
  * before they can be formed; other sums are multiplied with them at the end. */
 static bool needs_coefficients_first(const struct sphgi_sweep *sweep)
@@ -41,8 +25,8 @@ int32_t sphgi_tiles_of(const struct sphgi_sweep *sweep)
     return sweep->packed && sphgi_is_summed_in_rounds(sweep) ? SPHGI_TILES_HELD : 1;
 }
 
-/* Carves the memory of one worker; base NULL: only measures. */
-static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, char *base)
+/* Lays out the memory of one worker. Returns the bytes. */
+static size_t lay_out(struct sphgi_worker *w, const struct sphgi_sweep *sweep, char *base)
 {
     const struct sphgi_plan *plan = sweep->plan;
     const sphg_neighbors *n = sweep->set->neighbors;
@@ -53,57 +37,57 @@ static size_t carve(struct sphgi_worker *w, const struct sphgi_sweep *sweep, cha
     const size_t arrays = (size_t)plan->row_count, row = SPHGI_ROW * size;
     const size_t numbers = plan->quadratic ? (size_t)sphgi_plan_width(plan) : 16;
     const size_t lending = plan->lends ? SPHGI_WIDTH : 0;
-    struct layout layout = {0};
-#define CARVE(member, count, bytes) w->member = place(base, claim(&layout, count, bytes))
-    CARVE(tally, 1, sizeof(struct sphgi_tally));
-    CARVE(rows.at, arrays + 1, sizeof(void *));
-    CARVE(rows.positions, local, SPHGI_ROW * position);
-    CARVE(rows.numbers, local * arrays, row);
-    CARVE(rows.copies, local ? SPHGI_MIXED_MOST + 1 : 0, sizeof(struct sphgi_copies));
-    CARVE(held.tile, tiles, sizeof(struct sphgi_held_tile));
-    CARVE(held.arrays, tiles * SPHGI_ARRAYS * SPHGI_TILE, size);
-    CARVE(held.own_ids, tiles * SPHGI_TILE, sizeof(uint32_t));
-    CARVE(rows.clean_ids, SPHGI_TILE, sizeof(uint32_t));
-    CARVE(rows.own_items, SPHGI_TILE, sizeof(uint32_t));
-    CARVE(waiting.ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_WAITING_IDS,
+    struct sphgi_layout layout = {base, 0};
+#define PLACE(member, count, bytes) w->member = sphgi_place(&layout, count, bytes)
+    PLACE(tally, 1, sizeof(struct sphgi_tally));
+    PLACE(rows.at, arrays + 1, sizeof(void *));
+    PLACE(rows.positions, local, SPHGI_ROW * position);
+    PLACE(rows.numbers, local * arrays, row);
+    PLACE(rows.copies, local ? SPHGI_MIXED_MOST + 1 : 0, sizeof(struct sphgi_copies));
+    PLACE(held.tile, tiles, sizeof(struct sphgi_held_tile));
+    PLACE(held.arrays, tiles * SPHGI_ARRAYS * SPHGI_TILE, size);
+    PLACE(held.own_ids, tiles * SPHGI_TILE, sizeof(uint32_t));
+    PLACE(rows.clean_ids, SPHGI_TILE, sizeof(uint32_t));
+    PLACE(rows.own_items, SPHGI_TILE, sizeof(uint32_t));
+    PLACE(waiting.ids, n->kind == SPHGI_HOST_LISTS && !n->lists.row ? 0 : SPHGI_WAITING_IDS,
           sizeof(uint32_t));
-    CARVE(reduced, SPHGI_SECTIONS * (size_t)plan->sums * SPHGI_WIDTH, size);
-    CARVE(own.field, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
-    CARVE(own.opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
-    CARVE(raw, numbers * SPHGI_WIDTH, size);
-    CARVE(coefficients, numbers * SPHGI_WIDTH, size);
-    CARVE(lambda_min, SPHGI_WIDTH, size);
-    CARVE(own.volume, SPHGI_WIDTH, size);
-    CARVE(own.density, SPHGI_WIDTH, size);
-    CARVE(self, SPHGI_WIDTH, size);
-    CARVE(zeros, 16 * SPHGI_WIDTH, size);
-    CARVE(jacobian, 27 * SPHGI_WIDTH, size);
-    CARVE(contracted, 6 * SPHGI_WIDTH, size);
-    CARVE(extra, 8 * SPHGI_WIDTH, size);
-    CARVE(radii.ratio, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(radii.inverse, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(radii.inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(radii.factor, plan->graded ? SPHGI_WIDTH : 0, size);
-    CARVE(radii.shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
-    CARVE(curvature.share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
-    CARVE(curvature.hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
-    CARVE(lending.linear, 6 * lending, size);
-    CARVE(lending.moment_scale, lending, size);
-    CARVE(lending.confidence, lending, size);
-    CARVE(lending.lent_confidence, lending, size);
-    CARVE(lending.lent, (SPHGI_HESSIANS + 1) * lending, size);
-    CARVE(lending.borrowed, numbers * lending, size);
-    CARVE(lending.prior, 21 * lending, size);
-    CARVE(lending.transport, 18 * lending, size);
-    CARVE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
-#undef CARVE
-    return layout.total;
+    PLACE(reduced, SPHGI_SECTIONS * (size_t)plan->sums * SPHGI_WIDTH, size);
+    PLACE(own.field, (size_t)plan->target_lanes * SPHGI_WIDTH, size);
+    PLACE(own.opposite, plan->mirrors ? (size_t)plan->target_lanes * SPHGI_WIDTH : 0, size);
+    PLACE(raw, numbers * SPHGI_WIDTH, size);
+    PLACE(coefficients, numbers * SPHGI_WIDTH, size);
+    PLACE(lambda_min, SPHGI_WIDTH, size);
+    PLACE(own.volume, SPHGI_WIDTH, size);
+    PLACE(own.density, SPHGI_WIDTH, size);
+    PLACE(self, SPHGI_WIDTH, size);
+    PLACE(zeros, 16 * SPHGI_WIDTH, size);
+    PLACE(jacobian, 27 * SPHGI_WIDTH, size);
+    PLACE(contracted, 6 * SPHGI_WIDTH, size);
+    PLACE(extra, 8 * SPHGI_WIDTH, size);
+    PLACE(radii.ratio, plan->graded ? SPHGI_WIDTH : 0, size);
+    PLACE(radii.inverse, plan->graded ? SPHGI_WIDTH : 0, size);
+    PLACE(radii.inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
+    PLACE(radii.factor, plan->graded ? SPHGI_WIDTH : 0, size);
+    PLACE(radii.shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
+    PLACE(curvature.share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
+    PLACE(curvature.hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
+    PLACE(lending.linear, 6 * lending, size);
+    PLACE(lending.moment_scale, lending, size);
+    PLACE(lending.confidence, lending, size);
+    PLACE(lending.lent_confidence, lending, size);
+    PLACE(lending.lent, (SPHGI_HESSIANS + 1) * lending, size);
+    PLACE(lending.borrowed, numbers * lending, size);
+    PLACE(lending.prior, 21 * lending, size);
+    PLACE(lending.transport, 18 * lending, size);
+    PLACE(finder_memory, n->kind == SPHGI_SEARCHED ? sphgi_finder_size(n) : 0, 1);
+#undef PLACE
+    return layout.used;
 }
 
 size_t sphgi_worker_size(const struct sphgi_sweep *sweep)
 {
     struct sphgi_worker measured;
-    return carve(&measured, sweep, NULL);
+    return lay_out(&measured, sweep, NULL);
 }
 
 /* Of order 2: second derivatives, or a table of all numbers. */
@@ -162,7 +146,7 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
 {
     *w = (struct sphgi_worker){.sweep = sweep, .passes = sweep->passes};
     w->batch.lists = &w->batch.own_lists;
-    carve(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
+    lay_out(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
     open_scheme(w);
     w->inverse_h = 1 / sweep->plan->scheme.radius;
     sphgi_shares_of(sweep->plan, w->share);
