@@ -8,10 +8,10 @@ void sphgi_add_streams(struct sphgi_plan_builder *builder, int32_t s, int32_t fi
 {
     struct sphgi_stream *stream =
         builder->streams + (ptrdiff_t)s * builder->plan->stream_count + first;
-    const bool wide = columns->count > SPHGI_COLUMNS_MOST;
+    const bool in_parts = columns->count > SPHGI_COLUMNS_MOST;
     for (int32_t c = 0; c < components; c += width, ++stream) {
         *stream = (struct sphgi_stream){*columns, c, sphgi_min32(width, components - c), false};
-        if (wide) {
+        if (in_parts) {
             stream->columns = sphgi_some_columns(columns, c, builder->plan->type);
             stream->first = 0;
         }

@@ -116,16 +116,16 @@ struct sphgi_raster sphgi_raster_of(int32_t dimension, double reach, struct sphg
                                   .along = bars.along,
                                   .slack = sphgi_slack_of(periods, largest, type)};
     for (int32_t a = 0; a < 3; ++a) {
-        const double wide = reach * (1 + 0x1p-9) * (a ? bars.across : 1);
+        const double width = reach * (1 + 0x1p-9) * (a ? bars.across : 1);
         const int32_t number = sphgi_number_of_axis(&raster, a);
         struct sphgi_axis *axis = &raster.axis[a];
-        *axis = (struct sphgi_axis){.inverse = 1 / wide, .low = -1, .high = 1};
+        *axis = (struct sphgi_axis){.inverse = 1 / width, .low = -1, .high = 1};
         axis->shift = a ? 0 : SPHGI_BLOCK_SHIFT;
         if (a >= dimension)
             *axis = (struct sphgi_axis){.shift = 0};
         else if (periods->length[number] > 0) {
             const double cells =
-                periods->length[number] / (wide + axis_slack(largest[number], type));
+                periods->length[number] / (width + axis_slack(largest[number], type));
             raster.periodic = true;
             axis->length = periods->length[number];
             axis->cells = cells < 1 ? 1 : cells < 0x1p40 ? (int64_t)cells : (int64_t)1 << 40;

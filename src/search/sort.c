@@ -189,12 +189,12 @@ SPHGI_TEMPLATE int32_t sort_block(const struct sphgi_sort *sort, int32_t b, size
 static float radius_of_block(const struct sphgi_sort *sort, int32_t b)
 {
     const struct sphgi_grid *grid = sort->grid;
-    const bool wide = sort->type == SPHG_F64;
+    const bool is_f64 = sort->type == SPHG_F64;
     double largest = 0;
     for (int32_t k = grid->blocks[b].first; k < grid->blocks[b + 1].first; ++k) {
         const size_t at = SPHGI_ROW * (size_t)k + 3;
-        const double radius = wide ? ((const double *)grid->rows.data)[at]
-                                   : (double)((const float *)grid->rows.data)[at];
+        const double radius = is_f64 ? ((const double *)grid->rows.data)[at]
+                                     : (double)((const float *)grid->rows.data)[at];
         largest = radius > largest ? radius : largest;
     }
     return largest < (double)FLT_MAX ? (float)largest : FLT_MAX;

@@ -265,9 +265,9 @@ static void look_across(const struct sphgi_walk *walk, int32_t axis, int64_t at,
     *high = (double)INFINITY;
     if (axis >= walk->sources->raster.dimension || across->cells || at <= -far || at >= far)
         return;
-    const double wide = 1 / (across->inverse * (double)((int64_t)1 << walk->octave));
-    *low = ((double)at - margin) * wide;
-    *high = ((double)at + 1 + margin) * wide;
+    const double width = 1 / (across->inverse * (double)((int64_t)1 << walk->octave));
+    *low = ((double)at - margin) * width;
+    *high = ((double)at + 1 + margin) * width;
 }
 
 /* False: there is no room for more. */
