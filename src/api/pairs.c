@@ -202,15 +202,10 @@ static void write_row(const struct exporting *e, const sphg_neighbors *n, int32_
 static void write_rows(const struct exporting *e, const sphg_neighbors *n, int32_t group,
                        int32_t first, int32_t last)
 {
-    const uint32_t *ids = sphgi_kept_ids(n, group);
-    const bool apart = sphgi_kept_steps(n, group) == SPHGI_APART;
-    const uint32_t *lengths = ids;
-    ids += apart ? SPHGI_GROUP : 0;
-    for (int32_t k = 0; k < last; ++k) {
+    struct sphgi_kept_list list = sphgi_first_list(n, group);
+    for (int32_t k = 0; k < last; ++k, sphgi_to_next_list(&list))
         if (k >= first)
-            write_row(e, n, group * SPHGI_GROUP + k, ids, apart ? 1 : SPHGI_GROUP);
-        ids += apart ? sphgi_round_up(lengths[k], SPHGI_PAD) : 1;
-    }
+            write_row(e, n, group * SPHGI_GROUP + k, list.ids, list.stride);
 }
 
 static void group_rows_task(void *data, int32_t begin, int32_t end, int32_t worker)

@@ -127,6 +127,28 @@ static inline const uint32_t *sphgi_kept_ids(const sphg_neighbors *neighbors, in
     return neighbors->found.ids + (neighbors->found.groups[group] >> SPHGI_STEPS_BITS);
 }
 
+/* One of the lists of a group that is kept: id k stands at ids + k * stride. Side by side they are
+ * [step][list]; apart their lengths stand first, then list after list, each rounded up. */
+struct sphgi_kept_list {
+    const uint32_t *ids, *length; /* NULL: they stand side by side */
+    int32_t stride;
+};
+
+static inline struct sphgi_kept_list sphgi_first_list(const sphg_neighbors *neighbors,
+                                                      int32_t group)
+{
+    const uint32_t *ids = sphgi_kept_ids(neighbors, group);
+    struct sphgi_kept_list list = {ids, NULL, SPHGI_GROUP};
+    if (sphgi_kept_steps(neighbors, group) == SPHGI_APART)
+        list = (struct sphgi_kept_list){ids + SPHGI_GROUP, ids, 1};
+    return list;
+}
+
+static inline void sphgi_to_next_list(struct sphgi_kept_list *list)
+{
+    list->ids += list->length ? sphgi_round_up(*list->length++, SPHGI_PAD) : 1;
+}
+
 /* Row (x y z .) of a target; place: in grid order, with the host's lists the target itself. */
 static inline const char *sphgi_target_row(const sphg_neighbors *neighbors, int32_t place)
 {

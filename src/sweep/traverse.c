@@ -60,14 +60,12 @@ static bool are_summed_whole(const struct sphgi_task *task, const struct sphgi_w
 static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, int32_t group)
 {
     const sphg_neighbors *n = task->sweep.set->neighbors;
-    const uint32_t *lengths = sphgi_kept_ids(n, group), *ids = lengths + SPHGI_GROUP;
     const uint32_t active = active_of(task, group);
     const int32_t first = group * SPHGI_GROUP;
-    for (int32_t k = 0; k < sphgi_targets_in(n, group); ++k) {
+    struct sphgi_kept_list list = sphgi_first_list(n, group);
+    for (int32_t k = 0; k < sphgi_targets_in(n, group); ++k, sphgi_to_next_list(&list))
         if (active >> k & 1)
-            add_kept(w, first + k, ids, (int32_t)lengths[k], 1);
-        ids += sphgi_round_up(lengths[k], SPHGI_PAD);
-    }
+            add_kept(w, first + k, list.ids, (int32_t)*list.length, 1);
 }
 
 /* Is all of a group summed at once? Its lists stand side by side, and no others wait. */
