@@ -74,16 +74,16 @@ run_by_wine() {
     return "${PIPESTATUS[0]}"
 }
 
-# read_header HEADER: as a compiler of Windows that knows nothing of GCC does, as C11 and C++11, of a static and a
-# shared library.
+# read_header HEADER: as a compiler of Windows that knows nothing of GCC, and has no C library here, does, as C11 and
+# C++11, of a static and a shared library.
 read_header() {
     local target language macro
     for target in x86_64 i686 aarch64; do
         for language in c11:c c++11:c++ c++20:c++; do
             for macro in SPHG_STATIC SPHG_SHARED SPHG_SHARED_BUILD; do
                 clang --target=$target-pc-windows-msvc -fms-compatibility -fms-extensions -U__GNUC__ -fsyntax-only -Werror \
-                    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -D$macro -Iinclude -DPUBLIC_HEADER="<$1>" \
-                    -std=${language%:*} -x ${language#*:} tests/checks/header_alone.c || return 1
+                    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wundef -D$macro -Iinclude \
+                    -idirafter tests/platforms/without_libc -DPUBLIC_HEADER="<$1>" -std=${language%:*} -x ${language#*:} tests/checks/header_alone.c || return 1
             done
         done
     done
