@@ -177,6 +177,97 @@ static void gradient_at_members_of_a_crowd_is_exact(const test_case *test)
     }
 }
 
+/* ---- The same term again and again ----------------------------------------------------------- */
+
+enum { ALIKE = 20000 };
+
+/* One target, and all sources at one place: each pair adds the same number, so that whatever
+ * rounding does, it does again and again. */
+static setup_array slope_of_alike(const test_case *test, sphg_isa isa, int list_free)
+{
+    sphg_context *context = setup_watched_context_on(isa);
+    if (!context)
+        return (setup_array){.count = 0};
+    const int d = test->dimension;
+    const sphg_type type = test_field_type(test);
+    double x[3 * ALIKE], volume[ALIKE], value[ALIKE];
+    for (int k = 0; k < ALIKE; ++k) {
+        for (int a = 0; a < d; ++a)
+            x[k * d + a] = .125 * (a + 1);
+        volume[k] = 1. / ALIKE;
+        value[k] = 1.7;
+    }
+    const double none[3] = {0};
+    const setup_array sources = setup_numbers(test_position_type(test), ALIKE, d, x);
+    const setup_array target = setup_numbers(test_position_type(test), 1, d, none);
+    const setup_array volumes = setup_numbers(type, ALIKE, 1, volume);
+    const setup_array values = setup_numbers(type, ALIKE, 1, value);
+    const setup_array zero = setup_numbers(type, 1, 1, none),
+                      one = setup_numbers(type, 1, 1, volume);
+    const setup_array gradient = setup_output(type, 1, d);
+    const sphg_scheme scheme = setup_scheme(test, 1);
+    const sphg_geometry geometry = {.sources = setup_view(&sources),
+                                    .targets = setup_view(&target),
+                                    .source_count = ALIKE,
+                                    .target_count = 1,
+                                    .precision = type,
+                                    .list_free = list_free};
+    const sphg_sources all = {.neighbors = setup_search(context, &scheme, &geometry),
+                              .volume = setup_view(&volumes)};
+    const sphg_view at_sources = setup_view(&values);
+    const sphg_field field = {.shape = SPHG_SCALAR,
+                              .at_sources = &at_sources,
+                              .at_targets = setup_view(&zero),
+                              .gradient = setup_view(&gradient)};
+    const sphg_request request = {.sources = &all,
+                                  .fields = &field,
+                                  .set_count = 1,
+                                  .field_count = 1,
+                                  .target_volume = setup_view(&one)};
+    SETUP_OK(context, sphg_evaluate(context, &scheme, &request));
+    return gradient;
+}
+
+/* Of plain SPH that of one pair so many times; corrected the slope along the only direction there
+ * is: 1.7 over the distance. */
+static void exact_slope(const test_case *test, double *slope)
+{
+    const int d = test->dimension;
+    const sphg_scheme scheme = setup_scheme(test, 1);
+    double x[3], square = 0;
+    for (int a = 0; a < d; ++a) {
+        x[a] = -.125 * (a + 1);
+        square += x[a] * x[a];
+    }
+    const double value =
+        test_field_type(test) == SPHG_F32 ? (double)(float)1.7 : 1.7; /* as it is handed over */
+    const double volume =
+        test_field_type(test) == SPHG_F32 ? (double)(float)(1. / ALIKE) : 1. / ALIKE;
+    sphg_pair_gradient(&scheme, x, volume, NULL, slope);
+    for (int a = 0; a < d; ++a)
+        slope[a] = test->method == SPHG_PLAIN ? ALIKE * value * slope[a] : -value * x[a] / square;
+}
+
+static void equal_terms_are_rounded_as_few(const test_case *test)
+{
+    static const sphg_isa sets[] = {SPHG_ISA_BASE, SPHG_ISA_X86_V3, SPHG_ISA_X86_V4, SPHG_ISA_NEON};
+    double exact[3];
+    exact_slope(test, exact);
+    for (int k = 0; k < 8; ++k) {
+        const setup_array found = slope_of_alike(test, sets[k / 2], k % 2);
+        double error = 0, size = 0;
+        for (int a = 0; a < test->dimension && found.count; ++a) {
+            error += pow(setup_get(&found, 0, a) - exact[a], 2);
+            size += exact[a] * exact[a];
+        }
+        const double ratio = sqrt(error / size) / test_unit_roundoff(test);
+        if (found.count && test->method == SPHG_PLAIN)
+            TEST_WITHIN(equal_terms, ratio, k % 2 ? "list-free" : "kept");
+        else if (found.count)
+            TEST_WITHIN(equal_terms_corrected, ratio, k % 2 ? "list-free" : "kept");
+    }
+}
+
 /* ---- From a few pairs to some dozen times those that are summed at once ---------------------- */
 
 enum { MEMBERS = 641 }; /* the last of them has the lanes to itself */
@@ -277,6 +368,8 @@ static const test_entry entries[] = {
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
     TEST_ENTRY(gradient_at_members_of_a_crowd_is_exact, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
                TEST_CORRECTED, 0),
+    TEST_ENTRY(equal_terms_are_rounded_as_few, TEST_ALL_PRECISIONS, TEST_BOTH_DIMENSIONS,
+               TEST_LINEARISED | TEST_BIT(SPHG_PLAIN), 0),
     TEST_ENTRY(lists_of_any_length_give_the_bits_of_a_table, TEST_ALL_PRECISIONS,
                TEST_BOTH_DIMENSIONS, TEST_CORRECTED, 0),
 };

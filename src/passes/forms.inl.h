@@ -2,8 +2,7 @@
 /* From sums to the forms that have two sides (theory.md, section 5) and to squares (section 6), a
  * formula each. */
 
-/* ---- Adjoint and symmetric --------------------------------------------------------------------
- */
+/* ---- Adjoint and symmetric ------------------------------------------------------------------ */
 
 /* Of a vector of targets: f_i = all (others S_i + own A_i G_i), with S_i the sums over the sources'
  * terms and G_i = C_i sum s_ij x_ij.
@@ -88,8 +87,7 @@ static void two_sided_divergence(int32_t width, int32_t dimension, sphg_shape sh
              two_sided_divergence_as(l, shape, of, a, own_gradient, sums, divergence, three));
 }
 
-/* ---- Squares ----------------------------------------------------------------------------------
- */
+/* ---- Squares -------------------------------------------------------------------------------- */
 
 /* tr(C S C) = sum_ab C_ab (C S)_ab */
 SPHGI_TEMPLATE vec trace_between_as(const real *correction, const real *sums, int d)

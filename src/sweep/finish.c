@@ -63,8 +63,7 @@ static void own_side(struct sphgi_worker *w, int32_t sum, char *to)
                      sphgi_inverse_lanes(w), to);
 }
 
-/* s_ji of KGC, RKPM and PLAIN hold V_i, and those of CRKPM where sources have radii of their own.
- */
+/* s_ji of KGC, RKPM and PLAIN hold V_i; those of CRKPM do where sources have radii of their own. */
 static bool holds_volume(const struct sphgi_plan *plan)
 {
     return plan->classic ? plan->weighted && plan->both_sides : plan->scheme.method != SPHG_MLS;

@@ -39,6 +39,8 @@
     X(brookshaw, 64, 14, "a loop over W'/r in doubles, relative to the sum of sizes")              \
     /* Properties without the oracle, in units of u */                                             \
     X(linear_exactness, 32, 6.7, "times |J| / lambda_min: the condition of the moments")           \
+    X(equal_terms, 10, 8.6, "20 000 times the same term, relative to their sum")                   \
+    X(equal_terms_corrected, 32, 23.4, "the quotient of two such sums, and its decomposition")     \
     X(quadratic_exactness, 32, 5.1, "times the size of curvature / lambda_q, or |F|")              \
     X(lent_by_two_sets, 2048, 369, "sums in another order, over what is left of t with lenders")   \
     X(linear_with_lenders, 4096, 604, "rounding of b2 - K^T b1 over t, slopes around 3")           \
