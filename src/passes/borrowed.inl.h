@@ -184,10 +184,8 @@ static void add_borrowed(int32_t width, int32_t dimension, int32_t count,
 {
     for (int32_t l = 0; l < width; l += LANES) {
         real *j = (real *)jacobian + l, *h = (real *)hessian + l, *trace = (real *)laplacian + l;
-        if (dimension == 3)
-            add_borrowed_as(count, second, borrowing, l, R(scale), j, h, trace, true);
-        else
-            add_borrowed_as(count, second, borrowing, l, R(scale), j, h, trace, false);
+        WITH(three, dimension == 3,
+             add_borrowed_as(count, second, borrowing, l, R(scale), j, h, trace, three));
     }
 }
 

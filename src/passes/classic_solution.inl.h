@@ -90,12 +90,9 @@ static void solve_classic(int32_t width, const struct sphgi_threshold *threshold
     for (int32_t l = 0; l < width; l += LANES) {
         const real *in = (const real *)sums + l, *weight = (const real *)self + l;
         real *out = (real *)solution + l;
-        if (threshold->dimension == 3)
-            classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, &largest,
-                                true);
-        else
-            classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, &largest,
-                                false);
+        WITH(three, threshold->dimension == 3,
+             classic_solution_as(threshold, mu2, l, in, weight, out, lambda_min, verdict, &largest,
+                                 three));
     }
     verdict->largest_square = largest_of(largest);
 }
@@ -137,8 +134,6 @@ SPHGI_TEMPLATE void classic_as(const real *sums, real *numbers, bool three)
 static void finish_classic(int32_t width, int32_t dimension, const void *sums, void *coefficients)
 {
     for (int32_t l = 0; l < width; l += LANES)
-        if (dimension == 3)
-            classic_as((const real *)sums + l, (real *)coefficients + l, true);
-        else
-            classic_as((const real *)sums + l, (real *)coefficients + l, false);
+        WITH(three, dimension == 3,
+             classic_as((const real *)sums + l, (real *)coefficients + l, three));
 }

@@ -55,10 +55,8 @@ static void pair_laplacian(const struct sphgi_tile *tile, int32_t dimension, con
                            const void *const *table, double inverse_h, double unit,
                            enum sphgi_weight kind, bool add)
 {
-    if (dimension == 3)
-        pair_laplacian_as(tile, own, table, inverse_h, unit, kind, add, 3);
-    else
-        pair_laplacian_as(tile, own, table, inverse_h, unit, kind, add, 2);
+    WITH(three, dimension == 3,
+         pair_laplacian_as(tile, own, table, inverse_h, unit, kind, add, three ? 3 : 2));
 }
 
 /* The same where C is 1: L = -s_ij factor each. each NULL: 1 */

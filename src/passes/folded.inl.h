@@ -96,8 +96,6 @@ static void sum_folded(const struct sphgi_tile *tile, int32_t dimension, enum sp
                        bool dense, enum sphgi_array factors, const void *const *rows, void *sums,
                        void *vectors)
 {
-    if (dimension == 3)
-        folded_by(tile, fold, dense, factors, rows, sums, vectors, 3);
-    else
-        folded_by(tile, fold, dense, factors, rows, sums, vectors, 2);
+    WITH(three, dimension == 3,
+         folded_by(tile, fold, dense, factors, rows, sums, vectors, three ? 3 : 2));
 }

@@ -244,9 +244,7 @@ static void apply_quadratic(int32_t width, int32_t dimension, int32_t count,
         const real *one = (const real *)sums + l, *two = (const real *)second + l;
         real *j = (real *)jacobian + l, *h = hessian ? (real *)hessian + l : NULL;
         real *trace = (real *)laplacian + l;
-        if (dimension == 3)
-            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, true);
-        else
-            apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, false);
+        WITH(three, dimension == 3,
+             apply_quadratic_as(count, c, one, two, R(scale), j, h, trace, three));
     }
 }

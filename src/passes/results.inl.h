@@ -33,10 +33,9 @@ static void apply(int32_t width, int32_t dimension, int32_t count, const void *c
         if (each)
             factor *= load((const real *)each + l);
         const real *c = correction ? (const real *)correction + l : NULL;
-        if (dimension == 3)
-            apply_as(count, c, (const real *)sums + l, factor, (real *)jacobian + l, 3);
-        else
-            apply_as(count, c, (const real *)sums + l, factor, (real *)jacobian + l, 2);
+        WITH(three, dimension == 3,
+             apply_as(count, c, (const real *)sums + l, factor, (real *)jacobian + l,
+                      three ? 3 : 2));
     }
 }
 
