@@ -21,40 +21,37 @@ static size_t staged_room(const sphg_neighbors *neighbors)
     return sphgi_round_up((size_t)room_of(neighbors) + SPHGI_LANES_MOST, SPHGI_LANES_MOST);
 }
 
+/* Of the candidates of a cell, or with radii of their own of a leg and of what is near eight of its
+ * targets: coordinates, radii, ids, and marks. */
 static size_t candidate_bytes(const sphg_neighbors *neighbors)
 {
     const size_t size = sphgi_size_of_type(neighbors->position_type);
     const size_t candidates = (size_t)room_of(neighbors) + SPHGI_FIND_SLACK + 2 * SPHGI_ALIGNMENT;
     const size_t numbers = neighbors->graded ? 4 : 3, sets = neighbors->graded ? 2 : 1;
-    return sphgi_round_up(sets * candidates * (numbers * size + sizeof(uint32_t) + 1),
-                          SPHGI_ALIGNMENT);
+    return sets * candidates * (numbers * size + sizeof(uint32_t) + 1);
 }
 
-/* Coordinates of the candidates of some cells, and the vectors in which those of one are scanned:
- * of two lanes at least, with nine numbers or less each. */
-static size_t staged_bytes(const sphg_neighbors *neighbors)
+/* With one radius there are also coordinates of the candidates of some cells, and the vectors in
+ * which those of one are scanned: of two lanes at least, with ten bytes each. Returns the bytes. */
+static size_t place_finder(struct sphgi_finder *f, const sphg_neighbors *neighbors, char *base)
 {
+    struct sphgi_layout layout = {base, 0};
+    const size_t one_radius = neighbors->graded ? 0 : 1;
     const size_t size = sphgi_size_of_type(neighbors->position_type);
-    return neighbors->graded ? 0
-                             : sphgi_round_up(3 * size * staged_room(neighbors), SPHGI_ALIGNMENT);
-}
-
-static size_t scan_bytes(const sphg_neighbors *neighbors)
-{
     const size_t vectors = (size_t)room_of(neighbors) / 2 + SPHGI_RUNS_MOST + SPHGI_SCANNED;
-    const size_t each = 2 * sizeof(int32_t) + sizeof(uint16_t);
-    return neighbors->graded ? 0 : sphgi_round_up(vectors * each, SPHGI_ALIGNMENT);
-}
-
-static size_t nearby_bytes(const sphg_neighbors *neighbors)
-{
-    return neighbors->graded ? sphgi_round_up(sizeof(struct sphgi_nearby), SPHGI_ALIGNMENT) : 0;
+    f->find.scratch = sphgi_place(&layout, candidate_bytes(neighbors), 1);
+    f->find.staged = sphgi_place(&layout, one_radius * staged_room(neighbors), 3 * size);
+    f->find.scan =
+        sphgi_place(&layout, one_radius * vectors, 2 * sizeof(int32_t) + sizeof(uint16_t));
+    f->nearby = sphgi_place(&layout, 1 - one_radius, sizeof *f->nearby);
+    f->slots = sphgi_place(&layout, sphgi_slot_bytes(room_of(neighbors)), 1);
+    return layout.used;
 }
 
 size_t sphgi_finder_size(const sphg_neighbors *neighbors)
 {
-    return candidate_bytes(neighbors) + staged_bytes(neighbors) + scan_bytes(neighbors) +
-           nearby_bytes(neighbors) + sphgi_slot_bytes(room_of(neighbors));
+    struct sphgi_finder finder;
+    return place_finder(&finder, neighbors, NULL);
 }
 
 void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
@@ -70,15 +67,11 @@ void sphgi_finder_open(struct sphgi_finder *finder, const sphg_context *context,
                                        .slack = neighbors->sources.raster.slack,
                                        .periodic = neighbors->periodic,
                                        .dummy = (uint32_t)neighbors->source_count * SPHGI_ID_STEP,
-                                       .scratch = memory,
                                        .pack_order = context->pack_order,
                                        .pack_bytes = context->pack_bytes};
     memcpy(finder->find.period, neighbors->period, sizeof finder->find.period);
-    finder->find.staged = (char *)memory + candidate_bytes(neighbors);
+    place_finder(finder, neighbors, memory);
     finder->find.staged_room = (int32_t)staged_room(neighbors);
-    finder->find.scan = (char *)finder->find.staged + staged_bytes(neighbors);
-    finder->nearby = (void *)((char *)finder->find.scan + scan_bytes(neighbors));
-    finder->slots = (uint32_t *)(void *)((char *)finder->nearby + nearby_bytes(neighbors));
     finder->wide_slots = finder->slots + SPHGI_LISTS_MOST * sphgi_slot_room(SPHGI_SLOT);
     for (int32_t s = 0; s < SPHGI_LISTS_MOST; ++s)
         finder->list[s] = finder->slots; /* none is nowhere */

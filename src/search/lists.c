@@ -40,29 +40,39 @@ struct waiting {
     int64_t pairs;
 };
 
-static size_t memory_of_worker(const struct build *build)
+/* What a worker has: its groups that wait, their ids, and memory of its finder or copier. */
+struct room {
+    struct waiting *waiting;
+    uint32_t *ids;
+    void *search;
+};
+
+/* Returns the bytes. */
+static size_t place_worker(const struct build *build, struct room *room, char *base)
 {
-    return sphgi_round_up(sizeof(struct waiting), SPHGI_ALIGNMENT) +
-           WAITING_ROOM * sizeof(uint32_t) +
-           (build->lists ? sphgi_copier_size() : sphgi_finder_size(build->neighbors));
+    struct sphgi_layout layout = {base, 0};
+    room->waiting = sphgi_place(&layout, 1, sizeof *room->waiting);
+    room->ids = sphgi_place(&layout, WAITING_ROOM, sizeof *room->ids);
+    room->search = sphgi_place(
+        &layout, build->lists ? sphgi_copier_size() : sphgi_finder_size(build->neighbors), 1);
+    return layout.used;
 }
 
 static struct waiting *open_worker(struct build *build, int32_t number)
 {
-    char *memory = build->memory + (size_t)number * build->memory_each;
-    struct waiting *w = (void *)memory;
-    memory += sphgi_round_up(sizeof *w, SPHGI_ALIGNMENT);
+    struct room room;
+    place_worker(build, &room, build->memory + (size_t)number * build->memory_each);
+    struct waiting *w = room.waiting;
     w->build = build;
-    w->ids = (uint32_t *)(void *)memory;
+    w->ids = room.ids;
     w->used = w->groups = 0;
     w->pairs = 0;
     w->dummy = (uint32_t)build->neighbors->source_count * SPHGI_ID_STEP;
-    memory += WAITING_ROOM * sizeof(uint32_t);
     if (build->lists)
         sphgi_copier_open(&w->copier, build->context, build->neighbors, build->lists, number,
-                          memory);
+                          room.search);
     else
-        sphgi_finder_open(&w->finder, build->context, build->neighbors, memory);
+        sphgi_finder_open(&w->finder, build->context, build->neighbors, room.search);
     return w;
 }
 
@@ -363,7 +373,8 @@ static bool open_build(struct build *build)
 {
     sphg_context *context = build->context;
     sphg_neighbors *n = build->neighbors;
-    build->memory_each = sphgi_round_up(memory_of_worker(build), SPHGI_ALIGNMENT);
+    struct room room;
+    build->memory_each = place_worker(build, &room, NULL);
     if (!sphgi_reserve(&context->allocator, &context->workers, (size_t)context->threads,
                        build->memory_each) ||
         !sphgi_reserve(&n->allocator, &n->found.lengths, (size_t)n->target_count,

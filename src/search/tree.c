@@ -7,30 +7,31 @@ static int32_t groups_of(int32_t items)
     return items / SPHGI_TREE_WIDTH + (items % SPHGI_TREE_WIDTH != 0);
 }
 
+/* Leaves, and each layer of nodes above them. Returns the bytes. */
+static size_t place_tree(struct sphgi_tree *tree, char *base, int32_t blocks)
+{
+    struct sphgi_layout layout = {base, 0};
+    int32_t groups = groups_of(blocks);
+    tree->height = 0;
+    tree->groups[0] = groups;
+    tree->leaves = sphgi_place(&layout, (size_t)groups, sizeof *tree->leaves);
+    while (groups > 1) {
+        groups = groups_of(groups);
+        tree->groups[++tree->height] = groups;
+        tree->nodes[tree->height] = sphgi_place(&layout, (size_t)groups, sizeof **tree->nodes);
+    }
+    return layout.used;
+}
+
 size_t sphgi_tree_size(int32_t blocks)
 {
-    int32_t groups = groups_of(blocks);
-    size_t bytes = sphgi_round_up((size_t)groups * sizeof(struct sphgi_leaf), SPHGI_ALIGNMENT);
-    for (; groups > 1; bytes += (size_t)groups * sizeof(struct sphgi_node))
-        groups = groups_of(groups);
-    return sphgi_round_up(bytes, SPHGI_ALIGNMENT);
+    struct sphgi_tree tree;
+    return place_tree(&tree, NULL, blocks);
 }
 
 void sphgi_tree_use(struct sphgi_tree *tree, int32_t blocks, void *memory)
 {
-    int32_t groups = groups_of(blocks);
-    tree->height = 0;
-    tree->groups[0] = groups;
-    tree->leaves = memory;
-    struct sphgi_node *node =
-        (void *)((char *)memory +
-                 sphgi_round_up((size_t)groups * sizeof(*tree->leaves), SPHGI_ALIGNMENT));
-    while (groups > 1) {
-        groups = groups_of(groups);
-        tree->groups[++tree->height] = groups;
-        tree->nodes[tree->height] = node;
-        node += groups;
-    }
+    place_tree(tree, memory, blocks);
 }
 
 static void open_octave(struct sphgi_tree *tree, int32_t octave, int32_t first)

@@ -168,14 +168,25 @@ static char *put_dummies(const struct sphgi_sweep *sweep, char *arrays, char *po
     return arrays;
 }
 
+/* Positions with volumes, where there are volumes, and so many bytes of fields. Returns all bytes.
+ */
+static size_t place_rows(struct packing *packing, char *base, size_t fields)
+{
+    const struct sphgi_sweep *sweep = packing->sweep;
+    const sphg_neighbors *n = sweep->set->neighbors;
+    struct sphgi_layout layout = {base, 0};
+    const size_t rows = sweep->volumes ? (size_t)n->source_count + 1 : 0;
+    packing->positions = sphgi_place(&layout, rows, row_size(n->position_type));
+    packing->rows = sphgi_place(&layout, fields, 1);
+    return layout.used;
+}
+
 /* Positions with volumes, and fields as rows in storage order, or records in their place. */
 sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
 {
     const sphg_neighbors *n = sweep->set->neighbors;
     const size_t rows = (size_t)n->source_count + 1;
     const bool positions = sphgi_reads_volumes(sweep), arrays = sphgi_rows_read(sweep);
-    const size_t positions_size =
-        sweep->volumes ? sphgi_round_up(rows * row_size(n->position_type), SPHGI_ALIGNMENT) : 0;
     size_t size = (size_t)sphgi_rows_read(sweep) * rows * row_size(sweep->plan->type);
     if (sweep->reads_records && !arrays)
         sweep->records = n->sources.rows.data;
@@ -183,14 +194,14 @@ sphg_result sphgi_pack(struct sphgi_sweep *sweep, bool *bad_volume)
         return SPHG_OK;
     if (sweep->may_read_records && sphgi_record_bytes(sweep) > size)
         size = sphgi_record_bytes(sweep);
-    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed, positions_size + size,
-                       1))
-        return SPHG_ERROR_MEMORY;
-    char *memory = sweep->context->packed.data;
     struct packing packing = {.sweep = sweep,
-                              .positions = positions ? memory : NULL,
-                              .rows = arrays ? memory + positions_size : NULL,
                               .order = n->kind == SPHGI_HOST_LISTS ? NULL : n->sources.order.data};
+    if (!sphgi_reserve(&sweep->context->allocator, &sweep->context->packed,
+                       place_rows(&packing, NULL, size), 1))
+        return SPHG_ERROR_MEMORY;
+    place_rows(&packing, sweep->context->packed.data, size);
+    packing.positions = positions ? packing.positions : NULL;
+    packing.rows = arrays ? packing.rows : NULL;
     atomic_store(&packing.bad_volume, false);
     sphgi_parallel_for(sweep->context, pack_task, &packing, n->source_count, PACK_GRAIN);
     sweep->packed_positions = packing.positions;

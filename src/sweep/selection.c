@@ -201,21 +201,30 @@ static bool are_few(const struct sphgi_selection *selection, const sphg_neighbor
     return items * FEW < sphgi_group_count(n->target_count);
 }
 
+/* Groups, a bit for each of their targets, and a mark for each target. Returns the bytes. */
+static size_t place_selection(struct sphgi_selection *selection, uint8_t **marks, char *base,
+                              int32_t targets)
+{
+    struct sphgi_layout layout = {base, 0};
+    const size_t groups = (size_t)sphgi_group_count(targets) + 1;
+    selection->groups = sphgi_place(&layout, groups, sizeof *selection->groups);
+    selection->active = sphgi_place(&layout, groups, sizeof *selection->active);
+    *marks = sphgi_place(&layout, (size_t)targets + 1, sizeof **marks);
+    return layout.used;
+}
+
 bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selection,
                           const sphg_neighbors *n)
 {
-    const size_t targets = sphgi_round_up((size_t)n->target_count + 1, SPHGI_ALIGNMENT);
-    const size_t groups =
-        sphgi_round_up((size_t)sphgi_group_count(n->target_count) + 1, SPHGI_ALIGNMENT);
-    const size_t before = context->selection.size;
-    if (!sphgi_reserve(&context->allocator, &context->selection,
-                       targets + groups * (sizeof(uint16_t) + sizeof(int32_t)), 1))
+    struct sphgi_buffer *memory = &context->selection;
+    const size_t before = memory->size;
+    uint8_t *marks;
+    if (!sphgi_reserve(&context->allocator, memory,
+                       place_selection(selection, &marks, NULL, n->target_count), 1))
         return false;
-    uint8_t *base = context->selection.data;
-    if (context->selection.size != before) /* all is 0 between calls */
-        memset(base, 0, context->selection.size);
-    selection->groups = (int32_t *)(void *)base;
-    selection->active = (uint16_t *)(void *)(base + groups * sizeof(int32_t));
+    if (memory->size != before) /* all is 0 between calls */
+        memset(memory->data, 0, memory->size);
+    place_selection(selection, &marks, memory->data, n->target_count);
     selection->group_count = selection->active_count = 0;
     if (are_few(selection, n))
         mark_few(selection, n);
@@ -223,7 +232,7 @@ bool sphgi_selection_open(sphg_context *context, struct sphgi_selection *selecti
         mark_masked(context, selection, n);
         list_groups(selection, sphgi_group_count(n->target_count));
     } else
-        look_at_groups(context, selection, n, (uint8_t *)(selection->active + groups));
+        look_at_groups(context, selection, n, marks);
     return true;
 }
 
