@@ -27,9 +27,9 @@ struct waiting {
     SPHGI_LANES_BUFFER(volume, 1);
 };
 
-/* One worker's share. Moments of the host = factor * ours; see sphgi_table_scales(): the inverse
- * takes the same factor. */
-struct share {
+/* What one worker inverts. Moments of the host = factor * ours; see sphgi_table_scales(): the
+ * inverse takes the same factor. */
+struct inverting {
     const struct inversion *of;
     const struct sphgi_matrix_batch *batch;
     struct sphgi_tally *tally;
@@ -41,7 +41,7 @@ struct share {
     SPHGI_LANES_BUFFER(lambda_min, 1);
 };
 
-static void read_moments(struct share *own, const int32_t *items)
+static void read_moments(struct inverting *own, const int32_t *items)
 {
     const struct sphgi_matrix_batch *b = own->batch;
     const struct sphgi_passes *p = b->passes;
@@ -55,7 +55,7 @@ static void read_moments(struct share *own, const int32_t *items)
     }
 }
 
-static void write_inverses(struct share *own, const struct sphgi_verdict *verdict,
+static void write_inverses(struct inverting *own, const struct sphgi_verdict *verdict,
                            const int32_t *items)
 {
     const struct sphgi_matrix_batch *b = own->batch;
@@ -72,7 +72,7 @@ static void write_inverses(struct share *own, const struct sphgi_verdict *verdic
             verdict->decomposed >> l & 1 ? verdict->rank[l] : (uint8_t)b->dimension;
 }
 
-static void decompose_waiting(struct share *own)
+static void decompose_waiting(struct inverting *own)
 {
     const struct sphgi_matrix_batch *b = own->batch;
     struct waiting *w = &own->waiting;
@@ -99,7 +99,7 @@ static void copy_lane(const struct sphgi_matrix_batch *b, int32_t numbers, const
             ((float *)to)[k + place] = ((const float *)from)[k + lane];
 }
 
-static void put_aside(struct share *own, int32_t lane, int32_t item)
+static void put_aside(struct inverting *own, int32_t lane, int32_t item)
 {
     struct waiting *w = &own->waiting;
     copy_lane(own->batch, own->batch->in.count, own->moments, lane, w->moments, w->count);
@@ -111,7 +111,7 @@ static void put_aside(struct share *own, int32_t lane, int32_t item)
 }
 
 /* Writes all of the group; what waits is written again when it has been decomposed. */
-static void invert_group(struct share *own, int32_t g)
+static void invert_group(struct inverting *own, int32_t g)
 {
     const struct sphgi_matrix_batch *b = own->batch;
     int32_t items[SPHGI_WIDTH];
@@ -133,7 +133,7 @@ static void invert_task(void *data, int32_t begin, int32_t end, int32_t worker)
 {
     const struct inversion *inversion = data;
     const struct sphgi_scheme *scheme = inversion->scheme;
-    struct share own;
+    struct inverting own;
     own.of = inversion;
     own.batch = &inversion->batch;
     own.tally = &inversion->tallies[worker];

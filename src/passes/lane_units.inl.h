@@ -49,8 +49,8 @@ SPHGI_TEMPLATE void put_power(const radius_bits *exponent, void *to, int32_t l)
 }
 
 /* frexp() and ldexp() of normal numbers. The exponent is halved towards 0. */
-static void lane_shares(int32_t width, const double *factor, void *mantissa, void *first,
-                        void *second)
+static void lane_table_units(int32_t width, const double *factor, void *mantissa, void *first,
+                             void *second)
 {
     const int64_t field = (int64_t)0x7ff << MANTISSA_BITS, one = (int64_t)1 << MANTISSA_BITS;
     for (int32_t l = 0; l < width; l += RADII) {

@@ -140,8 +140,8 @@ struct sphgi_passes {
                        void *ratio, void *inverse, void *inverse_square, void *factor);
 
     /* Factors of tables as sphgi_share has them (plan/units.h): mantissa and two powers of two. */
-    void (*lane_shares)(int32_t width, const double *factor, void *mantissa, void *first,
-                        void *second);
+    void (*lane_table_units)(int32_t width, const double *factor, void *mantissa, void *first,
+                             void *second);
 
     /* Arrays from `first` on, times a number per lane. */
     void (*scale_pairs)(const struct sphgi_tile *tile, enum sphgi_array first, int32_t count,

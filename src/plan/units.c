@@ -51,33 +51,35 @@ double sphgi_factor_of_h(const struct sphgi_scheme *scheme)
     return by_value ? sigma / sphgi_kernel_mu2(scheme->kernel, scheme->dimension) : sigma;
 }
 
-static struct sphgi_share share_of(double factor, int32_t first, int32_t count)
+static struct sphgi_table_unit table_unit_of(double factor, int32_t first, int32_t count)
 {
     int exponent;
-    struct sphgi_share share = {.first = first, .count = count};
-    share.mantissa = frexp(factor, &exponent);
-    if (share.mantissa == 0.5) { /* a power of two: nothing is rounded */
-        share.mantissa = 1;
+    struct sphgi_table_unit unit = {.first = first, .count = count};
+    unit.mantissa = frexp(factor, &exponent);
+    if (unit.mantissa == 0.5) { /* a power of two: nothing is rounded */
+        unit.mantissa = 1;
         --exponent;
     }
-    share.power[0] = ldexp(1, exponent / 2);
-    share.power[1] = ldexp(1, exponent - exponent / 2);
-    return share;
+    unit.power[0] = ldexp(1, exponent / 2);
+    unit.power[1] = ldexp(1, exponent - exponent / 2);
+    return unit;
 }
 
-void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES])
+void sphgi_table_units(const struct sphgi_plan *plan,
+                       struct sphgi_table_unit units[SPHGI_TABLE_UNITS])
 {
     const struct sphgi_scales scales = sphgi_table_scales(&plan->scheme);
     const int32_t width = sphgi_plan_width(plan), d = plan->dimension, pairs = d * (d + 1) / 2;
     const int32_t values = plan->classic ? d + 1 : plan->quadratic ? pairs : width;
     const double h = plan->scheme.radius;
-    shares[0] = share_of(scales.value, 0, values);
-    shares[1] = shares[2] = (struct sphgi_share){.count = 0};
+    units[0] = table_unit_of(scales.value, 0, values);
+    units[1] = units[2] = (struct sphgi_table_unit){.count = 0};
     if (plan->classic)
-        shares[1] = share_of(scales.slope, values, width - values);
+        units[1] = table_unit_of(scales.slope, values, width - values);
     if (plan->quadratic) {
-        shares[1] = share_of(scales.value / h, pairs, d * pairs);
-        shares[2] = share_of(scales.value / h / h, pairs + d * pairs, width - pairs - d * pairs);
+        units[1] = table_unit_of(scales.value / h, pairs, d * pairs);
+        units[2] =
+            table_unit_of(scales.value / h / h, pairs + d * pairs, width - pairs - d * pairs);
     }
 }
 

@@ -18,15 +18,16 @@ double sphgi_factor_of_h(const struct sphgi_scheme *scheme);
 
 /* The factor of some numbers of a table as mantissa times powers of two: multiplying with those is
  * exact, also where the factor itself is so large or small that no table could hold the result. */
-struct sphgi_share {
+struct sphgi_table_unit {
     int32_t first, count;
     double mantissa, power[2];
 };
 
-enum { SPHGI_SHARES = 3 };
+enum { SPHGI_TABLE_UNITS = 3 };
 
 /* [0] of y, or of all numbers of a linearised method, [1] of z_k. Order 2: of its three blocks. */
-void sphgi_shares_of(const struct sphgi_plan *plan, struct sphgi_share shares[SPHGI_SHARES]);
+void sphgi_table_units(const struct sphgi_plan *plan,
+                       struct sphgi_table_unit units[SPHGI_TABLE_UNITS]);
 /* Tables are in units of H; else the factor is 1. */
 bool sphgi_has_units(const struct sphgi_scheme *scheme);
 

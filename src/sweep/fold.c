@@ -8,7 +8,7 @@
 struct folding {
     const struct sphgi_sweep *sweep;
     const struct sphgi_field_plan *field;
-    struct sphgi_share share[SPHGI_SHARES];
+    struct sphgi_table_unit table_units[SPHGI_TABLE_UNITS];
     int32_t count, width;
     int32_t items[SPHGI_WIDTH];  /* of the host ... */
     int32_t places[SPHGI_WIDTH]; /* ... and among the rows */
@@ -122,7 +122,7 @@ static const double *product(struct folding *f)
     if (plan->correction_stream < 0)
         return f->a;
     load(f, &f->sweep->set->streams[plan->correction_stream].columns, numbers, f->raw);
-    sphgi_take_from_table(p, f->share, f->width, plan->type, number(f, f->raw, 0),
+    sphgi_take_from_table(p, f->table_units, f->width, plan->type, number(f, f->raw, 0),
                           number(f, f->correction, 0));
     if (f->field->shape == SPHG_SYM_TENSOR)
         make_whole(f);
@@ -189,7 +189,7 @@ static bool fold_into(const struct sphgi_sweep *sweep, const struct sphgi_field_
     f.field = field;
     f.bad_volume = false;
     memset(f.b, 0, sizeof f.b); /* what is behind the last number of a row */
-    sphgi_shares_of(sweep->plan, f.share);
+    sphgi_table_units(sweep->plan, f.table_units);
     for (int64_t at = begin; at < end; at += f.count) {
         f.count = end - at < SPHGI_WIDTH ? (int32_t)(end - at) : SPHGI_WIDTH;
         f.width = (int32_t)sphgi_round_up((size_t)f.count, lanes);

@@ -4,10 +4,10 @@
 
 /* ---- Units ---------------------------------------------------------------------------------- */
 
-/* [0] the mantissas of a share, [1] and [2] its powers. */
-static char *share_lanes(const struct sphgi_worker *w, int32_t share, int32_t which)
+/* [0] the mantissas of a unit, [1] and [2] its powers. */
+static char *table_unit_lanes(const struct sphgi_worker *w, int32_t unit, int32_t which)
 {
-    return sphgi_lane(w, w->radii.shares, 3 * share + which);
+    return sphgi_lane(w, w->radii.table_units, 3 * unit + which);
 }
 
 static void put_units(struct sphgi_worker *w, const double *radius)
@@ -30,18 +30,18 @@ static bool has_units(const struct sphgi_worker *w)
     return w->sweep->plan->quadratic || sphgi_has_units(&w->sweep->plan->scheme);
 }
 
-/* A table's units, as sphgi_shares_of has them, lane by lane: mantissa and two powers of each. */
-static void put_shares(struct sphgi_worker *w, const double *radius)
+/* A table's units, as sphgi_table_units has them, lane by lane: mantissa and two powers of each. */
+static void put_table_units(struct sphgi_worker *w, const double *radius)
 {
-    double factor[SPHGI_SHARES][SPHGI_WIDTH];
+    double factor[SPHGI_TABLE_UNITS][SPHGI_WIDTH];
     sphgi_table_scales_at(&w->sweep->plan->scheme, w->batch.width, radius, factor[0], factor[1]);
     for (int32_t l = 0; w->sweep->plan->quadratic && l < w->batch.width; ++l) {
         factor[1][l] = factor[0][l] / radius[l];
         factor[2][l] = factor[1][l] / radius[l];
     }
-    for (int32_t k = 0; k < SPHGI_SHARES && w->share[k].count; ++k)
-        w->passes->lane_shares(w->batch.width, factor[k], share_lanes(w, k, 0),
-                               share_lanes(w, k, 1), share_lanes(w, k, 2));
+    for (int32_t k = 0; k < SPHGI_TABLE_UNITS && w->table_units[k].count; ++k)
+        w->passes->lane_table_units(w->batch.width, factor[k], table_unit_lanes(w, k, 0),
+                                    table_unit_lanes(w, k, 1), table_unit_lanes(w, k, 2));
 }
 
 static void radii_at(const sphg_neighbors *n, const int32_t *places, int32_t count, double *radius)
@@ -60,7 +60,7 @@ static void read_radii(struct sphgi_worker *w, const int32_t *places)
     radii_at(w->sweep->set->neighbors, places, width, radius);
     put_units(w, radius);
     if (units)
-        put_shares(w, radius);
+        put_table_units(w, radius);
     if (w->gather.unit == 1) /* else offsets are in units of it */
         w->shape.inverse_lanes = sphgi_lane(w, w->radii.inverse, 0);
     if (!w->sweep->plan->classic)
@@ -82,7 +82,7 @@ void sphgi_keep_lane_radii(struct sphgi_worker *w, uint32_t kept)
     for (int32_t k = 0; k < 4; ++k)
         w->passes->pack_lanes(kept, 1, sphgi_lane(w, each[k], 0));
     if (has_units(w))
-        w->passes->pack_lanes(kept, 3 * SPHGI_SHARES, sphgi_lane(w, w->radii.shares, 0));
+        w->passes->pack_lanes(kept, 3 * SPHGI_TABLE_UNITS, sphgi_lane(w, w->radii.table_units, 0));
 }
 
 /* ---- Numbers -------------------------------------------------------------------------------- */
@@ -113,45 +113,45 @@ void sphgi_weigh_other_side(struct sphgi_worker *w)
 
 /* ---- Tables --------------------------------------------------------------------------------- */
 
-static void divide(struct sphgi_worker *w, const struct sphgi_share *share, int32_t k,
+static void divide(struct sphgi_worker *w, const struct sphgi_table_unit *unit, int32_t k,
                    char *coefficients)
 {
-    for (int32_t c = share->first; c < share->first + share->count; ++c)
-        w->passes->quotient(w->batch.width, sphgi_lane(w, w->raw, c), share_lanes(w, k, 0),
+    for (int32_t c = unit->first; c < unit->first + unit->count; ++c)
+        w->passes->quotient(w->batch.width, sphgi_lane(w, w->raw, c), table_unit_lanes(w, k, 0),
                             sphgi_lane(w, coefficients, c));
 }
 
 void sphgi_round_by_radius(struct sphgi_worker *w, char *coefficients, bool wanted)
 {
     const bool units = has_units(w);
-    for (int32_t k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
-        const struct sphgi_share *share = &w->share[k];
-        char *ours = sphgi_lane(w, coefficients, share->first);
-        char *raw = sphgi_lane(w, w->raw, share->first);
+    for (int32_t k = 0; k < SPHGI_TABLE_UNITS && w->table_units[k].count; ++k) {
+        const struct sphgi_table_unit *unit = &w->table_units[k];
+        char *ours = sphgi_lane(w, coefficients, unit->first);
+        char *raw = sphgi_lane(w, w->raw, unit->first);
         if (units || wanted)
-            w->passes->scale(w->batch.width, share->count, ours, 1,
-                             units ? share_lanes(w, k, 0) : NULL, raw);
+            w->passes->scale(w->batch.width, unit->count, ours, 1,
+                             units ? table_unit_lanes(w, k, 0) : NULL, raw);
         if (units)
-            divide(w, share, k, coefficients);
+            divide(w, unit, k, coefficients);
         for (int32_t p = 1; units && wanted && p < 3; ++p)
-            w->passes->scale(w->batch.width, share->count, raw, 1, share_lanes(w, k, p), raw);
+            w->passes->scale(w->batch.width, unit->count, raw, 1, table_unit_lanes(w, k, p), raw);
     }
 }
 
 void sphgi_take_by_radius(struct sphgi_worker *w)
 {
     const bool units = has_units(w);
-    for (int32_t k = 0; k < SPHGI_SHARES && w->share[k].count; ++k) {
-        const struct sphgi_share *share = &w->share[k];
-        char *raw = sphgi_lane(w, w->raw, share->first);
+    for (int32_t k = 0; k < SPHGI_TABLE_UNITS && w->table_units[k].count; ++k) {
+        const struct sphgi_table_unit *unit = &w->table_units[k];
+        char *raw = sphgi_lane(w, w->raw, unit->first);
         for (int32_t p = 1; units && p < 3; ++p) {
-            w->passes->quotient(w->batch.width, NULL, share_lanes(w, k, p), w->extra);
-            w->passes->scale(w->batch.width, share->count, raw, 1, w->extra, raw);
+            w->passes->quotient(w->batch.width, NULL, table_unit_lanes(w, k, p), w->extra);
+            w->passes->scale(w->batch.width, unit->count, raw, 1, w->extra, raw);
         }
         if (units)
-            divide(w, share, k, w->coefficients);
+            divide(w, unit, k, w->coefficients);
         else
-            w->passes->scale(w->batch.width, share->count, raw, 1, NULL,
-                             sphgi_lane(w, w->coefficients, share->first));
+            w->passes->scale(w->batch.width, unit->count, raw, 1, NULL,
+                             sphgi_lane(w, w->coefficients, unit->first));
     }
 }

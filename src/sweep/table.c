@@ -6,9 +6,10 @@
 /* ---- Units ----------------------------------------------------------------------------------- */
 
 /* Shares that somebody reads: of order 2 the last one only for second derivatives. */
-static int shares_in_use(const struct sphgi_worker *w)
+static int table_units_in_use(const struct sphgi_worker *w)
 {
-    return w->sweep->plan->quadratic && !w->second.whole ? SPHGI_SHARES - 1 : SPHGI_SHARES;
+    return w->sweep->plan->quadratic && !w->second.whole ? SPHGI_TABLE_UNITS - 1
+                                                         : SPHGI_TABLE_UNITS;
 }
 
 void sphgi_round_as_table(struct sphgi_worker *w, char *coefficients, bool wanted)
@@ -17,32 +18,32 @@ void sphgi_round_as_table(struct sphgi_worker *w, char *coefficients, bool wante
         sphgi_round_by_radius(w, coefficients, wanted);
         return;
     }
-    for (int k = 0; k < shares_in_use(w) && w->share[k].count; ++k) {
-        const struct sphgi_share *share = &w->share[k];
-        const bool exact = share->mantissa == 1;
-        char *ours = sphgi_lane(w, coefficients, share->first);
-        char *raw = sphgi_lane(w, w->raw, share->first);
+    for (int k = 0; k < table_units_in_use(w) && w->table_units[k].count; ++k) {
+        const struct sphgi_table_unit *unit = &w->table_units[k];
+        const bool exact = unit->mantissa == 1;
+        char *ours = sphgi_lane(w, coefficients, unit->first);
+        char *raw = sphgi_lane(w, w->raw, unit->first);
         if (!exact || wanted)
-            w->passes->scale(w->batch.width, share->count, ours, share->mantissa, NULL, raw);
+            w->passes->scale(w->batch.width, unit->count, ours, unit->mantissa, NULL, raw);
         if (!exact)
-            w->passes->divide(w->batch.width, share->count, raw, share->mantissa, ours);
+            w->passes->divide(w->batch.width, unit->count, raw, unit->mantissa, ours);
         for (int p = 0; wanted && p < 2; ++p)
-            if (share->power[p] != 1)
-                w->passes->scale(w->batch.width, share->count, raw, share->power[p], NULL, raw);
+            if (unit->power[p] != 1)
+                w->passes->scale(w->batch.width, unit->count, raw, unit->power[p], NULL, raw);
     }
 }
 
-void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_share *shares,
+void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_table_unit *units,
                            int32_t width, sphg_type type, char *raw, char *ours)
 {
-    for (int k = 0; k < SPHGI_SHARES && shares[k].count; ++k) {
-        const struct sphgi_share *share = &shares[k];
-        const size_t first = (size_t)share->first * SPHGI_WIDTH * sphgi_size_of_type(type);
+    for (int k = 0; k < SPHGI_TABLE_UNITS && units[k].count; ++k) {
+        const struct sphgi_table_unit *unit = &units[k];
+        const size_t first = (size_t)unit->first * SPHGI_WIDTH * sphgi_size_of_type(type);
         for (int p = 0; p < 2; ++p)
-            if (share->power[p] != 1)
-                passes->scale(width, share->count, raw + first, 1 / share->power[p], NULL,
+            if (unit->power[p] != 1)
+                passes->scale(width, unit->count, raw + first, 1 / unit->power[p], NULL,
                               raw + first);
-        passes->divide(width, share->count, raw + first, share->mantissa, ours + first);
+        passes->divide(width, unit->count, raw + first, unit->mantissa, ours + first);
     }
 }
 
@@ -95,6 +96,6 @@ void sphgi_load_corrections(struct sphgi_worker *w)
     if (plan->graded)
         sphgi_take_by_radius(w);
     else
-        sphgi_take_from_table(w->passes, w->share, w->batch.width, plan->type,
+        sphgi_take_from_table(w->passes, w->table_units, w->batch.width, plan->type,
                               sphgi_lane(w, w->raw, 0), sphgi_lane(w, w->coefficients, 0));
 }

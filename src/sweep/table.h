@@ -11,7 +11,7 @@ void sphgi_load_corrections(struct sphgi_worker *worker);
 void sphgi_store_table(struct sphgi_worker *worker);
 
 /* Numbers of a table, `width` lanes, in units of H; raw is used up. */
-void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_share *shares,
+void sphgi_take_from_table(const struct sphgi_passes *passes, const struct sphgi_table_unit *units,
                            int32_t width, sphg_type type, char *raw, char *ours);
 
 /* Rounds coefficients as a table would, so that both give the same bits; worker->raw: what a table

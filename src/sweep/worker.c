@@ -68,7 +68,7 @@ static size_t lay_out(struct sphgi_worker *w, const struct sphgi_sweep *sweep, c
     PLACE(radii.inverse, plan->graded ? SPHGI_WIDTH : 0, size);
     PLACE(radii.inverse_square, plan->graded ? SPHGI_WIDTH : 0, size);
     PLACE(radii.factor, plan->graded ? SPHGI_WIDTH : 0, size);
-    PLACE(radii.shares, plan->graded ? 3 * SPHGI_SHARES * SPHGI_WIDTH : 0, size);
+    PLACE(radii.table_units, plan->graded ? 3 * SPHGI_TABLE_UNITS * SPHGI_WIDTH : 0, size);
     PLACE(curvature.share_kept, plan->quadratic ? SPHGI_WIDTH : 0, size);
     PLACE(curvature.hessian, plan->quadratic ? (SPHGI_HESSIANS + 9) * SPHGI_WIDTH : 0, size);
     PLACE(lending.linear, 6 * lending, size);
@@ -149,7 +149,7 @@ void sphgi_worker_open(struct sphgi_worker *w, const struct sphgi_sweep *sweep, 
     lay_out(w, sweep, sweep->memory + (size_t)number * sweep->memory_each);
     open_scheme(w);
     w->inverse_h = 1 / sweep->plan->scheme.radius;
-    sphgi_shares_of(sweep->plan, w->share);
+    sphgi_table_units(sweep->plan, w->table_units);
     w->coefficients_first = needs_coefficients_first(sweep);
     w->tile.section = (ptrdiff_t)sweep->plan->sums * SPHGI_WIDTH;
     memset(w->zeros, 0, (size_t)(sphgi_lane(w, w->zeros, 16) - w->zeros));

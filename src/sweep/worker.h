@@ -137,7 +137,7 @@ struct sphgi_own {
 /* What takes the place of H, H^d of the plan over that of the target, and so on, where each target
  * has a radius of its own. */
 struct sphgi_lane_radii {
-    char *ratio, *inverse, *inverse_square, *factor, *shares;
+    char *ratio, *inverse, *inverse_square, *factor, *table_units;
 };
 
 /* Of order 2. */
@@ -167,8 +167,8 @@ struct sphgi_worker {
     struct sphgi_threshold threshold;
     struct sphgi_second second;
     double inverse_h;
-    double factor_of_h;                     /* w_scale, times H */
-    struct sphgi_share share[SPHGI_SHARES]; /* of the table of corrections */
+    double factor_of_h;                                     /* w_scale, times H */
+    struct sphgi_table_unit table_units[SPHGI_TABLE_UNITS]; /* of the table of corrections */
     bool factors_at_once;    /* s_ij come with the pairs, for nobody asks for distances */
     const uint32_t *ids_end; /* of the lists that are kept */
     bool is_short;           /* whole groups are summed by one pass, which is told ... */
