@@ -45,8 +45,8 @@ helps '^  examples/run SCENE' "$tree/examples/run"
 helps '^  examples/run film SCENE' "$tree/examples/run" film dam_break
 helps '^  examples/run SCENE' "$tree/examples/run" all
 helps '^  examples/run SCENE' "$tree/examples/run" cube --seed 2
-helps '^  --quick ' "$tree/tests/run"
-helps '^  --quick ' "$tree/tests/run" --mutants 5
+helps '^  --all ' "$tree/tests/run"
+helps '^  --all ' "$tree/tests/run" --mutants 5
 
 # Commands: those of the program, with its words.
 helps '^ *table1 ' "$bench"
@@ -114,5 +114,5 @@ refuses '^one at a time' "$tree/examples/run" normals grid
 refuses "^bench/run: there is no command 'limits'" "$tree/bench/run" limits
 refuses '^  bench/run COMMAND' "$tree/bench/run" help
 refuses "^tests/run: there is no option 'quick'" "$tree/tests/run" quick
-refuses '^  --quick ' "$tree/tests/run" --quick --nonsense
+refuses '^  --all ' "$tree/tests/run" --all --nonsense
 exit $status
