@@ -29,7 +29,8 @@ bool sphgi_reserve(const struct sphgi_allocator *allocator, struct sphgi_buffer 
 void sphgi_free(const struct sphgi_allocator *allocator, struct sphgi_buffer *buffer);
 
 /* Arrays one after the other in one piece of memory. base NULL: they are only measured, so that the
- * same lines say how much memory there must be and what lies where. */
+ * same lines say how much memory there must be and what lies where. What sphgi_place returns then
+ * is no place. It is worked out in whole numbers, for nothing may be added to a null pointer. */
 struct sphgi_layout {
     char *base;
     size_t used; /* [byte] */
@@ -37,7 +38,7 @@ struct sphgi_layout {
 
 static inline void *sphgi_place(struct sphgi_layout *layout, size_t count, size_t item_size)
 {
-    void *here = layout->base ? layout->base + layout->used : NULL;
+    void *here = (void *)((uintptr_t)layout->base + layout->used);
     layout->used += sphgi_round_up(count * item_size, SPHGI_ALIGNMENT);
     return here;
 }

@@ -134,14 +134,21 @@ struct sphgi_kept_list {
     int32_t stride;
 };
 
+/* Of a group whose lists stand apart. */
+static inline struct sphgi_kept_list sphgi_first_apart(const sphg_neighbors *neighbors,
+                                                       int32_t group)
+{
+    const uint32_t *lengths = sphgi_kept_ids(neighbors, group);
+    return (struct sphgi_kept_list){lengths + SPHGI_GROUP, lengths, 1};
+}
+
+/* Of any group. */
 static inline struct sphgi_kept_list sphgi_first_list(const sphg_neighbors *neighbors,
                                                       int32_t group)
 {
-    const uint32_t *ids = sphgi_kept_ids(neighbors, group);
-    struct sphgi_kept_list list = {ids, NULL, SPHGI_GROUP};
     if (sphgi_kept_steps(neighbors, group) == SPHGI_APART)
-        list = (struct sphgi_kept_list){ids + SPHGI_GROUP, ids, 1};
-    return list;
+        return sphgi_first_apart(neighbors, group);
+    return (struct sphgi_kept_list){sphgi_kept_ids(neighbors, group), NULL, SPHGI_GROUP};
 }
 
 static inline void sphgi_to_next_list(struct sphgi_kept_list *list)

@@ -62,7 +62,7 @@ static void sweep_apart(const struct sphgi_task *task, struct sphgi_worker *w, i
     const sphg_neighbors *n = task->sweep.set->neighbors;
     const uint32_t active = active_of(task, group);
     const int32_t first = group * SPHGI_GROUP;
-    struct sphgi_kept_list list = sphgi_first_list(n, group);
+    struct sphgi_kept_list list = sphgi_first_apart(n, group);
     for (int32_t k = 0; k < sphgi_targets_in(n, group); ++k, sphgi_to_next_list(&list))
         if (active >> k & 1)
             add_kept(w, first + k, list.ids, (int32_t)*list.length, 1);
