@@ -90,33 +90,40 @@ void sphgi_load_targets(struct sphgi_worker *w)
     sphgi_load_target_volumes(w);
 }
 
+/* Most results are not wanted: a call for each of them would cost what asking gains. */
+static void ask_for(const struct sphgi_worker *w, const struct sphgi_columns *columns,
+                    int32_t count, const int32_t *targets, bool writes)
+{
+    if (columns->count)
+        w->passes->ask_for_lanes(count, columns, targets, writes);
+}
+
 void sphgi_ask_for_targets(const struct sphgi_worker *w, int32_t count, const int32_t *targets)
 {
     const struct sphgi_plan *plan = w->sweep->plan;
-    const struct sphgi_passes *p = w->passes;
-    p->ask_for_lanes(count, &plan->target_correction, targets, false);
-    p->ask_for_lanes(count, &plan->correction, targets, true);
+    ask_for(w, &plan->target_correction, count, targets, false);
+    ask_for(w, &plan->correction, count, targets, true);
     if (plan->weighted && plan->own_set >= 0 && plan->computes)
-        p->ask_for_lanes(count, &plan->own_volume, targets, false);
+        ask_for(w, &plan->own_volume, count, targets, false);
     if (plan->adjoint || plan->transposes[1]) {
-        p->ask_for_lanes(count, &plan->target_volume, targets, false);
-        p->ask_for_lanes(count, &plan->target_density, targets, false);
+        ask_for(w, &plan->target_volume, count, targets, false);
+        ask_for(w, &plan->target_density, count, targets, false);
     }
     for (int32_t k = 0; k < plan->field_count; ++k) {
         const struct sphgi_field_plan *field = &plan->fields[k];
         if (k >= 32 || !(w->own.in_rows >> k & 1))
-            p->ask_for_lanes(count, &field->target, targets, false);
-        p->ask_for_lanes(count, &field->gradient, targets, true);
-        p->ask_for_lanes(count, &field->divergence, targets, true);
-        p->ask_for_lanes(count, &field->curl, targets, true);
-        p->ask_for_lanes(count, &field->tensor, targets, false);
-        p->ask_for_lanes(count, &field->contraction, targets, true);
-        p->ask_for_lanes(count, &field->coefficient, targets, false);
-        p->ask_for_lanes(count, &field->value, targets, true);
-        p->ask_for_lanes(count, &field->laplacian, targets, true);
-        p->ask_for_lanes(count, &field->curvature, targets, true);
+            ask_for(w, &field->target, count, targets, false);
+        ask_for(w, &field->gradient, count, targets, true);
+        ask_for(w, &field->divergence, count, targets, true);
+        ask_for(w, &field->curl, count, targets, true);
+        ask_for(w, &field->tensor, count, targets, false);
+        ask_for(w, &field->contraction, count, targets, true);
+        ask_for(w, &field->coefficient, count, targets, false);
+        ask_for(w, &field->value, count, targets, true);
+        ask_for(w, &field->laplacian, count, targets, true);
+        ask_for(w, &field->curvature, count, targets, true);
         for (int32_t c = 0; c < 3; ++c)
-            p->ask_for_lanes(count, &field->hessian[c], targets, true);
+            ask_for(w, &field->hessian[c], count, targets, true);
     }
 }
 
